@@ -1,0 +1,32 @@
+#pragma once
+
+#include <chrono>
+#include <string>
+
+namespace springtower {
+
+/// One line about how far a long job is, rewritten in place on standard error; silent unless that is a terminal and the job takes
+/// more than two seconds. For one thread.
+class Progress {
+ public:
+  /// `unit` follows "DONE of TOTAL ".
+  Progress(double total, std::string unit);
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+  ~Progress() { clear(); }
+
+  /// Says how much is done; cheap enough to call every frame.
+  void update(double done);
+  /// Removes the line.
+  void clear();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  double total_;
+  std::string unit_;
+  bool terminal_;
+  bool shown_ = false;
+  Clock::time_point next_;
+};
+
+}  // namespace springtower

@@ -1,0 +1,29 @@
+#include "broadphase/swept_boxes.h"
+
+#include <Eigen/Core>
+#include <cassert>
+#include <cmath>
+
+namespace springtower {
+
+void computeSweptBoxes(const MotionState& state, std::span<const std::int32_t> blocks, double gravity, double duration_s,
+                       double margin_m, SweptBoxes& boxes, std::span<double> reach) {
+  using Corners = Eigen::Map<const Eigen::Array<double, static_cast<int>(kCorners), 1>>;
+  assert(boxes.blockCount() == state.position.blockCount() && reach.size() == boxes.blockCount());
+  const double common = 0.5 * gravity * duration_s * duration_s + margin_m;
+  for (const std::int32_t block : blocks) {
+    const auto b = static_cast<std::size_t>(block);
+    const Corners vx(state.velocity.values(0, b));
+    const Corners vy(state.velocity.values(1, b));
+    const Corners vz(state.velocity.values(2, b));
+    const double speed = std::sqrt((vx * vx + vy * vy + vz * vz).maxCoeff());
+    reach[b] = speed * duration_s + common;
+    for (std::size_t a = 0; a < 3; ++a) {
+      const Corners x(state.position.values(a, b));
+      boxes.lower[a][b] = x.minCoeff() - reach[b];
+      boxes.upper[a][b] = x.maxCoeff() + reach[b];
+    }
+  }
+}
+
+}  // namespace springtower

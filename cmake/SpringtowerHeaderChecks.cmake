@@ -1,0 +1,34 @@
+# One source file for each header, which includes nothing else: a header that leans on what its users happened to include before it
+# does not compile. Nothing is run, so nothing is optimised.
+
+find_package(GTest REQUIRED)
+find_package(CLI11 REQUIRED)
+find_package(nlohmann_json REQUIRED)
+find_package(benchmark REQUIRED)
+find_package(PkgConfig REQUIRED)
+pkg_check_modules(cairo REQUIRED IMPORTED_TARGET cairo)
+
+set(check_sources)
+foreach(folder IN ITEMS core broadphase narrowphase solver apps bench tests)
+  file(GLOB_RECURSE headers CONFIGURE_DEPENDS RELATIVE "${PROJECT_SOURCE_DIR}" "${PROJECT_SOURCE_DIR}/${folder}/*.h")
+  # The viewer has dependencies of its own, and its build compiles its headers.
+  list(FILTER headers EXCLUDE REGEX "^apps/viewer")
+  foreach(header IN LISTS headers)
+    set(source "${PROJECT_BINARY_DIR}/header_checks/${header}.cpp")
+    file(CONFIGURE OUTPUT "${source}" CONTENT "#include \"@header@\"\n" @ONLY)
+    list(APPEND check_sources "${source}")
+  endforeach()
+endforeach()
+
+if(check_sources)
+  add_library(springtower_header_checks OBJECT ${check_sources})
+  springtower_configure_target(springtower_header_checks)
+  target_compile_options(springtower_header_checks PRIVATE -O0)
+  target_include_directories(springtower_header_checks PRIVATE "${PROJECT_SOURCE_DIR}")
+  target_link_libraries(
+    springtower_header_checks PRIVATE springtower::springtower CLI11::CLI11 nlohmann_json::nlohmann_json fmt::fmt
+                                      tomlplusplus::tomlplusplus PkgConfig::cairo benchmark::benchmark GTest::gmock)
+  target_compile_definitions(
+    springtower_header_checks PRIVATE SPRINGTOWER_SOURCE_DIR="" SPRINGTOWER_BINARY_DIR="" SPRINGTOWER_TEST_DATA_DIR=""
+                                      SPRINGTOWER_SHARED_DIR="")
+endif()

@@ -1,0 +1,23 @@
+# Install and export: find_package(springtower) gives springtower::springtower.
+
+include(CMakePackageConfigHelpers)
+set(package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/springtower")
+
+install(
+  TARGETS springtower_library springtower_core springtower_broadphase springtower_narrowphase springtower_solver
+  EXPORT springtowerTargets
+  ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}")
+install(EXPORT springtowerTargets NAMESPACE springtower:: DESTINATION "${package_dir}")
+
+# Headers keep their folder, so that #include "core/state.h" reads the same inside and outside the repository.
+install(
+  DIRECTORY core broadphase narrowphase solver
+  DESTINATION "${SPRINGTOWER_INSTALL_INCLUDEDIR}"
+  FILES_MATCHING PATTERN "*.h")
+install(FILES "${SPRINGTOWER_GENERATED_DIR}/core/version.h" DESTINATION "${SPRINGTOWER_INSTALL_INCLUDEDIR}/core")
+
+configure_package_config_file("${CMAKE_CURRENT_LIST_DIR}/springtowerConfig.cmake.in"
+                              "${PROJECT_BINARY_DIR}/springtowerConfig.cmake" INSTALL_DESTINATION "${package_dir}")
+write_basic_package_version_file("${PROJECT_BINARY_DIR}/springtowerConfigVersion.cmake" COMPATIBILITY SameMinorVersion)
+install(FILES "${PROJECT_BINARY_DIR}/springtowerConfig.cmake" "${PROJECT_BINARY_DIR}/springtowerConfigVersion.cmake"
+        DESTINATION "${package_dir}")

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace springtower {
+
+/// Bad input: a file, key or argument. The message is one line that names it, says what was found and what is allowed. Programs
+/// print it and end with exit code 2.
+struct InputError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// The simulation diverged: which block, when, and why. Programs print it and end with exit code 3.
+struct DivergenceError : std::runtime_error {
+  DivergenceError(const std::string& message, int divergedBlock, double divergedTime_s)
+      : std::runtime_error(message), block(divergedBlock), time_s(divergedTime_s) {}
+  int block;      ///< the block, counted from 0
+  double time_s;  ///< simulated time, s
+};
+
+}  // namespace springtower

@@ -1,0 +1,111 @@
+#include "core/settings.h"
+
+#include "core/error.h"
+#include "core/limits.h"
+
+#include <array>
+#include <cstddef>
+#include <fmt/format.h>
+#include <utility>
+
+namespace springtower {
+namespace {
+
+// A key, its unit and reason, its least and largest value (0 and 1 for off and on).
+constexpr auto kSettingTable = std::to_array<SettingRow>({
+    {"frame_s", "s", "simulated time between two pictures; a screen of 60 Hz shows one each", 1e-4, 0.1, &Settings::frame_s},
+    {"tolerance_m", "m",
+     "no resting penetration and no row compression above it; a smaller one means stiffer blocks and more steps", 1e-7, 1e-2,
+     &Settings::tolerance_m},
+    {"substeps", "", "steps in a frame; 0 takes as many as the tolerance needs", 0, 100000, &Settings::substeps},
+    {"force_unstable", "", "runs a tolerance and substeps that do not fit together, to see what then happens", 0, 1,
+     &Settings::forceUnstable},
+    {"step_margin", "", "part of the stability limit that a step uses; the rest covers contacts that change within a step", 0.05,
+     1, &Settings::stepMargin},
+    {"spring_ratio", "", "stiffness of an upright edge spring over that of a contact", 0.01, 100, &Settings::springRatio},
+    {"tangential_ratio", "", "tangential over normal stiffness of a contact; 2 (1 - nu) / (2 - nu) for elastic bodies (Mindlin)",
+     0.01, 2, &Settings::tangentialRatio},
+    {"viscoelastic_ratio", "", "stiffness of a contact's relaxing branch over its lasting one; damps the slow sway of a tower", 0,
+     2, &Settings::viscoelasticRatio},
+    {"viscoelastic_time_s", "s", "relaxation time of that branch; near the period of the sway it damps most", 1e-4, 1,
+     &Settings::viscoelasticTime_s},
+    {"damping_time_s", "s", "dashpot over stiffness of springs and contacts; sets how high a dropped block rebounds", 0, 1e-2,
+     &Settings::dampingTime_s},
+    {"impact_penetration", "", "largest penetration aimed at in an impact, in tolerances", 1, 1000, &Settings::impactPenetration},
+    {"continuous_tests", "", "finds collisions by the cubic tests; off shows what a test at the ends of steps misses", 0, 1,
+     &Settings::continuousTests},
+    {"rest_speed", "sqrt(g h)", "a block slower than this may be at rest", 0, 1, &Settings::restSpeed},
+    {"rest_time", "sqrt(h / g)", "how long it must have been slower before it sleeps", 0, 1e6, &Settings::restTime},
+    {"rest_imbalance", "block weights", "largest mean force (or torque over h) on a block that counts as balanced", 0, 1,
+     &Settings::restImbalance},
+    {"report_restitution", "", "method report: e of its impulses", 0, 1, &Settings::reportRestitution},
+    {"report_friction_drag", "1/s", "method report: drag on contact points for each unit of a particle's mass", 0, 1000,
+     &Settings::reportFrictionDrag},
+    {"report_disable_distance_m", "m", "sleep report: a block whose particles travel less in a frame is disabled", 0, 1,
+     &Settings::reportDisableDistance_m},
+    {"report_iterations", "", "method report: most passes of its collision loop in a step", 1, 1000, &Settings::reportIterations},
+});
+
+template <class T>
+using Names = std::span<const std::pair<std::string_view, T>>;
+
+constexpr std::array<std::pair<std::string_view, Method>, 4> kMethodNames = {{{"semi-implicit-euler", Method::semiImplicitEuler},
+                                                                              {"midpoint", Method::midpoint},
+                                                                              {"runge-kutta-4", Method::rungeKutta4},
+                                                                              {"report", Method::report}}};
+constexpr std::array<std::pair<std::string_view, Inertia>, 2> kInertiaNames = {
+    {{"cuboid", Inertia::cuboid}, {"lumped", Inertia::lumped}}};
+constexpr std::array<std::pair<std::string_view, Sleep>, 3> kSleepNames = {
+    {{"off", Sleep::off}, {"on", Sleep::on}, {"report", Sleep::report}}};
+
+template <class T>
+T valueOf(Names<T> names, std::string_view name, std::string_view source) {
+  std::string allowed;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (names[i].first == name) return names[i].second;
+    allowed += fmt::format("{}{}", i == 0 ? "" : i + 1 == names.size() ? " or " : ", ", names[i].first);
+  }
+  throw InputError(fmt::format("{}: found {}, allowed {}", source, inQuotes(name), allowed));
+}
+
+template <class T>
+std::string_view nameIn(Names<T> names, T value) {
+  for (const auto& [name, named] : names) {
+    if (named == value) return name;
+  }
+  return "unknown";
+}
+
+}  // namespace
+
+std::span<const SettingRow> settingTable() {
+  return kSettingTable;
+}
+
+void checkSettings(const Settings& settings, std::string_view source) {
+  for (const SettingRow& row : settingTable()) {
+    const double value = std::visit([&](auto member) { return static_cast<double>(settings.*member); }, row.member);
+    requireInRange(value, {row.least, row.most, row.unit}, fmt::format("{}: {}", source, row.key));
+  }
+}
+
+Method methodFromName(std::string_view name, std::string_view source) {
+  return valueOf<Method>(kMethodNames, name, source);
+}
+Inertia inertiaFromName(std::string_view name, std::string_view source) {
+  return valueOf<Inertia>(kInertiaNames, name, source);
+}
+Sleep sleepFromName(std::string_view name, std::string_view source) {
+  return valueOf<Sleep>(kSleepNames, name, source);
+}
+std::string_view nameOf(Method method) {
+  return nameIn<Method>(kMethodNames, method);
+}
+std::string_view nameOf(Inertia inertia) {
+  return nameIn<Inertia>(kInertiaNames, inertia);
+}
+std::string_view nameOf(Sleep sleep) {
+  return nameIn<Sleep>(kSleepNames, sleep);
+}
+
+}  // namespace springtower

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace springtower {
+
+/// How a frame is stepped. Each is one file solve_*.cpp of solver/.
+enum class Method { semiImplicitEuler, midpoint, rungeKutta4, report };
+/// How the corner particles carry a block's mass: `cuboid` has exactly the mass and inertia of a uniform cuboid, `lumped` is the
+/// report's eight equal masses (three times the central moments).
+enum class Inertia { cuboid, lumped };
+/// Whether blocks at rest are put to sleep: never, by rest and balance (the default), or by the report's per-frame test (its
+/// appendix 2.5).
+enum class Sleep { off, on, report };
+
+/// Everything a user may tune, with its unit and reason; limits and descriptions for people stand in settings.cpp
+/// (`settingTable`). Lengths, speeds and times of thresholds are multiples of the scene's block height h, sqrt(g h) and sqrt(h /
+/// g), so any size of block works unchanged.
+struct Settings {
+  Method method = Method::semiImplicitEuler;
+  Inertia inertia = Inertia::cuboid;
+  Sleep sleep = Sleep::on;
+  double frame_s = 1.0 / 60.0;  ///< s; one frame of a 60 Hz display
+  double tolerance_m = 5e-5;    ///< m; no resting penetration and no row compression above it
+  int substeps = 0;             ///< steps a frame; 0 takes them from the tolerance
+  bool toleranceGiven = false;  ///< whether the user named a tolerance; with substeps alone the largest stable stiffness is taken
+  bool forceUnstable = false;   ///< allow a tolerance and substeps that do not fit together
+  double stepMargin = 0.85;     ///< fraction of the stability limit that is used
+  double springRatio = 1.0;     ///< stiffness of an upright edge spring over that of a contact
+  double tangentialRatio = 0.8;  ///< tangential over normal contact stiffness; wood's Mindlin ratio is 2(1-nu)/(2-nu), about 0.8
+  double viscoelasticRatio = 0.3;    ///< stiffness of the contact's relaxing branch over its lasting one; damps a tower's sway
+  double viscoelasticTime_s = 0.03;  ///< s; relaxation time of that branch
+  double dampingTime_s = 3e-5;       ///< s; dashpot over stiffness, of springs and contacts; sets the rebound and damps ringing
+  double impactPenetration = 8.0;    ///< largest penetration aimed at in an impact, in tolerances
+  bool continuousTests = true;       ///< find collisions by the cubic tests; off shows what a discrete method misses
+  double restSpeed =
+      5e-3;                ///< in sqrt(g h); a block slower than this (corner speed of its rigid motion) is a candidate for sleep
+  double restTime = 12.0;  ///< in sqrt(h / g); how long it must have been at rest
+  double restImbalance = 1e-4;      ///< in block weights; largest mean force (or torque over h) that does not start a motion
+  double reportRestitution = 0.1;   ///< e of the report's impulses (Eq. 2.11)
+  double reportFrictionDrag = 5.0;  ///< 1/s; the report's drag on contact points, per unit of particle mass (report 5.7.2)
+  double reportDisableDistance_m = 2e-4;  ///< m; the report's threshold on the summed travel of a block's particles (its
+                                          ///< appendix 2.5); the report's own number, for blocks of its unit size, scaled by h
+  int reportIterations = 10;              ///< most passes of the report's collision loop in a step
+};
+
+/// One row of the table of settings: what the user may write, what it means, and what is allowed.
+struct SettingRow {
+  std::string_view key;
+  std::string_view unit;
+  std::string_view reason;
+  double least;
+  double most;
+  std::variant<double Settings::*, int Settings::*, bool Settings::*> member;
+};
+
+/// All settings that are numbers or on/off, in the order of `Settings`; the enumerations are read by the functions below.
+/// `toleranceGiven` is not among them: whoever reads a tolerance sets it.
+std::span<const SettingRow> settingTable();
+
+/// Checks every setting against its row. Throws InputError naming the key, what was found and what is allowed.
+void checkSettings(const Settings& settings, std::string_view source);
+
+/// Names as the command line and scene files spell them. Each throws InputError naming `source`, what was found and what is
+/// allowed.
+Method methodFromName(std::string_view name, std::string_view source);
+Inertia inertiaFromName(std::string_view name, std::string_view source);
+Sleep sleepFromName(std::string_view name, std::string_view source);
+std::string_view nameOf(Method method);
+std::string_view nameOf(Inertia inertia);
+std::string_view nameOf(Sleep sleep);
+
+}  // namespace springtower

@@ -1,0 +1,96 @@
+#pragma once
+
+#include "core/block.h"
+#include "core/ids.h"
+#include "core/vector.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace springtower {
+
+/// One vector per corner of every block, structure of arrays: component a of corner c of block b is component[a][8 b + c], so the
+/// eight values of a block fill one cache line per component.
+struct CornerArray {
+  std::array<AlignedVector<double>, 3> component;
+
+  void resize(std::size_t blocks) {
+    for (auto& values : component) values.assign(kCorners * blocks, 0.0);
+  }
+  [[nodiscard]] std::size_t blockCount() const { return component[0].size() / kCorners; }
+  [[nodiscard]] double* values(std::size_t axis, std::size_t block) { return component[axis].data() + kCorners * block; }
+  [[nodiscard]] const double* values(std::size_t axis, std::size_t block) const {
+    return component[axis].data() + kCorners * block;
+  }
+  [[nodiscard]] Vec3 at(std::size_t block, std::size_t corner) const {
+    const std::size_t i = kCorners * block + corner;
+    return {component[0][i], component[1][i], component[2][i]};
+  }
+  void set(std::size_t block, std::size_t corner, const Vec3& value) {
+    for (std::size_t a = 0; a < 3; ++a) component[a][kCorners * block + corner] = value[static_cast<Eigen::Index>(a)];
+  }
+  void add(std::size_t block, std::size_t corner, const Vec3& value) {
+    for (std::size_t a = 0; a < 3; ++a) component[a][kCorners * block + corner] += value[static_cast<Eigen::Index>(a)];
+  }
+};
+
+/// What moves: positions (m) and velocities (m/s) of all corners, [blocks][8].
+struct MotionState {
+  CornerArray position;
+  CornerArray velocity;
+
+  void resize(std::size_t blocks) {
+    position.resize(blocks);
+    velocity.resize(blocks);
+  }
+};
+
+/// What does not move: the blocks' constants. The springs are [7][blocks], group-major (see core/block.h); one value serves the
+/// four springs of a group.
+struct BlockModel {
+  std::vector<Vec3> dimensions;                                      ///< length along x, y, z when unrotated, m, [blocks]
+  AlignedVector<double> mass;                                        ///< kg, [blocks]
+  std::array<AlignedVector<double>, kSpringGroups> restLength;       ///< m
+  std::array<AlignedVector<double>, kSpringGroups> springStiffness;  ///< N/m
+  std::array<AlignedVector<double>, kSpringGroups> springDamping;    ///< N s/m
+
+  [[nodiscard]] std::size_t blockCount() const { return mass.size(); }
+};
+
+/// Mean of a block's eight corners: its centre of mass in either inertia (m, or m/s for velocities).
+inline Vec3 centre(const CornerArray& values, std::size_t block) {
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t c = 0; c < kCorners; ++c) sum += values.at(block, c);
+  return sum / static_cast<double>(kCorners);
+}
+
+/// Mean of a block's four edges along an axis (0 x, 1 y, 2 z), from the negative to the positive side, m; not normalised.
+inline Vec3 meanEdge(const CornerArray& position, std::size_t block, std::size_t axis) {
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t c = 0; c < kCorners; ++c) sum += cornerSide(c, axis) * position.at(block, c);
+  return sum / 4.0;
+}
+
+/// The cuboid that fits a (slightly deformed) block best: centre, unit axes and half lengths from the mean edges.
+struct FittedBox {
+  Vec3 centre;
+  std::array<Vec3, 3> axis;
+  Vec3 half;
+};
+
+/// Fits a cuboid to the eight corners of a block. Precondition: no mean edge has length zero.
+inline FittedBox fittedBox(const CornerArray& position, std::size_t block) {
+  FittedBox box;
+  box.centre = centre(position, block);
+  for (std::size_t a = 0; a < 3; ++a) {
+    const Vec3 edge = meanEdge(position, block, a);
+    const double length = edge.norm();
+    box.axis[a] = edge / length;
+    box.half[static_cast<Eigen::Index>(a)] = 0.5 * length;
+  }
+  return box;
+}
+
+}  // namespace springtower

@@ -1,0 +1,28 @@
+#pragma once
+
+#include "narrowphase/moving_point.h"
+
+namespace springtower {
+
+struct TimeOfImpact;
+
+/// The same answers as the functions of time_of_impact.h, decided without any rounding, for every finite input: 3 to 100
+/// microseconds. No allocation.
+///
+/// Both questions are one: is the origin in a moving planar polygon, the differences of the two features (triangle minus point;
+/// edge minus edge, a parallelogram)? Coordinates become integers of one common unit, so the coplanarity cubic and all other
+/// conditions are polynomials in time with integer coefficients.
+/// - Candidate times: the roots of the cubic in [0, 1]. If it is identically zero: t = 0 and the roots of all conditions below,
+/// since
+///   between two neighbouring ones no condition changes its sign.
+/// - At a candidate the origin and the polygon lie in one plane, and the polygon holds the origin if and only if in no coordinate
+/// all
+///   vertices are on one side of it, and in no coordinate plane there are both left and right turns (vertex i, vertex i + 1,
+///   origin).
+/// - Signs at a root are found by refining its interval; common roots by remainders. Multiple roots are rational and found as
+/// such. The time is the exact one, rounded down to a double.
+TimeOfImpact exactPointTriangleTimeOfImpact(const MovingPoint& point, const MovingPoint& a, const MovingPoint& b,
+                                            const MovingPoint& c);
+TimeOfImpact exactEdgeEdgeTimeOfImpact(const MovingPoint& a, const MovingPoint& b, const MovingPoint& c, const MovingPoint& d);
+
+}  // namespace springtower

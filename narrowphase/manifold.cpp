@@ -1,0 +1,173 @@
+#include "narrowphase/manifold.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+namespace springtower {
+
+namespace {
+
+// A corner of the clipped polygon: its place on the reference face (the clip's coordinates), on the incident face, and its height.
+struct ClipPoint {
+  double s;
+  double t;
+  double u;
+  double v;
+  double height;
+};
+
+using Polygon = std::array<ClipPoint, 2 * kManifoldPoints>;
+
+ClipPoint between(const ClipPoint& p, const ClipPoint& q, double fraction) {
+  return {p.s + fraction * (q.s - p.s), p.t + fraction * (q.t - p.t), p.u + fraction * (q.u - p.u), p.v + fraction * (q.v - p.v),
+          p.height + fraction * (q.height - p.height)};
+}
+
+// Keeps the part of the polygon where side * coordinate <= 1/2.
+std::size_t clip(const Polygon& in, std::size_t count, double ClipPoint::*coordinate, double side, Polygon& out) {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const ClipPoint& p = in[i];
+    const ClipPoint& q = in[i + 1 == count ? 0 : i + 1];
+    const double insideP = 0.5 - side * p.*coordinate;
+    const double insideQ = 0.5 - side * q.*coordinate;
+    if (insideP >= 0.0) out[kept++] = p;
+    if ((insideP > 0.0 && insideQ < 0.0) || (insideP < 0.0 && insideQ > 0.0)) out[kept++] = between(p, q, insideP / (insideP - insideQ));
+  }
+  return kept;
+}
+
+constexpr std::array<std::array<double, 2>, 4> kCornerPlaces = {{{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}}};
+
+void start(Manifold& manifold, Touch touch, int incidentFace, int referenceFace) {
+  const std::int32_t upper = manifold.upper;
+  const std::int32_t lower = manifold.lower;
+  manifold = Manifold{};
+  manifold.upper = upper;
+  manifold.lower = lower;
+  manifold.touch = touch;
+  manifold.incidentFace = static_cast<std::int8_t>(incidentFace);
+  manifold.referenceFace = static_cast<std::int8_t>(referenceFace);
+  manifold.scale.fill(1.0);
+}
+
+}  // namespace
+
+FaceFrame faceFrame(const CornerView& block, int face) {
+  const auto& corners = kFaceCorners[static_cast<std::size_t>(face)];
+  const Vec3 p0 = block.at(corners[0]);
+  const Vec3 p1 = block.at(corners[1]);
+  const Vec3 p2 = block.at(corners[2]);
+  const Vec3 p3 = block.at(corners[3]);
+  FaceFrame frame;
+  frame.centre = 0.25 * (p0 + p1 + p2 + p3);
+  frame.sideU = 0.5 * (p1 - p0 + p2 - p3);
+  frame.sideV = 0.5 * (p3 - p0 + p2 - p1);
+  frame.normal = frame.sideU.cross(frame.sideV).normalized();
+  return frame;
+}
+
+int incidentFaceOf(const CornerView& block, const Vec3& normal) {
+  int best = 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (int face = 0; face < static_cast<int>(kFaces); ++face) {
+    const double along = faceFrame(block, face).normal.dot(normal);
+    if (along < least) {
+      least = along;
+      best = face;
+    }
+  }
+  return best;
+}
+
+Vec3 pointOnIncidentFace(const Manifold& manifold, const CornerView& upper, std::size_t point) {
+  const FaceFrame face = faceFrame(upper, manifold.incidentFace);
+  return face.centre + manifold.u[point] * face.sideU + manifold.v[point] * face.sideV;
+}
+
+void buildFaceManifold(const CornerView& upper, const CornerView& lower, int incidentFace, int referenceFace, const ManifoldLimits& limits,
+                       Manifold& manifold) {
+  start(manifold, Touch::face, incidentFace, referenceFace);
+  const FaceFrame incident = faceFrame(upper, incidentFace);
+  const FaceFrame reference = faceFrame(lower, referenceFace);
+  const Vec3 alongS = reference.sideU / reference.sideU.squaredNorm();
+  const Vec3 alongT = reference.sideV / reference.sideV.squaredNorm();
+
+  Polygon polygon;
+  Polygon other;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const auto [u, v] = kCornerPlaces[i];
+    const Vec3 offset = incident.centre + u * incident.sideU + v * incident.sideV - reference.centre;
+    polygon[i] = {offset.dot(alongS), offset.dot(alongT), u, v, offset.dot(reference.normal)};
+  }
+  std::size_t count = clip(polygon, 4, &ClipPoint::s, 1.0, other);
+  count = clip(other, count, &ClipPoint::s, -1.0, polygon);
+  count = clip(polygon, count, &ClipPoint::t, 1.0, other);
+  count = clip(other, count, &ClipPoint::t, -1.0, polygon);
+
+  const double lengthU = incident.sideU.norm();
+  const double lengthV = incident.sideV.norm();
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < count && kept < kManifoldPoints; ++i) {
+    const ClipPoint& p = polygon[i];
+    if (p.height > limits.reach) continue;
+    bool known = false;
+    for (std::size_t j = 0; j < kept && !known; ++j) {
+      const double du = (p.u - manifold.u[j]) * lengthU;
+      const double dv = (p.v - manifold.v[j]) * lengthV;
+      known = du * du + dv * dv < limits.mergeRadius * limits.mergeRadius;
+    }
+    if (known) continue;
+    manifold.u[kept] = p.u;
+    manifold.v[kept] = p.v;
+    ++kept;
+  }
+  manifold.count = static_cast<std::int32_t>(kept);
+}
+
+void buildFloorManifold(const CornerView& upper, const ManifoldLimits& limits, Manifold& manifold) {
+  const int face = incidentFaceOf(upper, Vec3::UnitZ());
+  start(manifold, Touch::face, face, 0);
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    if (upper.z[kFaceCorners[static_cast<std::size_t>(face)][i]] > limits.reach) continue;
+    manifold.u[kept] = kCornerPlaces[i][0];
+    manifold.v[kept] = kCornerPlaces[i][1];
+    ++kept;
+  }
+  manifold.count = static_cast<std::int32_t>(kept);
+}
+
+void carryMemory(const Manifold& old, const CornerView& oldUpper, Manifold& fresh, const CornerView& freshUpper, double radius) {
+  if (old.touch != Touch::face || fresh.touch != Touch::face) return;
+  std::array<Vec3, kManifoldPoints> place;
+  const auto oldCount = static_cast<std::size_t>(old.count);
+  for (std::size_t j = 0; j < oldCount; ++j) place[j] = pointOnIncidentFace(old, oldUpper, j);
+  std::array<bool, kManifoldPoints> taken{};
+  const double side = old.upper == fresh.upper ? 1.0 : -1.0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(fresh.count); ++i) {
+    const Vec3 at = pointOnIncidentFace(fresh, freshUpper, i);
+    double nearest = radius * radius;
+    std::size_t best = kManifoldPoints;
+    for (std::size_t j = 0; j < oldCount; ++j) {
+      const double distance = (place[j] - at).squaredNorm();
+      if (!taken[j] && distance < nearest) {
+        nearest = distance;
+        best = j;
+      }
+    }
+    if (best == kManifoldPoints) continue;
+    taken[best] = true;
+    fresh.stretchX[i] = side * old.stretchX[best];
+    fresh.stretchY[i] = side * old.stretchY[best];
+    fresh.stretchZ[i] = side * old.stretchZ[best];
+    fresh.relaxed[i] = old.relaxed[best];
+    fresh.offset[i] = old.offset[best];
+    fresh.scale[i] = old.scale[best];
+    fresh.live[i] = old.live[best];
+    fresh.sliding[i] = old.sliding[best];
+  }
+}
+
+}  // namespace springtower

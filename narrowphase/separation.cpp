@@ -1,0 +1,111 @@
+#include "narrowphase/separation.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace springtower {
+
+namespace {
+
+struct Frame {
+  Vec3 centre;
+  std::array<Vec3, 3> axis;
+};
+
+Frame frameOf(const CornerView& block) {
+  Frame frame;
+  Vec3 sum = Vec3::Zero();
+  std::array<Vec3, 3> edge = {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
+  for (std::size_t c = 0; c < kCorners; ++c) {
+    const Vec3 p = block.at(static_cast<int>(c));
+    sum += p;
+    for (std::size_t a = 0; a < 3; ++a) edge[a] += cornerSide(c, a) * p;
+  }
+  frame.centre = sum / static_cast<double>(kCorners);
+  for (std::size_t a = 0; a < 3; ++a) frame.axis[a] = edge[a].normalized();
+  return frame;
+}
+
+struct Interval {
+  double least;
+  double most;
+};
+
+Interval project(const Vec3& normal, const CornerView& block) {
+  std::array<double, kCorners> value;
+  for (std::size_t c = 0; c < kCorners; ++c) value[c] = normal.x() * block.x[c] + normal.y() * block.y[c] + normal.z() * block.z[c];
+  Interval interval{value[0], value[0]};
+  for (std::size_t c = 1; c < kCorners; ++c) {
+    interval.least = std::min(interval.least, value[c]);
+    interval.most = std::max(interval.most, value[c]);
+  }
+  return interval;
+}
+
+// The edge of a block along an axis that lies farthest towards a direction.
+int extremeEdge(const Frame& frame, std::size_t axis, const Vec3& towards) {
+  const std::size_t first = axis == 0 ? 1 : 0;
+  const std::size_t second = axis == 2 ? 1 : 2;
+  const int low = frame.axis[first].dot(towards) > 0.0 ? 1 : 0;
+  const int high = frame.axis[second].dot(towards) > 0.0 ? 1 : 0;
+  return static_cast<int>(4 * axis) + low + 2 * high;
+}
+
+}  // namespace
+
+double gapAlong(const Vec3& normal, const CornerView& upper, const CornerView& lower) {
+  return project(normal, upper).least - project(normal, lower).most;
+}
+
+Separation findSeparation(const CornerView& a, const CornerView& b) {
+  constexpr double kNothing = -std::numeric_limits<double>::infinity();
+  // Edges within about 3 degrees of parallel have no well-defined common normal; the face axes cover them.
+  constexpr double kLeastCross = 0.05;
+
+  const Frame frameA = frameOf(a);
+  const Frame frameB = frameOf(b);
+  const Vec3 between = frameA.centre - frameB.centre;
+
+  Separation result;
+  result.faceA = result.faceB = result.edge = kNothing;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const bool along = frameB.axis[axis].dot(between) >= 0.0;
+    const Vec3 normal = along ? frameB.axis[axis] : Vec3(-frameB.axis[axis]);
+    const double gap = gapAlong(normal, a, b);
+    if (gap > result.faceB) {
+      result.faceB = gap;
+      result.faceOfB = static_cast<int>(2 * axis) + (along ? 1 : 0);
+      result.normalFaceB = normal;
+    }
+  }
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const bool along = frameA.axis[axis].dot(between) >= 0.0;
+    const Vec3 normal = along ? frameA.axis[axis] : Vec3(-frameA.axis[axis]);
+    const double gap = gapAlong(normal, a, b);
+    if (gap > result.faceA) {
+      result.faceA = gap;
+      result.faceOfA = static_cast<int>(2 * axis) + (along ? 0 : 1);
+      result.normalFaceA = normal;
+    }
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      Vec3 normal = frameA.axis[i].cross(frameB.axis[j]);
+      const double length = normal.norm();
+      if (length < kLeastCross) continue;
+      normal /= normal.dot(between) >= 0.0 ? length : -length;
+      const double gap = gapAlong(normal, a, b);
+      if (gap > result.edge) {
+        result.edge = gap;
+        result.normalEdge = normal;
+        result.edgeOfA = extremeEdge(frameA, i, -normal);
+        result.edgeOfB = extremeEdge(frameB, j, normal);
+      }
+    }
+  }
+  return result;
+}
+
+}  // namespace springtower

@@ -1,0 +1,50 @@
+#pragma once
+
+#include "core/state.h"
+
+namespace springtower {
+
+/// The eight corners of one block inside a CornerArray: three runs of eight doubles.
+struct CornerView {
+  const double* x;
+  const double* y;
+  const double* z;
+  [[nodiscard]] Vec3 at(int corner) const { return {x[corner], y[corner], z[corner]}; }
+};
+
+/// A view of a block's corners. Valid while the array is not resized.
+inline CornerView cornersOf(const CornerArray& array, std::size_t block) {
+  return {array.values(0, block), array.values(1, block), array.values(2, block)};
+}
+
+/// Gap between two blocks along a unit direction `normal` that points from `lower` to `upper`, m; negative where they overlap. For
+/// corners that move linearly the gap along a fixed direction is concave in time (a minimum of linear functions), so a direction that
+/// separates at both ends of a step separates all through it: Baraff's witness (report 2.3.4).
+double gapAlong(const Vec3& normal, const CornerView& upper, const CornerView& lower);
+
+/// What separates two blocks best, by the fifteen separating axes of two cuboids (report 2.3.3), on the blocks' actual corners.
+/// Separations are gaps in m (negative: overlap along that axis). Normals are unit and point from block b to block a.
+struct Separation {
+  double faceA = 0.0;  ///< best over a's face normals
+  double faceB = 0.0;  ///< best over b's face normals
+  double edge = 0.0;   ///< best over crossed edges; minus infinity where all are nearly parallel
+  int faceOfA = 0;     ///< a's face that looks at b
+  int faceOfB = 0;     ///< b's face that looks at a
+  int edgeOfA = 0;
+  int edgeOfB = 0;
+  Vec3 normalFaceA;
+  Vec3 normalFaceB;
+  Vec3 normalEdge;
+
+  /// The largest of the three: a lower bound of the distance where positive.
+  [[nodiscard]] double best() const { return std::max(edge, std::max(faceA, faceB)); }
+  [[nodiscard]] const Vec3& bestNormal() const {
+    if (edge > faceA && edge > faceB) return normalEdge;
+    return faceA > faceB ? normalFaceA : normalFaceB;
+  }
+};
+
+/// Computes it for blocks a and b. Precondition: no block is turned inside out.
+Separation findSeparation(const CornerView& a, const CornerView& b);
+
+}  // namespace springtower

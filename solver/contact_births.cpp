@@ -1,0 +1,190 @@
+#include "solver/contact_births.h"
+
+#include "narrowphase/crossing.h"
+#include "solver/lengths.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace springtower {
+
+namespace {
+
+// Two blocks touch along the face normals while these are within this of parallel: an edge direction that separates slightly tilted
+// crossed blocks a little better would turn four points into one (cosine of 18 degrees).
+constexpr double kFaceCosine = 0.951;
+
+ManifoldLimits limitsOf(const Simulation& simulation) {
+  const double h = simulation.lengths.blockHeight_m;
+  return {kMergeRadius * h, kManifoldReach * h};
+}
+
+// The overlap of the faces along the normal of one of them: b's if `referenceIsB`, else a's.
+void faceManifold(const Separation& separation, const CornerView& a, const CornerView& b, const ManifoldLimits& limits, const NearPair& pair,
+                  bool referenceIsB, Manifold& fresh) {
+  const CornerView& incidentBlock = referenceIsB ? a : b;
+  const Vec3 towardsIncident = referenceIsB ? separation.normalFaceB : Vec3(-separation.normalFaceA);
+  fresh.upper = referenceIsB ? pair.a : pair.b;
+  fresh.lower = referenceIsB ? pair.b : pair.a;
+  buildFaceManifold(incidentBlock, referenceIsB ? b : a, incidentFaceOf(incidentBlock, towardsIncident),
+                    referenceIsB ? separation.faceOfB : separation.faceOfA, limits, fresh);
+}
+
+void edgeManifold(const Separation& separation, const NearPair& pair, Manifold& fresh) {
+  fresh = Manifold{};
+  fresh.upper = pair.a;
+  fresh.lower = pair.b;
+  fresh.touch = Touch::edge;
+  fresh.incidentFace = static_cast<std::int8_t>(separation.edgeOfA);
+  fresh.referenceFace = static_cast<std::int8_t>(separation.edgeOfB);
+  fresh.count = 1;
+  fresh.scale.fill(1.0);
+}
+
+// The faces or edges that touch, given what separates the blocks best. A face that was the reference stays so until the other is clearly
+// better, and faces are preferred to edges. Where the faces have no common outline the next best direction is taken.
+void chooseManifold(const Separation& separation, const CornerView& a, const CornerView& b, const ManifoldLimits& limits, double slack,
+                    const NearPair& pair, Manifold& fresh) {
+  const bool wasA = pair.manifold.touch == Touch::face && pair.manifold.lower == pair.a;
+  const bool wasB = pair.manifold.touch == Touch::face && pair.manifold.lower == pair.b;
+  const bool referenceIsB = separation.faceB + (wasB ? slack : 0.0) >= separation.faceA + (wasA ? slack : 0.0);
+  const Vec3& normal = referenceIsB ? separation.normalFaceB : separation.normalFaceA;
+  const double face = referenceIsB ? separation.faceB : separation.faceA;
+  if (separation.edge > face + slack) {
+    const CornerView& incidentBlock = referenceIsB ? a : b;
+    const int incident = incidentFaceOf(incidentBlock, referenceIsB ? normal : Vec3(-normal));
+    if (std::abs(faceFrame(incidentBlock, incident).normal.dot(normal)) < kFaceCosine) {
+      edgeManifold(separation, pair, fresh);
+      return;
+    }
+  }
+  faceManifold(separation, a, b, limits, pair, referenceIsB, fresh);
+  if (fresh.count == 0) faceManifold(separation, a, b, limits, pair, !referenceIsB, fresh);
+  if (fresh.count == 0 && std::isfinite(separation.edge)) edgeManifold(separation, pair, fresh);
+}
+
+void part(NearPair& pair, const Vec3& witness, double margin) {
+  pair.manifold.touch = Touch::apart;
+  pair.manifold.count = 0;
+  pair.witness = witness;
+  pair.margin = margin;
+}
+
+bool anyLive(const Manifold& manifold) {
+  return std::any_of(manifold.live.begin(), manifold.live.begin() + manifold.count, [](double live) { return live != 0.0; });
+}
+
+// Carries over what the old manifold knew. An edge contact that stays one keeps everything.
+void keepMemory(const Manifold& old, const CornerArray& position, double radius, Manifold& fresh) {
+  if (old.touch == Touch::edge && fresh.touch == Touch::edge) {
+    const std::int8_t incident = fresh.incidentFace;
+    const std::int8_t reference = fresh.referenceFace;
+    fresh = old;
+    fresh.incidentFace = incident;
+    fresh.referenceFace = reference;
+    return;
+  }
+  if (old.touch != Touch::face || fresh.touch != Touch::face) return;
+  carryMemory(old, cornersOf(position, static_cast<std::size_t>(old.upper)), fresh,
+              cornersOf(position, static_cast<std::size_t>(fresh.upper)), radius);
+}
+
+double lowestCorner(const CornerView& block) { return *std::min_element(block.z, block.z + kCorners); }
+
+void watchFloor(IslandStep& step, NearPair& pair, Counters& counters) {
+  const auto block = static_cast<std::size_t>(pair.a);
+  const CornerView now = cornersOf(step.simulation.state.position, block);
+  const double gap = lowestCorner(now);
+  if (gap > 0.0) {
+    pair.margin = gap;
+    return;
+  }
+  // Against a plane the cubic is linear: a corner that was above it and is not any more has met it in between.
+  ++counters.cubicTests;
+  pair.margin = 0.0;
+  if (!step.simulation.scene.settings.continuousTests) return;
+  ++counters.cubicHits;
+  const double before = lowestCorner(cornersOf(step.engine.previous, block));
+  if (step.simulation.frame > 0 && before < -step.simulation.lengths.contactError_m) ++counters.contactsBornPenetrating;
+  ++counters.contactsBorn;
+  pair.manifold.upper = pair.a;
+  pair.manifold.lower = -1;
+  buildFloorManifold(now, limitsOf(step.simulation), pair.manifold);
+}
+
+}  // namespace
+
+double refreshTravel(const Simulation& simulation) { return kRefreshTravel * simulation.lengths.blockHeight_m; }
+
+void watchApart(IslandStep& step, NearPair& pair, Counters& counters) {
+  if (pair.b < 0) {
+    watchFloor(step, pair, counters);
+    return;
+  }
+  const auto a = static_cast<std::size_t>(pair.a);
+  const auto b = static_cast<std::size_t>(pair.b);
+  const MovingBlock movingA{cornersOf(step.engine.previous, a), cornersOf(step.simulation.state.position, a)};
+  const MovingBlock movingB{cornersOf(step.engine.previous, b), cornersOf(step.simulation.state.position, b)};
+
+  // The margin is the gap at the step's end: along a fixed direction no pair of points can close it with less travel.
+  const double gap = gapAlong(pair.witness, movingA.end, movingB.end);
+  if (gap > 0.0 && gapAlong(pair.witness, movingA.start, movingB.start) > 0.0) {
+    pair.margin = gap;
+    return;
+  }
+  const Separation before = findSeparation(movingA.start, movingB.start);
+  const Vec3 witness = before.bestNormal();
+  const double newGap = gapAlong(witness, movingA.end, movingB.end);
+  pair.margin = std::max(0.0, newGap);
+  pair.witness = witness;
+  if (before.best() > 0.0 && newGap > 0.0) return;
+
+  if (!step.simulation.scene.settings.continuousTests || !featuresMeet(movingA, movingB, counters)) {
+    pair.margin = 0.0;
+    return;
+  }
+  if (step.simulation.frame > 0 && before.best() < -step.simulation.lengths.contactError_m) ++counters.contactsBornPenetrating;
+  Manifold fresh;
+  chooseManifold(before, movingA.end, movingB.end, limitsOf(step.simulation), 0.0, pair, fresh);
+  pair.margin = 0.0;
+  if (fresh.count == 0) return;
+  ++counters.contactsBorn;
+  pair.manifold = fresh;
+}
+
+void renewManifold(IslandStep& step, NearPair& pair, Counters& counters) {
+  const Simulation& simulation = step.simulation;
+  const CornerArray& position = simulation.state.position;
+  const ManifoldLimits limits = limitsOf(simulation);
+  const double partingGap = simulation.lengths.partingGap_m;
+  const double radius = kCarryRadius * simulation.lengths.blockHeight_m;
+  ++counters.manifoldRefreshes;
+  Manifold fresh;
+  if (pair.b < 0) {
+    const CornerView block = cornersOf(position, static_cast<std::size_t>(pair.a));
+    const double gap = lowestCorner(block);
+    if (gap > partingGap && !anyLive(pair.manifold)) {
+      part(pair, Vec3::UnitZ(), gap);
+      return;
+    }
+    fresh.upper = pair.a;
+    buildFloorManifold(block, limits, fresh);
+  } else {
+    const CornerView a = cornersOf(position, static_cast<std::size_t>(pair.a));
+    const CornerView b = cornersOf(position, static_cast<std::size_t>(pair.b));
+    const Separation separation = findSeparation(a, b);
+    if (separation.best() > partingGap && !anyLive(pair.manifold)) {
+      part(pair, separation.bestNormal(), separation.best());
+      return;
+    }
+    chooseManifold(separation, a, b, limits, kReferenceSlack * simulation.lengths.blockHeight_m, pair, fresh);
+    if (fresh.count == 0) {
+      part(pair, separation.bestNormal(), std::max(0.0, separation.best()));
+      return;
+    }
+  }
+  keepMemory(pair.manifold, position, radius, fresh);
+  pair.manifold = fresh;
+}
+
+}  // namespace springtower

@@ -1,0 +1,374 @@
+#include "solver/contact_force.h"
+
+#include "core/lanes.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace springtower {
+
+namespace {
+
+// Stands for none: no branch, no lag.
+constexpr double kLeastRelaxingRatio = 1e-9;
+
+// Memory and force of up to four points.
+struct PointLanes {
+  Lanes stretch[3];
+  Lanes relaxed, offset, scale, live, sliding;
+  Lanes force[3];
+  Lanes normalForce;
+};
+
+SPRINGTOWER_INLINE void loadPoints(const Manifold& m, std::size_t first, PointLanes& p) {
+  load(m.stretchX.data() + first, p.stretch[0]);
+  load(m.stretchY.data() + first, p.stretch[1]);
+  load(m.stretchZ.data() + first, p.stretch[2]);
+  load(m.relaxed.data() + first, p.relaxed);
+  load(m.offset.data() + first, p.offset);
+  load(m.scale.data() + first, p.scale);
+  load(m.live.data() + first, p.live);
+  load(m.sliding.data() + first, p.sliding);
+}
+
+SPRINGTOWER_INLINE void storePoints(const PointLanes& p, std::size_t first, Manifold& m) {
+  store(p.stretch[0], m.stretchX.data() + first);
+  store(p.stretch[1], m.stretchY.data() + first);
+  store(p.stretch[2], m.stretchZ.data() + first);
+  store(p.relaxed, m.relaxed.data() + first);
+  store(p.offset, m.offset.data() + first);
+  store(p.scale, m.scale.data() + first);
+  store(p.live, m.live.data() + first);
+  store(p.sliding, m.sliding.data() + first);
+}
+
+struct LawStep {
+  const ContactLaw& law;
+  const ContactStep& step;
+  double stiffness;     // N/m
+  double impactFactor;  // stiffness scale per squared approach speed
+  double scaleKeep;     // what is left of a scale's excess after the step
+  double relaxGain;     // how much of its lag the relaxing branch forgets in the step
+};
+
+SPRINGTOWER_INLINE LawStep lawStep(const Manifold& m, const ContactLaw& law, const ContactStep& step, double reducedMass) {
+  const double aim = law.impactPenetration_m;
+  const double stiffness = m.lower < 0 ? law.floorStiffness_n_m : law.stiffness_n_m;
+  return {law, step, stiffness, reducedMass / (stiffness * aim * aim), 1.0 / (1.0 + step.advance_s / law.scaleTime_s),
+          step.advance_s / (law.relaxingTime_s + step.advance_s)};
+}
+
+// The contact law on four points. `relative` is the velocity of upper against lower, `carried` the one that moved them since the memory
+// was last brought up to date; `inUse` is 1 for lanes that hold a point.
+SPRINGTOWER_INLINE void pointLaw(const LawStep& s, const Lanes& depth, const Lanes* relative, const Lanes* carried, const double* normal,
+                                 const Lanes& inUse, PointLanes& p) {
+  const Lanes zero = {0.0, 0.0, 0.0, 0.0};
+  const Lanes one = zero + 1.0;
+  const ContactLaw& law = s.law;
+  const Lanes closing = -(relative[0] * normal[0] + relative[1] * normal[1] + relative[2] * normal[2]);
+
+  // A point that is reached in this step starts with no force: its offset is the depth it is found at, so it adds no energy. It is
+  // stiffened so that its impact stops within the depth aimed at. The offset shrinks as the point lifts, where it stores nothing.
+  const LaneMask touching = (depth > zero) & (inUse > zero);
+  const LaneMask known = touching & (p.live > zero);
+  Lanes impact = s.impactFactor * closing * closing;
+  impact = impact > one ? impact : one;
+  impact = impact < s.step.scaleMost ? impact : zero + s.step.scaleMost;
+  p.scale = known ? 1.0 + (p.scale - 1.0) * s.scaleKeep : impact;
+  const Lanes lower = p.offset < depth ? p.offset : depth;
+  p.offset = known ? lower : depth;
+  p.live = touching ? one : zero;
+
+  const Lanes elastic = depth - p.offset;
+  const Lanes relaxed = p.relaxed + (elastic - p.relaxed) * s.relaxGain;
+  const Lanes pushedOut = elastic * (1.0 + 1.0 / std::max(law.relaxingRatio, kLeastRelaxingRatio));  // beyond this the branch would pull
+  p.relaxed = known ? (relaxed < pushedOut ? relaxed : pushedOut) : zero;
+  const Lanes stiffness = s.stiffness * p.scale;
+  Lanes push = stiffness * (elastic + law.relaxingRatio * (elastic - p.relaxed) + law.dampingTime_s * closing);
+  push = touching & (push > zero) & (elastic > zero) ? push : zero;
+  p.normalForce = push;
+
+  // Friction: carry the stretch along, keep it tangential, and bound it by the cone.
+  const Lanes carriedNormal = carried[0] * normal[0] + carried[1] * normal[1] + carried[2] * normal[2];
+  Lanes stretch[3];
+  Lanes slip[3];
+  for (int a = 0; a < 3; ++a) {
+    stretch[a] = p.stretch[a] + (carried[a] - carriedNormal * normal[a]) * s.step.advance_s;
+    slip[a] = relative[a] + closing * normal[a];
+  }
+  const Lanes outOfPlane = stretch[0] * normal[0] + stretch[1] * normal[1] + stretch[2] * normal[2];
+  const Lanes tangential = stiffness * law.tangentialRatio;
+  Lanes friction[3];
+  for (int a = 0; a < 3; ++a) {
+    stretch[a] -= outOfPlane * normal[a];
+    friction[a] = -tangential * (stretch[a] + law.dampingTime_s * slip[a]);
+  }
+  const Lanes squared = friction[0] * friction[0] + friction[1] * friction[1] + friction[2] * friction[2];
+  Lanes size;
+  squareRoot(squared, size);
+  const Lanes coefficient = p.sliding > zero ? zero + law.kineticFriction : zero + law.staticFriction;
+  const Lanes sticking = coefficient * push;
+  const LaneMask slides = size > sticking;
+  const Lanes bound = slides ? law.kineticFriction * push : sticking;
+  const Lanes keep = slides ? bound / size : one;
+  p.sliding = slides & touching ? one : zero;
+  // What slips frees a little of the offset; friction's own loss pays for the work.
+  const Lanes stretchSquared = stretch[0] * stretch[0] + stretch[1] * stretch[1] + stretch[2] * stretch[2];
+  Lanes stretchSize;
+  squareRoot(stretchSquared, stretchSize);
+  const Lanes freed = p.offset - law.offsetPerSlip * (1.0 - keep) * stretchSize;
+  p.offset = known ? (freed > zero ? freed : zero) : p.offset;
+  for (int a = 0; a < 3; ++a) {
+    p.stretch[a] = touching ? stretch[a] * keep : zero;
+    p.force[a] = push * normal[a] + friction[a] * keep;
+  }
+}
+
+// A block's face as the lanes need it: centre and sides of its place and of its motions.
+struct FaceField {
+  double centre[3];
+  double sideU[3];
+  double sideV[3];
+};
+
+SPRINGTOWER_INLINE void faceOf(const AffineField& field, const FaceAxes& face, FaceField& result) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    result.centre[k] = field.centre[k] + face.side * field.side[face.across][k];
+    result.sideU[k] = field.side[face.u][k];
+    result.sideV[k] = field.side[face.v][k];
+  }
+}
+
+SPRINGTOWER_INLINE void at(const FaceField& face, const Lanes& u, const Lanes& v, Lanes* result) {
+  for (int k = 0; k < 3; ++k) result[k] = face.centre[k] + u * face.sideU[k] + v * face.sideV[k];
+}
+
+// Sums of three lane vectors at once: [sum a, sum b, sum c, 0].
+SPRINGTOWER_INLINE void sums(const Lanes& a, const Lanes& b, const Lanes& c, Lanes& result) {
+  const Lanes none = {0.0, 0.0, 0.0, 0.0};
+  const Lanes ab = __builtin_shuffle(a, b, LaneMask{0, 4, 2, 6}) + __builtin_shuffle(a, b, LaneMask{1, 5, 3, 7});
+  const Lanes cd = __builtin_shuffle(c, none, LaneMask{0, 4, 2, 6}) + __builtin_shuffle(c, none, LaneMask{1, 5, 3, 7});
+  result = __builtin_shuffle(ab, cd, LaneMask{0, 1, 4, 5}) + __builtin_shuffle(ab, cd, LaneMask{2, 3, 6, 7});
+}
+
+// Puts [force, moment along u, moment along v] of one component into a block's affine forces.
+SPRINGTOWER_INLINE void place(const Lanes& total, double sign, const FaceAxes& face, std::size_t k, AffineField& force) {
+  force.centre[k] = sign * total[0];
+  force.side[face.across][k] = sign * face.side * total[0];
+  force.side[face.u][k] = sign * total[1];
+  force.side[face.v][k] = sign * total[2];
+}
+
+template <bool Floor, bool SameMotion>
+SPRINGTOWER_INLINE void faceForces(Manifold& m, const ContactSide& upper, const ContactSide& lower, const LawStep& law, bool commit,
+                                   PairForce& result, PointForces* report) {
+  const FaceAxes& upperFace = kFaceAxes[static_cast<std::size_t>(m.incidentFace)];
+  const FaceAxes& lowerFace = kFaceAxes[static_cast<std::size_t>(m.referenceFace)];
+  FaceField placeUpper, motionUpper, carriedUpper, placeLower, motionLower, carriedLower;
+  faceOf(upper.frame->place, upperFace, placeUpper);
+  faceOf(*upper.motion, upperFace, motionUpper);
+  if (!SameMotion) faceOf(*upper.carried, upperFace, carriedUpper);
+  double normal[3] = {0.0, 0.0, 1.0};
+  double dualU[3], dualV[3];
+  if (!Floor) {
+    faceOf(lower.frame->place, lowerFace, placeLower);
+    faceOf(*lower.motion, lowerFace, motionLower);
+    if (!SameMotion) faceOf(*lower.carried, lowerFace, carriedLower);
+    for (std::size_t k = 0; k < 3; ++k) {
+      normal[k] = 2.0 * lowerFace.side * lower.frame->normal[lowerFace.across][k];
+      dualU[k] = lower.frame->dual[lowerFace.u][k];
+      dualV[k] = lower.frame->dual[lowerFace.v][k];
+    }
+  }
+
+  const Lanes zero = {0.0, 0.0, 0.0, 0.0};
+  Lanes onUpper[3] = {zero, zero, zero};
+  Lanes onLower[3] = {zero, zero, zero};
+  const auto count = static_cast<std::size_t>(m.count);
+  for (std::size_t first = 0; first < count; first += 4) {
+    Lanes u, v;
+    load(m.u.data() + first, u);
+    load(m.v.data() + first, v);
+    const double left = static_cast<double>(count - first);
+    const Lanes inUse = Lanes{0.0, 1.0, 2.0, 3.0} < left ? zero + 1.0 : zero;
+
+    Lanes point[3], relative[3], carried[3];
+    at(placeUpper, u, v, point);
+    at(motionUpper, u, v, relative);
+    if (!SameMotion) at(carriedUpper, u, v, carried);
+    Lanes depth = -point[2];
+    Lanes lowerU = zero;
+    Lanes lowerV = zero;
+    if (!Floor) {
+      Lanes arm[3];
+      for (int k = 0; k < 3; ++k) arm[k] = point[k] - placeLower.centre[k];
+      depth = -(arm[0] * normal[0] + arm[1] * normal[1] + arm[2] * normal[2]);
+      lowerU = arm[0] * dualU[0] + arm[1] * dualU[1] + arm[2] * dualU[2];
+      lowerV = arm[0] * dualV[0] + arm[1] * dualV[1] + arm[2] * dualV[2];
+      Lanes below[3];
+      at(motionLower, lowerU, lowerV, below);
+      for (int k = 0; k < 3; ++k) relative[k] -= below[k];
+      if (!SameMotion) {
+        at(carriedLower, lowerU, lowerV, below);
+        for (int k = 0; k < 3; ++k) carried[k] -= below[k];
+      }
+    }
+
+    PointLanes points;
+    loadPoints(m, first, points);
+    pointLaw(law, depth, relative, SameMotion ? relative : carried, normal, inUse, points);
+    if (commit) storePoints(points, first, m);
+    for (int k = 0; k < 3; ++k) {
+      const Lanes& f = points.force[k];
+      Lanes total;
+      sums(f, f * u, f * v, total);
+      onUpper[k] += total;
+      if (!Floor) {
+        sums(f, f * lowerU, f * lowerV, total);
+        onLower[k] += total;
+      }
+    }
+    if (report != nullptr) {
+      for (std::size_t i = 0; i < 4 && first + i < count; ++i) {
+        const std::size_t to = first + i;
+        report->depth[to] = depth[i];
+        report->normal[to] = points.normalForce[i];
+        report->direction = Vec3(normal[0], normal[1], normal[2]);
+        report->place[to] = Vec3(point[0][i], point[1][i], point[2][i]);
+        report->lowerPlace[to] = report->place[to] + depth[i] * report->direction;
+        for (std::size_t k = 0; k < 3; ++k) report->friction[to][k] = points.force[k][i] - points.normalForce[i] * normal[k];
+      }
+    }
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    place(onUpper[k], 1.0, upperFace, k, result.upper);
+    if (!Floor) place(onLower[k], -1.0, lowerFace, k, result.lower);
+  }
+}
+
+// An edge of a block: its middle and its side, and its axes (see kEdgeCorners).
+struct EdgeAxes {
+  std::size_t along;
+  std::size_t first;
+  std::size_t second;
+  double sideFirst;
+  double sideSecond;
+};
+
+SPRINGTOWER_INLINE EdgeAxes edgeAxes(int edge) {
+  const auto along = static_cast<std::size_t>(edge / 4);
+  const std::size_t first = along == 0 ? 1 : 0;
+  const std::size_t second = along == 2 ? 1 : 2;
+  return {along, first, second, (edge & 1) != 0 ? 0.5 : -0.5, (edge & 2) != 0 ? 0.5 : -0.5};
+}
+
+SPRINGTOWER_INLINE double onEdge(const AffineField& field, const EdgeAxes& edge, double t, std::size_t k) {
+  return field.centre[k] + edge.sideFirst * field.side[edge.first][k] + edge.sideSecond * field.side[edge.second][k] +
+         t * field.side[edge.along][k];
+}
+
+SPRINGTOWER_INLINE double dot(const double* p, const double* q) { return p[0] * q[0] + p[1] * q[1] + p[2] * q[2]; }
+
+// Edges that cross: one point, whose normal is the edges' common normal and whose places are where they come closest.
+SPRINGTOWER_INLINE void edgeForces(Manifold& m, const ContactSide& upper, const ContactSide& lower, const LawStep& law, bool commit,
+                                   PairForce& result, PointForces* report) {
+  const EdgeAxes edgeUpper = edgeAxes(m.incidentFace);
+  const EdgeAxes edgeLower = edgeAxes(m.referenceFace);
+  const double* d1 = upper.frame->place.side[edgeUpper.along].data();
+  const double* d2 = lower.frame->place.side[edgeLower.along].data();
+  double arm[3], towardsUpper[3];
+  for (std::size_t k = 0; k < 3; ++k) {
+    arm[k] = onEdge(upper.frame->place, edgeUpper, 0.0, k) - onEdge(lower.frame->place, edgeLower, 0.0, k);
+    towardsUpper[k] = upper.frame->place.centre[k] - lower.frame->place.centre[k];
+  }
+  const double cross[3] = {d1[1] * d2[2] - d1[2] * d2[1], d1[2] * d2[0] - d1[0] * d2[2], d1[0] * d2[1] - d1[1] * d2[0]};
+  const double squared = dot(cross, cross);
+  const double inverse = (dot(cross, towardsUpper) >= 0.0 ? 1.0 : -1.0) / __builtin_sqrt(squared);
+  const double normal[3] = {cross[0] * inverse, cross[1] * inverse, cross[2] * inverse};
+  const double b1 = dot(d1, arm);
+  const double b2 = dot(d2, arm);
+  const double t1 = std::clamp((dot(d1, d2) * b2 - dot(d2, d2) * b1) / squared, -0.5, 0.5);
+  const double t2 = std::clamp((dot(d1, d1) * b2 - dot(d1, d2) * b1) / squared, -0.5, 0.5);
+
+  const Lanes zero = {0.0, 0.0, 0.0, 0.0};
+  Lanes relative[3], carried[3];
+  double gap[3];
+  for (std::size_t k = 0; k < 3; ++k) {
+    gap[k] = arm[k] + t1 * d1[k] - t2 * d2[k];
+    relative[k] = zero + (onEdge(*upper.motion, edgeUpper, t1, k) - onEdge(*lower.motion, edgeLower, t2, k));
+    carried[k] = zero + (onEdge(*upper.carried, edgeUpper, t1, k) - onEdge(*lower.carried, edgeLower, t2, k));
+  }
+  const double depth = -dot(gap, normal);
+  PointLanes points;
+  loadPoints(m, 0, points);
+  pointLaw(law, zero + depth, relative, carried, normal, Lanes{1.0, 0.0, 0.0, 0.0}, points);
+  if (commit) storePoints(points, 0, m);
+  const auto apply = [](const EdgeAxes& edge, double t, double f, std::size_t k, AffineField& force) {
+    force.centre[k] = f;
+    force.side[edge.along][k] = t * f;
+    force.side[edge.first][k] = edge.sideFirst * f;
+    force.side[edge.second][k] = edge.sideSecond * f;
+  };
+  for (std::size_t k = 0; k < 3; ++k) {
+    apply(edgeUpper, t1, points.force[k][0], k, result.upper);
+    apply(edgeLower, t2, -points.force[k][0], k, result.lower);
+  }
+  if (report != nullptr) {
+    report->depth[0] = depth;
+    report->normal[0] = points.normalForce[0];
+    report->direction = Vec3(normal[0], normal[1], normal[2]);
+    for (std::size_t k = 0; k < 3; ++k) {
+      report->friction[0][k] = points.force[k][0] - points.normalForce[0] * normal[k];
+      report->place[0][static_cast<Eigen::Index>(k)] = onEdge(upper.frame->place, edgeUpper, t1, k);
+      report->lowerPlace[0][static_cast<Eigen::Index>(k)] = onEdge(lower.frame->place, edgeLower, t2, k);
+    }
+  }
+}
+
+SPRINGTOWER_INLINE void evaluate(Manifold& m, const ContactSide& upper, const ContactSide& lower, const LawStep& law, bool commit,
+                                 PairForce& result, PointForces* report) {
+  const bool same = upper.carried == upper.motion;
+  if (m.touch == Touch::edge) {
+    edgeForces(m, upper, lower, law, commit, result, report);
+  } else if (m.lower < 0) {
+    same ? faceForces<true, true>(m, upper, lower, law, commit, result, report)
+         : faceForces<true, false>(m, upper, lower, law, commit, result, report);
+  } else {
+    same ? faceForces<false, true>(m, upper, lower, law, commit, result, report)
+         : faceForces<false, false>(m, upper, lower, law, commit, result, report);
+  }
+}
+
+}  // namespace
+
+SPRINGTOWER_KERNEL
+void manifoldForces(Manifold& manifold, const ContactSide& upper, const ContactSide& lower, const ContactLaw& law, const ContactStep& step,
+                    double reducedMass_kg, bool commit, PairForce& result) {
+  const LawStep constants = lawStep(manifold, law, step, reducedMass_kg);
+  evaluate(manifold, upper, lower, constants, commit, result, nullptr);
+}
+
+PointForces pointForces(const Manifold& manifold, const ContactSide& upper, const ContactSide& lower, const ContactLaw& law) {
+  Manifold copy = manifold;
+  PairForce unused;
+  PointForces report;
+  evaluate(copy, upper, lower, lawStep(manifold, law, ContactStep{}, 0.0), false, unused, &report);
+  return report;
+}
+
+double manifoldEnergy(const Manifold& manifold, const PointForces& points, const ContactLaw& law) {
+  double energy = 0.0;
+  const double stiffness = manifold.lower < 0 ? law.floorStiffness_n_m : law.stiffness_n_m;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(manifold.count); ++i) {
+    const double elastic = points.depth[i] - manifold.offset[i];
+    if (manifold.live[i] == 0.0 || elastic <= 0.0) continue;
+    const double lag = elastic - std::min(manifold.relaxed[i], elastic * (1.0 + 1.0 / std::max(law.relaxingRatio, kLeastRelaxingRatio)));
+    const double stretch = manifold.stretchX[i] * manifold.stretchX[i] + manifold.stretchY[i] * manifold.stretchY[i] +
+                           manifold.stretchZ[i] * manifold.stretchZ[i];
+    energy += 0.5 * stiffness * manifold.scale[i] *
+              (elastic * elastic + law.relaxingRatio * lag * lag + law.tangentialRatio * stretch);
+  }
+  return energy;
+}
+
+}  // namespace springtower

@@ -1,0 +1,157 @@
+#include "solver/inertia.h"
+#include "solver/island_step.h"
+#include "solver/spring_force.h"
+#include "solver/stage_clock.h"
+
+#include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/parallel_for.h>
+
+namespace springtower {
+
+namespace {
+
+using Range = tbb::blocked_range<std::size_t>;
+
+constexpr std::size_t kBlockGrain = 64;
+constexpr std::size_t kPairGrain = 128;
+
+double reducedMass(const BlockModel& model, const Manifold& manifold) {
+  const double upper = model.mass[static_cast<std::size_t>(manifold.upper)];
+  if (manifold.lower < 0) return upper;
+  const double lower = model.mass[static_cast<std::size_t>(manifold.lower)];
+  return upper * lower / (upper + lower);
+}
+
+// Runs a kernel over the island's blocks: at once, or in ranges on many threads.
+template <class Kernel>
+void overBlocks(const IslandStep& step, bool parallel, const Kernel& kernel) {
+  if (!parallel) {
+    kernel(step.blocks);
+    return;
+  }
+  tbb::parallel_for(Range(0, step.blocks.size(), kBlockGrain),
+                    [&](const Range& range) { kernel(step.blocks.subspan(range.begin(), range.size())); });
+}
+
+ContactSide sideOf(const Engine& engine, std::int32_t block, bool sameMotion) {
+  if (block < 0) return {};
+  const auto b = static_cast<std::size_t>(block);
+  const AffineField* motion = &engine.motion[b];
+  return {&engine.frames[b], motion, sameMotion ? motion : &engine.carriedMotion[b]};
+}
+
+struct Evaluation {
+  ContactStep contactStep;
+  bool sameMotion;
+  bool commit;
+};
+
+void evaluatePair(IslandStep& step, const Evaluation& evaluation, Manifold& manifold, PairForce& force) {
+  const ContactSide upper = sideOf(step.engine, manifold.upper, evaluation.sameMotion);
+  const ContactSide lower = sideOf(step.engine, manifold.lower, evaluation.sameMotion);
+  manifoldForces(manifold, upper, lower, step.law, evaluation.contactStep, reducedMass(step.simulation.model, manifold), evaluation.commit,
+                 force);
+}
+
+void contactsInOrder(IslandStep& step, const Evaluation& evaluation) {
+  Engine& engine = step.engine;
+  const std::vector<std::uint8_t>& asleep = step.simulation.asleep;
+  for (const std::int32_t block : step.blocks) engine.contactForce[static_cast<std::size_t>(block)] = AffineField{};
+  for (const std::int32_t at : step.pairs) {
+    Manifold& manifold = engine.pairs[static_cast<std::size_t>(at)].manifold;
+    if (manifold.touch == Touch::apart) continue;
+    PairForce force;
+    evaluatePair(step, evaluation, manifold, force);
+    const auto upper = static_cast<std::size_t>(manifold.upper);
+    if (asleep[upper] == 0) addForce(force.upper, engine.contactForce[upper]);
+    if (manifold.lower < 0) continue;
+    const auto lower = static_cast<std::size_t>(manifold.lower);
+    if (asleep[lower] == 0) addForce(force.lower, engine.contactForce[lower]);
+  }
+}
+
+// The same sums in the same order: first all pairs, then each block gathers its own.
+void contactsInParallel(IslandStep& step, const Evaluation& evaluation) {
+  Engine& engine = step.engine;
+  tbb::parallel_for(Range(0, step.pairs.size(), kPairGrain), [&](const Range& range) {
+    for (std::size_t i = range.begin(); i < range.end(); ++i) {
+      const auto at = static_cast<std::size_t>(step.pairs[i]);
+      Manifold& manifold = engine.pairs[at].manifold;
+      if (manifold.touch != Touch::apart) evaluatePair(step, evaluation, manifold, engine.pairForce[at]);
+    }
+  });
+  tbb::parallel_for(Range(0, step.blocks.size(), kBlockGrain), [&](const Range& range) {
+    for (std::size_t i = range.begin(); i < range.end(); ++i) {
+      const std::int32_t block = step.blocks[i];
+      const auto b = static_cast<std::size_t>(block);
+      AffineField sum{};
+      for (std::int32_t k = engine.blockPairStart[b]; k < engine.blockPairStart[b + 1]; ++k) {
+        const auto at = static_cast<std::size_t>(engine.blockPairs[static_cast<std::size_t>(k)]);
+        const Manifold& manifold = engine.pairs[at].manifold;
+        if (manifold.touch == Touch::apart) continue;
+        addForce(manifold.upper == block ? engine.pairForce[at].upper : engine.pairForce[at].lower, sum);
+      }
+      engine.contactForce[b] = sum;
+    }
+  });
+}
+
+void addUserForces(IslandStep& step) {
+  for (const UserForce& user : step.simulation.scene.forces) {
+    if (step.time_s < user.start_s || step.time_s >= user.end_s) continue;
+    const auto block = static_cast<std::size_t>(user.block);
+    const std::int32_t island = step.engine.islands.islandOf[block];
+    if (island < 0 || island != step.engine.islands.islandOf[static_cast<std::size_t>(step.blocks.front())]) continue;
+    if (user.corner >= 0) {
+      step.engine.force.add(block, static_cast<std::size_t>(user.corner), user.force);
+    } else {
+      for (std::size_t c = 0; c < kCorners; ++c) step.engine.force.add(block, c, user.force / static_cast<double>(kCorners));
+    }
+  }
+}
+
+std::uint64_t pointsOf(const IslandStep& step) {
+  std::uint64_t points = 0;
+  for (const std::int32_t at : step.pairs) points += static_cast<std::uint64_t>(step.engine.pairs[static_cast<std::size_t>(at)].manifold.count);
+  return points;
+}
+
+}  // namespace
+
+void evaluateForces(IslandStep& step, const MotionState& state, const CornerArray& carried, double advance_s, bool commit) {
+  StageClock clock(step.times);
+  Engine& engine = step.engine;
+  const bool parallel = step.blocks.size() >= kParallelBlocks;
+  const Evaluation evaluation{{advance_s, step.scaleMost}, &carried == &state.velocity, commit};
+  using Blocks = std::span<const std::int32_t>;
+  overBlocks(step, parallel, [&](Blocks blocks) {
+    computeFrames(state.position, blocks, engine.frames);
+    computeMotions(state.velocity, blocks, engine.motion);
+    if (!evaluation.sameMotion) computeMotions(carried, blocks, engine.carriedMotion);
+  });
+  if (parallel) {
+    contactsInParallel(step, evaluation);
+  } else {
+    contactsInOrder(step, evaluation);
+  }
+  clock.lap(Stage::contacts);
+  overBlocks(step, parallel, [&](Blocks blocks) { springForces(step.simulation.model, state, blocks, engine.contactForce, engine.force); });
+  if (!step.simulation.scene.forces.empty()) addUserForces(step);
+  clock.lap(Stage::springs);
+  step.counters.springEvaluations += kSprings * step.blocks.size();
+  step.counters.contactEvaluations += pointsOf(step);
+}
+
+void accelerate(const IslandStep& step, std::size_t block, double (&acceleration)[3][kCorners]) {
+  const InverseMass inverse = inverseMass(step.simulation.scene.settings.inertia);
+  const double own = inverse.own / step.simulation.model.mass[block];
+  const double shared = inverse.shared / step.simulation.model.mass[block];
+  for (std::size_t a = 0; a < 3; ++a) {
+    const double* f = step.engine.force.values(a, block);
+    const double sum = ((f[0] + f[1]) + (f[2] + f[3])) + ((f[4] + f[5]) + (f[6] + f[7]));
+    const double uniform = step.gravity[static_cast<Eigen::Index>(a)] - shared * sum;
+    for (std::size_t c = 0; c < kCorners; ++c) acceleration[a][c] = own * f[c] + uniform;
+  }
+}
+
+}  // namespace springtower

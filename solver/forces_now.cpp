@@ -1,0 +1,128 @@
+#include "solver/forces_now.h"
+
+#include "solver/inertia.h"
+#include "solver/island_step.h"
+#include "solver/spring_force.h"
+
+#include <algorithm>
+
+namespace springtower {
+
+namespace {
+
+// A manifold as it stands at the positions now: frames of its blocks, and its memory brought up to date on a copy.
+struct ManifoldNow {
+  Manifold manifold;
+  PointForces points;
+  PairForce force;
+
+  ManifoldNow(const Simulation& simulation, const Manifold& stored) : manifold(stored) {
+    const auto upper = static_cast<std::size_t>(stored.upper);
+    const auto lower = static_cast<std::size_t>(std::max(stored.lower, 0));
+    const CornerArray& carried = carriedVelocities(simulation);
+    const BlockFrame frames[2] = {blockFrame(simulation.state.position, upper), blockFrame(simulation.state.position, lower)};
+    const AffineField motion[2] = {affineField(simulation.state.velocity, upper), affineField(simulation.state.velocity, lower)};
+    const AffineField carriedBy[2] = {affineField(carried, upper), affineField(carried, lower)};
+    const ContactSide up{&frames[0], &motion[0], &carriedBy[0]};
+    const ContactSide low{&frames[1], &motion[1], &carriedBy[1]};
+    const ContactLaw law = contactLaw(simulation);
+    const double behind = simulation.engine->clock[upper].lastDrift_s;
+    manifoldForces(manifold, up, low, law, {behind, 1.0}, 0.0, true, force);
+    points = pointForces(manifold, up, low, law);
+  }
+};
+
+}  // namespace
+
+ContactLaw contactLaw(const Simulation& simulation) {
+  const Settings& settings = simulation.scene.settings;
+  ContactLaw law;
+  law.stiffness_n_m = simulation.contactStiffness_n_m;
+  law.floorStiffness_n_m = simulation.floorStiffness_n_m;
+  law.relaxingRatio = settings.viscoelasticRatio;
+  law.relaxingTime_s = settings.viscoelasticTime_s;
+  law.dampingTime_s = settings.dampingTime_s;
+  law.tangentialRatio = settings.tangentialRatio;
+  law.staticFriction = simulation.scene.staticFriction;
+  law.kineticFriction = simulation.scene.kineticFriction;
+  law.impactPenetration_m = settings.impactPenetration * simulation.tolerance_m;
+  law.offsetPerSlip = 0.1 * simulation.scene.kineticFriction;
+  return law;
+}
+
+PointForces forcesNow(const Simulation& simulation, const Manifold& manifold) {
+  if (manifold.touch == Touch::apart) return {};
+  return ManifoldNow(simulation, manifold).points;
+}
+
+Vec3 forceOnUpper(const Simulation& simulation, const Manifold& manifold) {
+  Vec3 force = Vec3::Zero();
+  if (manifold.touch == Touch::apart) return force;
+  const PointForces points = forcesNow(simulation, manifold);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(manifold.count); ++i) {
+    force += points.normal[i] * points.direction + Vec3(points.friction[i][0], points.friction[i][1], points.friction[i][2]);
+  }
+  return force;
+}
+
+std::vector<ContactForce> contactForces(const Simulation& simulation) {
+  std::vector<ContactForce> forces;
+  for (const NearPair& pair : simulation.engine->pairs) {
+    const Manifold& m = pair.manifold;
+    if (m.touch == Touch::apart) continue;
+    const ManifoldNow now(simulation, m);
+    const PointForces& points = now.points;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(m.count); ++i) {
+      if (points.normal[i] <= 0.0) continue;
+      forces.push_back({static_cast<BlockId>(m.upper), static_cast<BlockId>(m.lower), points.place[i], points.lowerPlace[i], points.direction,
+                        points.normal[i], Vec3(points.friction[i][0], points.friction[i][1], points.friction[i][2]), points.depth[i],
+                        now.manifold.sliding[i] != 0.0});
+    }
+  }
+  return forces;
+}
+
+Energy energy(const Simulation& simulation) {
+  const BlockModel& model = simulation.model;
+  const MotionState& state = simulation.state;
+  const Settings& settings = simulation.scene.settings;
+  const ContactLaw law = contactLaw(simulation);
+  const Vec3 gravity = simulation.scene.gravity.at(simulation.time_s);
+  Energy energy;
+
+  // The forces now, for the kinetic energy in the middle of the coming kick.
+  CornerArray force;
+  force.resize(model.blockCount());
+  std::vector<AffineField> contactForce(model.blockCount());
+  std::vector<std::int32_t> all(model.blockCount());
+  for (std::size_t b = 0; b < all.size(); ++b) all[b] = static_cast<std::int32_t>(b);
+  for (const NearPair& pair : simulation.engine->pairs) {
+    if (pair.manifold.touch == Touch::apart) continue;
+    const ManifoldNow now(simulation, pair.manifold);
+    energy.contacts += manifoldEnergy(now.manifold, now.points, law);
+    addForce(now.force.upper, contactForce[static_cast<std::size_t>(pair.manifold.upper)]);
+    if (pair.manifold.lower >= 0) addForce(now.force.lower, contactForce[static_cast<std::size_t>(pair.manifold.lower)]);
+  }
+  springForces(model, state, all, contactForce, force);
+  const InverseMass inverse = inverseMass(settings.inertia);
+  CornerArray coming = state.velocity;
+  for (std::size_t b = 0; b < model.blockCount(); ++b) {
+    energy.springs += springEnergy(model, state.position, b);
+    energy.gravity -= model.mass[b] * gravity.dot(centre(state.position, b));
+    const bool leapfrog = settings.method == Method::semiImplicitEuler && simulation.asleep[b] == 0;
+    const double kick = leapfrog ? simulation.engine->clock[b].lastDrift_s : 0.0;
+    for (std::size_t a = 0; a < 3; ++a) {
+      const double* f = force.values(a, b);
+      double* v = coming.values(a, b);
+      double sum = 0.0;
+      for (std::size_t c = 0; c < kCorners; ++c) sum += f[c];
+      for (std::size_t c = 0; c < kCorners; ++c) {
+        v[c] += kick * ((inverse.own * f[c] - inverse.shared * sum) / model.mass[b] + gravity[static_cast<Eigen::Index>(a)]);
+      }
+    }
+    energy.kinetic += 0.5 * model.mass[b] * massProduct(settings.inertia, state.velocity, coming, b);
+  }
+  return energy;
+}
+
+}  // namespace springtower

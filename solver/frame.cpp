@@ -1,0 +1,234 @@
+#include "core/error.h"
+#include "solver/forces_now.h"
+#include "solver/inertia.h"
+#include "solver/island_step.h"
+#include "solver/near_pairs.h"
+#include "solver/rest.h"
+#include "solver/stability.h"
+#include "solver/stiffness.h"
+
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <optional>
+
+namespace springtower {
+
+namespace {
+
+constexpr int kFirstIterations = 40;     // of the power iteration, from a mode that holds everything
+constexpr int kFollowingIterations = 5;  // when the contacts have changed a little since
+constexpr double kEigenvalueReserve = 1.05;  // the Rayleigh quotient comes from below
+constexpr int kMostSubsteps = 6000;
+
+// What may meet in an island during this frame.
+struct Approach {
+  double speed = 0.0;          // m/s, largest at which any two of its near blocks may meet
+  double reducedMass = 0.0;    // kg, largest
+  double cornerInverse = 0.0;  // 1/kg, largest: the inverse mass of two corners against each other
+  bool meeting = false;        // whether blocks that are apart may meet at all
+};
+
+double fastestCorner(const CornerArray& velocity, std::size_t block, const Vec3& against) {
+  double squared = 0.0;
+  for (std::size_t c = 0; c < kCorners; ++c) squared = std::max(squared, (velocity.at(block, c) - against).squaredNorm());
+  return std::sqrt(squared);
+}
+
+Approach approachOf(const IslandStep& step) {
+  const Simulation& simulation = step.simulation;
+  const CornerArray& velocity = simulation.state.velocity;
+  const double corner = affineCornerInverseMass(simulation.scene.settings.inertia);
+  const double frame_s = simulation.scene.settings.frame_s;
+  const double fall = simulation.scene.gravity.magnitude * frame_s;
+  Approach approach;
+  for (const std::int32_t at : step.pairs) {
+    const NearPair& pair = step.engine.pairs[static_cast<std::size_t>(at)];
+    const auto a = static_cast<std::size_t>(pair.a);
+    const double massA = simulation.model.mass[a];
+    // A block that has been at rest is held; another may be in free fall.
+    bool resting = simulation.restTime_s[a] > 0.0;
+    double speed = 0.0;
+    double reduced = massA;
+    double inverse = corner / massA;
+    double travel = step.engine.clock[a].travel;
+    if (pair.b < 0) {
+      speed = fastestCorner(velocity, a, Vec3::Zero());
+    } else {
+      const auto b = static_cast<std::size_t>(pair.b);
+      const Vec3 common = 0.5 * (centre(velocity, a) + centre(velocity, b));
+      speed = fastestCorner(velocity, a, common) + fastestCorner(velocity, b, common);
+      const double massB = simulation.model.mass[b];
+      reduced = massA * massB / (massA + massB);
+      inverse += corner / massB;
+      travel += step.engine.clock[b].travel;
+      resting = resting && simulation.restTime_s[b] > 0.0;
+    }
+    if (!resting) speed += fall;
+    const bool apart = pair.manifold.touch == Touch::apart;
+    const bool mayMeet = apart && pair.margin - (travel - pair.checkedTravel) < speed * frame_s;
+    if (apart && !mayMeet) continue;
+    approach.meeting = approach.meeting || mayMeet;
+    approach.speed = std::max(approach.speed, speed);
+    approach.reducedMass = std::max(approach.reducedMass, reduced);
+    approach.cornerInverse = std::max(approach.cornerInverse, inverse);
+  }
+  return approach;
+}
+
+// Chooses the number of steps of an island for this frame, and how stiff contacts born in it may be.
+int chooseSubsteps(IslandStep& step) {
+  Simulation& simulation = step.simulation;
+  const Settings& settings = simulation.scene.settings;
+  BlockClock& record = step.engine.clock[static_cast<std::size_t>(step.blocks.front())];
+  const std::uint64_t signature = contactSignature(step.engine, step.pairs) ^ (step.blocks.size() << 1U);
+  if (signature != record.contactSignature || record.spectralRadius == 0.0) {
+    const int iterations = record.spectralRadius == 0.0 ? kFirstIterations : kFollowingIterations;
+    record.spectralRadius = spectralRadius(simulation, step.blocks, step.pairs, iterations);
+    record.contactSignature = signature;
+  }
+  const double standing = kEigenvalueReserve * record.spectralRadius;
+  const double stiffness = simulation.contactStiffness_n_m * (1.0 + settings.viscoelasticRatio);
+  const Approach approach = approachOf(step);
+  const double depth = settings.impactPenetration * simulation.tolerance_m;
+  const double wanted = approach.reducedMass * approach.speed * approach.speed / (depth * depth * simulation.contactStiffness_n_m);
+  const double born = stiffness * approach.cornerInverse;  // what one new contact at rest stiffness adds
+
+  double allowed = 0.0;  // largest eigenvalue the step bears
+  int substeps = simulation.fixedSubsteps;
+  if (substeps > 0) {
+    allowed = stableSpectralRadius(settings.frame_s / substeps, settings.dampingTime_s, settings.stepMargin);
+  } else {
+    const double needed = standing + (approach.meeting || wanted > 1.0 ? std::max(1.0, wanted) * born : 0.0);
+    const double dt = stableStep(needed, settings.dampingTime_s, settings.stepMargin);
+    substeps = std::clamp(static_cast<int>(std::ceil(settings.frame_s / dt)), 1, kMostSubsteps);
+    allowed = stableSpectralRadius(settings.frame_s / substeps, settings.dampingTime_s, settings.stepMargin);
+  }
+  step.scaleMost = born > 0.0 ? std::clamp((allowed - standing) / born, 1.0, std::max(1.0, wanted)) : 1.0;
+  return substeps;
+}
+
+void stepIsland(Method method, IslandStep& step) {
+  switch (method) {
+    case Method::semiImplicitEuler: stepSemiImplicitEuler(step); return;
+    case Method::midpoint: stepMidpoint(step); return;
+    case Method::rungeKutta4: stepRungeKutta4(step); return;
+    case Method::report: stepReport(step); return;
+  }
+}
+
+struct IslandOutcome {
+  int substeps = 0;
+  bool inside = true;  // no block left its swept box
+};
+
+IslandOutcome runIsland(IslandStep& step) {
+  const Simulation& simulation = step.simulation;
+  const Settings& settings = simulation.scene.settings;
+  IslandOutcome outcome;
+  if (simulation.frame == 0) findTouching(step);
+  outcome.substeps = chooseSubsteps(step);
+  step.drift_s = settings.frame_s / outcome.substeps;
+  BlockClock& record = step.engine.clock[static_cast<std::size_t>(step.blocks.front())];
+  double last = record.lastDrift_s;
+  for (int substep = 0; substep < outcome.substeps; ++substep) {
+    step.time_s = simulation.time_s + substep * step.drift_s;
+    step.gravity = simulation.scene.gravity.at(step.time_s);
+    step.kick_s = 0.5 * (last + step.drift_s);
+    step.advance_s = last;
+    stepIsland(settings.method, step);
+    last = step.drift_s;
+    if (settings.method == Method::report) continue;
+    outcome.inside = updateContacts(step);
+    if (!outcome.inside) break;
+  }
+  for (const std::int32_t block : step.blocks) step.engine.clock[static_cast<std::size_t>(block)].lastDrift_s = last;
+  return outcome;
+}
+
+// Block turned inside out or flattened: the mean edges' volume against that of its dimensions.
+void checkShapes(const Simulation& simulation, std::span<const std::int32_t> blocks) {
+  constexpr double kLeastVolume = 0.2;
+  for (const std::int32_t block : blocks) {
+    const auto b = static_cast<std::size_t>(block);
+    const CornerArray& x = simulation.state.position;
+    const double volume = meanEdge(x, b, 0).cross(meanEdge(x, b, 1)).dot(meanEdge(x, b, 2)) / simulation.model.dimensions[b].prod();
+    if (volume > kLeastVolume) continue;
+    throw DivergenceError(fmt::format("block {} diverged at {:.6f} s: it was turned inside out (volume {:.3g} of its own)", block,
+                                      simulation.time_s, volume),
+                          block, simulation.time_s);
+  }
+}
+
+// Runs all islands through the frame; false when one has left its swept boxes.
+bool runIslands(Simulation& simulation) {
+  Engine& engine = *simulation.engine;
+  const std::size_t islands = engine.islands.count();
+  engine.islandCounters.assign(islands, Counters{});
+  engine.islandTimes.assign(islands, StageTimes{});
+  engine.islandOutcome.assign(islands, 0);
+  const ContactLaw law = contactLaw(simulation);
+  tbb::parallel_for(std::size_t{0}, islands, [&](std::size_t i) {
+    const auto first = static_cast<std::size_t>(engine.pairStart[i]);
+    IslandStep step{simulation,
+                    engine,
+                    engine.islands.island(i),
+                    std::span<const std::int32_t>(engine.islandPairs).subspan(first, static_cast<std::size_t>(engine.pairStart[i + 1]) - first),
+                    engine.islandCounters[i],
+                    engine.islandTimes[i],
+                    law};
+    const IslandOutcome outcome = runIsland(step);
+    engine.islandOutcome[i] = outcome.inside ? outcome.substeps : -1;
+  });
+  bool inside = true;
+  simulation.substeps = 0;
+  for (std::size_t i = 0; i < islands; ++i) {
+    inside = inside && engine.islandOutcome[i] >= 0;
+    simulation.substeps = std::max(simulation.substeps, engine.islandOutcome[i]);
+  }
+  for (std::size_t i = 0; i < islands && inside; ++i) simulation.counters += engine.islandCounters[i];
+  for (std::size_t i = 0; i < islands; ++i) simulation.stageTimes += engine.islandTimes[i];
+  return inside;
+}
+
+}  // namespace
+
+void stepFrame(Simulation& simulation) {
+  Engine& engine = *simulation.engine;
+  wakeForFrame(simulation);
+  engine.lostPartner.clear();
+  if (engine.awakeCount > 0) {
+    double margin = kSweepMargin * simulation.lengths.blockHeight_m;
+    engine.frameStart = simulation.state;
+    engine.frameStartMode = engine.mode;
+    engine.frameStartClock = engine.clock;
+    findNearPairs(simulation, margin);
+    engine.frameStartPairs = engine.pairs;
+    while (!runIslands(simulation)) {
+      // Something was hit and left its swept box: the frame is run again with a wider one, so that no meeting is missed.
+      ++simulation.counters.replayedFrames;
+      margin *= 4.0;
+      simulation.state = engine.frameStart;
+      engine.mode = engine.frameStartMode;
+      engine.clock = engine.frameStartClock;
+      engine.pairs = engine.frameStartPairs;
+      findNearPairs(simulation, margin);
+      engine.frameStartPairs = engine.pairs;
+    }
+    simulation.counters.steps += static_cast<std::uint64_t>(simulation.substeps);
+    checkShapes(simulation, engine.awakeBlocks);
+  } else {
+    simulation.substeps = 0;
+  }
+  ++simulation.frame;
+  ++simulation.counters.frames;
+  simulation.time_s = static_cast<double>(simulation.frame) * simulation.scene.settings.frame_s;
+  if (engine.awakeCount > 0) {
+    const StageTimer timer(simulation.stageTimes, Stage::islandsAndSleep);
+    updateRest(simulation);
+  }
+}
+
+}  // namespace springtower

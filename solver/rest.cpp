@@ -1,0 +1,168 @@
+#include "solver/rest.h"
+
+#include "solver/forces_now.h"
+#include "solver/inertia.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace springtower {
+
+namespace {
+
+// What a sleeping block's neighbours may push it otherwise than when it fell asleep, in its weights.
+constexpr double kWakeForce = 0.02;
+// What gravity may have turned since the last block fell asleep, in g.
+constexpr double kWakeGravity = 1e-4;
+
+double timeScale(const Simulation& s) { return std::sqrt(s.lengths.blockHeight_m / std::max(s.scene.gravity.magnitude, 1e-9)); }
+double speedScale(const Simulation& s) { return std::sqrt(s.lengths.blockHeight_m * s.scene.gravity.magnitude); }
+
+// A block is at rest while its rigid motion is slow: compressing and ringing keep no block awake. It also has to be in balance: over each
+// window the mean force and torque, seen as what they do to the speed of its corners, stay below a small share of gravity. A block that
+// starts to tip is slow but out of balance.
+void judge(Simulation& simulation, std::size_t b) {
+  const Settings& settings = simulation.scene.settings;
+  RestWindow& window = simulation.engine->rest[b];
+  const RigidMotion motion = rigidMotion(simulation.state, b);
+  const double arm = 0.5 * simulation.model.dimensions[b].norm();
+  const auto begin = [&] { window = {motion.centre, motion.velocity, motion.spin, 0.0}; };
+  if (!(motion.cornerSpeed < settings.restSpeed * speedScale(simulation))) {
+    simulation.restTime_s[b] = 0.0;
+    begin();
+    return;
+  }
+  simulation.restTime_s[b] += settings.frame_s;
+  window.age_s += settings.frame_s;
+  if (window.age_s < settings.restTime * timeScale(simulation)) return;
+  const double change = (motion.velocity - window.velocity).norm() + arm * (motion.spin - window.spin).norm();
+  if (change > settings.restImbalance * simulation.scene.gravity.magnitude * window.age_s) simulation.restTime_s[b] = 0.0;
+  begin();
+}
+
+// The report's test (its appendix 2.5): how far the block's particles have moved together, compression and all, over one frame.
+void judgeAsReported(Simulation& simulation, std::size_t b) {
+  const CornerArray& before = simulation.engine->frameStart.position;
+  double moved = 0.0;
+  for (std::size_t c = 0; c < kCorners; ++c) moved += (simulation.state.position.at(b, c) - before.at(b, c)).norm();
+  simulation.restTime_s[b] = moved < simulation.scene.settings.reportDisableDistance_m ? simulation.scene.settings.frame_s : 0.0;
+}
+
+double restNeeded(const Simulation& simulation) {
+  return simulation.scene.settings.sleep == Sleep::report ? simulation.scene.settings.frame_s
+                                                          : simulation.scene.settings.restTime * timeScale(simulation);
+}
+
+void fallAsleep(Simulation& simulation, std::size_t b) {
+  Engine& engine = *simulation.engine;
+  simulation.asleep[b] = 1;
+  --engine.awakeCount;
+  for (std::size_t a = 0; a < 3; ++a) std::fill_n(simulation.state.velocity.values(a, b), kCorners, 0.0);
+  engine.frames[b] = blockFrame(simulation.state.position, b);
+  engine.motion[b] = AffineField{};
+  if (!engine.carriedMotion.empty()) engine.carriedMotion[b] = AffineField{};
+}
+
+// Force on block a of a pair, as its contacts push now, N.
+Vec3 forceOnA(const Simulation& simulation, const NearPair& pair) {
+  const Vec3 onUpper = forceOnUpper(simulation, pair.manifold);
+  return pair.manifold.upper == pair.a ? onUpper : Vec3(-onUpper);
+}
+
+void wakePushed(Simulation& simulation) {
+  Engine& engine = *simulation.engine;
+  engine.toWake.clear();
+  for (const std::int32_t at : engine.islandPairs) {
+    const NearPair& pair = engine.pairs[static_cast<std::size_t>(at)];
+    if (pair.b < 0) continue;
+    const bool sleepsA = simulation.asleep[static_cast<std::size_t>(pair.a)] != 0;
+    const bool sleepsB = simulation.asleep[static_cast<std::size_t>(pair.b)] != 0;
+    if (sleepsA == sleepsB) continue;
+    const std::int32_t sleeper = sleepsA ? pair.a : pair.b;
+    const double weight = simulation.model.mass[static_cast<std::size_t>(sleeper)] * simulation.scene.gravity.magnitude;
+    if ((forceOnA(simulation, pair) - pair.restForce).norm() > kWakeForce * weight) engine.toWake.push_back(sleeper);
+  }
+  // A pair that the sweep has dropped pushes no more.
+  engine.toWake.insert(engine.toWake.end(), engine.lostPartner.begin(), engine.lostPartner.end());
+  for (const std::int32_t block : engine.toWake) wake(simulation, static_cast<std::size_t>(block));
+}
+
+void putGroupsToSleep(Simulation& simulation) {
+  Engine& engine = *simulation.engine;
+  const double needed = restNeeded(simulation);
+  engine.restless.clear();
+  bool anyReady = false;
+  for (const std::int32_t block : engine.awakeBlocks) {
+    const bool ready = simulation.restTime_s[static_cast<std::size_t>(block)] >= needed;
+    anyReady = anyReady || ready;
+    if (!ready) engine.restless.push_back(block);
+  }
+  if (!anyReady) return;
+
+  // Sleep is decided by groups that touch: whoever is joined to a restless block stays awake. The report decides block by block.
+  engine.touchingEdges.clear();
+  if (simulation.scene.settings.sleep == Sleep::on) {
+    for (const NearPair& pair : engine.pairs) {
+      if (pair.b < 0 || pair.manifold.touch == Touch::apart) continue;
+      const bool bothAwake = simulation.asleep[static_cast<std::size_t>(pair.a)] == 0 && simulation.asleep[static_cast<std::size_t>(pair.b)] == 0;
+      if (bothAwake) engine.touchingEdges.push_back({pair.a, pair.b});
+    }
+  }
+  engine.joined.resize(simulation.asleep.size());
+  connectedBlocks(engine.touchingEdges, engine.restless, engine.parent, engine.joined);
+  for (NearPair& pair : engine.pairs) {
+    const auto falls = [&](std::int32_t block) {
+      return block >= 0 && simulation.asleep[static_cast<std::size_t>(block)] == 0 && engine.joined[static_cast<std::size_t>(block)] == 0;
+    };
+    if (falls(pair.a) || falls(pair.b)) pair.restForce = forceOnA(simulation, pair);
+  }
+  for (const std::int32_t block : engine.awakeBlocks) {
+    if (engine.joined[static_cast<std::size_t>(block)] == 0) fallAsleep(simulation, static_cast<std::size_t>(block));
+  }
+  engine.gravitySlept = simulation.scene.gravity.at(simulation.time_s);
+}
+
+}  // namespace
+
+void wake(Simulation& simulation, std::size_t block) {
+  if (simulation.asleep[block] == 0) return;
+  simulation.asleep[block] = 0;
+  simulation.restTime_s[block] = 0.0;
+  ++simulation.engine->awakeCount;
+  const RigidMotion motion = rigidMotion(simulation.state, block);
+  simulation.engine->rest[block] = {motion.centre, motion.velocity, motion.spin, 0.0};
+}
+
+void wakeForFrame(Simulation& simulation) {
+  Engine& engine = *simulation.engine;
+  if (engine.awakeCount == simulation.asleep.size()) return;
+  const double frame_s = simulation.scene.settings.frame_s;
+  const Vec3 gravity = simulation.scene.gravity.at(simulation.time_s + frame_s);
+  if ((gravity - engine.gravitySlept).norm() > kWakeGravity * simulation.scene.gravity.magnitude) {
+    for (std::size_t b = 0; b < simulation.asleep.size(); ++b) wake(simulation, b);
+    return;
+  }
+  for (const UserForce& user : simulation.scene.forces) {
+    const bool acts = user.start_s < simulation.time_s + frame_s && user.end_s > simulation.time_s;
+    if (acts) wake(simulation, static_cast<std::size_t>(user.block));
+  }
+}
+
+void updateRest(Simulation& simulation) {
+  Engine& engine = *simulation.engine;
+  const Sleep sleep = simulation.scene.settings.sleep;
+  for (const std::int32_t block : engine.awakeBlocks) {
+    const auto b = static_cast<std::size_t>(block);
+    sleep == Sleep::report ? judgeAsReported(simulation, b) : judge(simulation, b);
+  }
+  if (sleep == Sleep::off) return;
+  if (engine.awakeCount < simulation.asleep.size()) wakePushed(simulation);
+  putGroupsToSleep(simulation);
+}
+
+bool atRest(const Simulation& simulation) {
+  const double needed = restNeeded(simulation);
+  return std::all_of(simulation.restTime_s.begin(), simulation.restTime_s.end(), [&](double time) { return time >= needed; });
+}
+
+}  // namespace springtower

@@ -1,0 +1,208 @@
+#include "solver/run.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <ctime>
+
+namespace springtower {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double secondsSince(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+double processorTime_s() {
+  std::timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+bool allAsleep(const Simulation& simulation) {
+  const auto& asleep = simulation.asleep;
+  return std::memchr(asleep.data(), 0, asleep.size()) == nullptr;
+}
+
+// What is measured of one frame.
+struct FrameMeasures {
+  Penetration penetration;
+  double meanSquareSpeed = 0.0;
+  double energy_j = 0.0;  // when last measured
+};
+
+// Everything about a run that grows from frame to frame.
+class Recorder {
+ public:
+  Recorder(const Simulation& simulation, const RunOptions& options)
+      : options_(options),
+        startTime_s_(simulation.time_s),
+        startPosition_(simulation.state.position),
+        startStages_(simulation.stageTimes) {
+    for (const BlockSpec& block : simulation.scene.blocks) row_.push_back(block.row);
+    closed_ = closedRows(startPosition_, row_, simulation.scene.floor);
+    reference_ = fittedBoxes(closed_);
+    const long framesInASecond = std::lround(1.0 / simulation.scene.settings.frame_s);
+    lastSecond_.assign(static_cast<std::size_t>(std::max(1L, framesInASecond)), 0.0);
+    measure(simulation);
+    result_.energyStart = energy(simulation);
+    now_.energy_j = result_.energyStart.total();
+  }
+
+  // `unchanged`: nothing moved in this frame, so that the measures of the frame before still hold.
+  void frame(const Simulation& simulation, bool unchanged, double wall_s, double processor_s) {
+    wall_ms_.push_back(1e3 * wall_s);
+    processor_ms_.push_back(1e3 * processor_s);
+    if (!unchanged && !result_.fallTime_s) judge(simulation);
+    const bool resting = atRest(simulation);
+    if (!result_.restTime_s && resting) {
+      result_.restTime_s = simulation.time_s;
+      settle(simulation);
+    } else if (!settled_ && simulation.time_s - startTime_s_ > kSettledTime_s - 0.5 * simulation.scene.settings.frame_s) {
+      settle(simulation);
+    }
+    if (!unchanged && options_.measureEveryFrame) {
+      measure(simulation);
+      if (!resting || !rested_) measureEnergy(energy(simulation).total());
+    }
+    rested_ = resting;
+    if (settled_) settledPenetration_m_ = std::max(settledPenetration_m_, now_.penetration.depth);
+    lastSecond_[(wall_ms_.size() - 1) % lastSecond_.size()] = now_.meanSquareSpeed;
+  }
+
+  [[nodiscard]] const RunResult& soFar() const { return result_; }
+
+  RunResult finish(const Simulation& simulation) {
+    if (!options_.measureEveryFrame) measure(simulation);
+    result_.frames = wall_ms_.size();
+    result_.simulated_s = simulation.time_s - startTime_s_;
+    result_.counters = simulation.counters;
+    timeFrames(simulation);
+    if (settled_) {
+      result_.maxPenetration_m = std::max(settledPenetration_m_, now_.penetration.depth);
+      result_.creep_m = creep_m_;
+    }
+    result_.bottomRowCompression_m = meanRowCompression(simulation.model, startPosition_, simulation.state.position,
+                                                        bottomRow(simulation.model, startPosition_, row_));
+    result_.jitter_m_s = options_.measureEveryFrame ? jitter() : std::sqrt(now_.meanSquareSpeed);
+    result_.topHeightError_m = topHeightError(closed_, simulation.state.position);
+    result_.energyEnd = energy(simulation);
+    measureEnergy(result_.energyEnd.total());
+    const double scale_j = std::abs(result_.energyStart.total());
+    if (options_.measureEveryFrame && scale_j > 0.0) result_.maxEnergyRise = largestRise_j_ / scale_j;
+    result_.asleepBlocks = static_cast<std::size_t>(std::count(simulation.asleep.begin(), simulation.asleep.end(), 1));
+    result_.awakeBlocks = simulation.asleep.size() - result_.asleepBlocks;
+    result_.stateHash = stateHash(simulation);
+    return std::move(result_);
+  }
+
+ private:
+  void judge(const Simulation& simulation) {
+    const Standing now = standing(simulation.model, reference_, simulation.state.position, options_.leftOut);
+    if (now.stands) return;
+    result_.standing = now;
+    result_.fallTime_s = simulation.time_s;
+  }
+
+  void measure(const Simulation& simulation) {
+    const MotionState& state = simulation.state;
+    now_.penetration = maxPenetration(state.position, simulation.scene.floor, workspace_);
+    if (now_.penetration.depth > result_.deepest.depth) {
+      result_.deepest = now_.penetration;
+      result_.deepestTime_s = simulation.time_s;
+    }
+    result_.maxStrain = std::max(result_.maxStrain, maxStrain(simulation.model, state.position));
+    if (settled_) creep_m_ = std::max(creep_m_, largestCornerMove(settledPosition_, state.position));
+    const double speed = rootMeanSquareCornerSpeed(state.velocity);
+    now_.meanSquareSpeed = speed * speed;
+  }
+
+  void measureEnergy(double total_j) {
+    largestRise_j_ = std::max(largestRise_j_, total_j - now_.energy_j);
+    now_.energy_j = total_j;
+  }
+
+  // From here on penetration and creep are those of a settled scene. Rest that comes after kSettledTime_s starts them afresh.
+  void settle(const Simulation& simulation) {
+    settled_ = true;
+    settledPosition_ = simulation.state.position;
+    settledPenetration_m_ = 0.0;
+    creep_m_ = 0.0;
+  }
+
+  [[nodiscard]] double jitter() const {
+    const std::size_t frames = std::min(lastSecond_.size(), wall_ms_.size());
+    double sum = 0.0;
+    for (std::size_t i = 0; i < frames; ++i) sum += lastSecond_[i];
+    return frames == 0 ? 0.0 : std::sqrt(sum / static_cast<double>(frames));
+  }
+
+  void timeFrames(const Simulation& simulation) {
+    result_.frameTimes = {quantile(wall_ms_, 0.5), quantile(wall_ms_, 0.99), quantile(wall_ms_, 1.0),
+                          quantile(processor_ms_, 0.5)};
+    const double frames = static_cast<double>(std::max<std::size_t>(1, wall_ms_.size()));
+    for (std::size_t i = 0; i < kStages; ++i) {
+      result_.stage_ms[i] = 1e3 * (simulation.stageTimes.seconds[i] - startStages_.seconds[i]) / frames;
+    }
+  }
+
+  RunOptions options_;
+  RunResult result_;
+  double startTime_s_;
+  CornerArray startPosition_;
+  StageTimes startStages_;
+  std::vector<int> row_;              // of each block, or -1
+  CornerArray closed_;                // the start without gaps between rows
+  std::vector<FittedBox> reference_;  // of closed_
+  PenetrationWorkspace workspace_;
+  FrameMeasures now_;
+  double largestRise_j_ = 0.0;
+  bool rested_ = false;  // all blocks were at rest in the frame before
+  bool settled_ = false;
+  CornerArray settledPosition_;
+  double settledPenetration_m_ = 0.0;
+  double creep_m_ = 0.0;
+  std::vector<double> lastSecond_;  // mean square speeds of the last frames, a ring
+  std::vector<double> wall_ms_;
+  std::vector<double> processor_ms_;
+};
+
+}  // namespace
+
+RunResult runScene(Simulation& simulation, const RunOptions& options, const FrameCallback& afterFrame) {
+  const Clock::time_point start = Clock::now();
+  Recorder recorder(simulation, options);
+  if (afterFrame) afterFrame(simulation);
+  const long frames = std::max(1L, std::lround(options.seconds / simulation.scene.settings.frame_s));
+  for (long frame = 0; frame < frames; ++frame) {
+    const bool slept = allAsleep(simulation);
+    const double processorStart_s = processorTime_s();
+    const Clock::time_point frameStart = Clock::now();
+    stepFrame(simulation);
+    const double wall_s = secondsSince(frameStart);
+    const double processor_s = processorTime_s() - processorStart_s;
+    recorder.frame(simulation, slept && allAsleep(simulation), wall_s, processor_s);
+    if (afterFrame) afterFrame(simulation);
+    const RunResult& soFar = recorder.soFar();
+    if (options.stopWhenFallen && soFar.fallTime_s) break;
+    if (options.stopWhenAtRest && soFar.restTime_s && simulation.time_s >= *soFar.restTime_s + options.secondsAfterRest) {
+      break;
+    }
+  }
+  RunResult result = recorder.finish(simulation);
+  result.wall_s = secondsSince(start);
+  return result;
+}
+
+double quantile(std::vector<double> values, double q) {
+  if (values.empty()) return 0.0;
+  const double rank = std::ceil(q * static_cast<double>(values.size()));
+  const std::size_t last = values.size() - 1;
+  const std::size_t i = std::min(last, static_cast<std::size_t>(std::max(1.0, rank)) - 1);
+  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(i), values.end());
+  return values[i];
+}
+
+}  // namespace springtower

@@ -1,0 +1,84 @@
+#pragma once
+
+#include "core/counters.h"
+#include "core/scene.h"
+#include "core/state.h"
+#include "solver/lengths.h"
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace springtower {
+
+struct Engine;  // the engine's working data: pairs, contacts, islands, workspaces (solver/engine.h)
+
+/// A running scene. Plain data that tools may read between frames; changed only by the functions below.
+struct Simulation {
+  explicit Simulation(const Scene& scene);
+  ~Simulation();
+  Simulation(Simulation&&) noexcept;
+  Simulation& operator=(Simulation&&) noexcept;
+
+  Scene scene;
+  BlockModel model;
+  Lengths lengths;                     ///< the scene's own scale
+  MotionState state;
+  double time_s = 0.0;                ///< simulated time, s
+  std::uint64_t frame = 0;            ///< frames done
+  double tolerance_m = 0.0;           ///< the tolerance in force: as given, or what the given substeps allow
+  double contactStiffness_n_m = 0.0;  ///< N/m, of one resting contact point, normal
+  double floorStiffness_n_m = 0.0;    ///< N/m, of one on the floor
+  double springStiffness_n_m = 0.0;   ///< N/m, of an upright edge of a block of the scene's least height
+  int fixedSubsteps = 0;              ///< steps of every frame where the user gave them, else 0
+  int substeps = 0;                   ///< steps of the last frame (the most over its islands)
+  std::vector<std::uint8_t> asleep;   ///< 1 where a block sleeps, [blocks]
+  std::vector<double> restTime_s;     ///< how long a block has been at rest, s, [blocks]; kept with sleep off as well
+  Counters counters;
+  StageTimes stageTimes;
+  std::unique_ptr<Engine> engine;
+};
+
+/// Advances a scene by one frame (settings.frame_s). Bitwise the same for any number of threads. Throws DivergenceError in the
+/// step in which a position stops being finite or a block turns inside out.
+void stepFrame(Simulation& simulation);
+
+/// Whether every block has been at rest (speed of its rigid motion, force and torque balance) for the time the settings name.
+bool atRest(const Simulation& simulation);
+
+/// Energies, J. The kinetic energy is the one that the leapfrog form of semi-implicit Euler conserves for linear forces: half the
+/// product of the velocities before and after the coming step's kick (Hairer, Lubich & Wanner 2003, Acta Numerica 12), with the
+/// inertia in force.
+struct Energy {
+  double kinetic = 0.0;
+  double gravity = 0.0;  ///< against the floor z = 0, with the gravity of the moment
+  double springs = 0.0;
+  double contacts = 0.0;  ///< stored in contact springs: normal, relaxing branch, friction anchors
+  [[nodiscard]] double total() const { return kinetic + gravity + springs + contacts; }
+};
+Energy energy(const Simulation& simulation);
+
+/// One contact point as it acts now, for reports, overlays and tests: the force on `upper` from `lower` (kFloor: the floor).
+struct ContactForce {
+  BlockId upper;
+  BlockId lower;
+  Vec3 point;          ///< m, where it acts on `upper`
+  Vec3 lowerPoint;     ///< m, where its reaction acts on `lower`; apart by the penetration, along the normal
+  Vec3 normal;         ///< unit, from lower to upper
+  double normalForce;  ///< N, >= 0
+  Vec3 frictionForce;  ///< N, on `upper`
+  double depth;        ///< m, geometric penetration of the point
+  bool sliding;
+};
+std::vector<ContactForce> contactForces(const Simulation& simulation);
+
+/// A copy of all that the next frame depends on, and back. A restored simulation repeats its future bit for bit.
+struct Snapshot;
+std::shared_ptr<const Snapshot> takeSnapshot(const Simulation& simulation);
+void restoreSnapshot(Simulation& simulation, const Snapshot& snapshot);
+
+/// A hash (FNV-1a, 64 bit) of the bits of positions, velocities, sleep and contact memory: equal for equal states, on any thread
+/// count.
+std::uint64_t stateHash(const Simulation& simulation);
+
+}  // namespace springtower

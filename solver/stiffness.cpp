@@ -1,0 +1,167 @@
+#include "solver/stiffness.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+namespace springtower {
+
+namespace {
+
+struct Bounds {
+  std::array<double, 3> lower;
+  std::array<double, 3> upper;
+};
+
+Bounds boundsOf(const BlockSpec& block) {
+  const Eigen::Matrix3d rotation = block.orientation.toRotationMatrix();
+  Bounds bounds;
+  for (int a = 0; a < 3; ++a) {
+    double reach = 0.0;
+    for (int k = 0; k < 3; ++k) reach += std::abs(rotation(a, k)) * 0.5 * block.dimensions[k];
+    bounds.lower[static_cast<std::size_t>(a)] = block.centre[a] - reach;
+    bounds.upper[static_cast<std::size_t>(a)] = block.centre[a] + reach;
+  }
+  return bounds;
+}
+
+double overlapLength(const Bounds& a, const Bounds& b, std::size_t axis) {
+  return std::min(a.upper[axis], b.upper[axis]) - std::max(a.lower[axis], b.lower[axis]);
+}
+
+// The highest blocks below each block that its outline covers: those whose tops are within half a block of the highest such top.
+std::vector<std::vector<std::size_t>> supportsOf(const std::vector<Bounds>& bounds) {
+  const std::size_t count = bounds.size();
+  std::vector<std::size_t> order(count);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](std::size_t p, std::size_t q) {
+    return bounds[p].lower[0] != bounds[q].lower[0] ? bounds[p].lower[0] < bounds[q].lower[0] : p < q;
+  });
+  std::vector<std::vector<std::size_t>> below(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t p = order[i];
+    for (std::size_t j = i + 1; j < count && bounds[order[j]].lower[0] < bounds[p].upper[0]; ++j) {
+      const std::size_t q = order[j];
+      if (overlapLength(bounds[p], bounds[q], 1) <= 0.0) continue;
+      const bool pIsLower = bounds[p].lower[2] + bounds[p].upper[2] < bounds[q].lower[2] + bounds[q].upper[2];
+      below[pIsLower ? q : p].push_back(pIsLower ? p : q);
+    }
+  }
+  for (std::size_t b = 0; b < count; ++b) {
+    double top = -1e300;
+    for (const std::size_t s : below[b]) top = std::max(top, bounds[s].upper[2]);
+    const double height = bounds[b].upper[2] - bounds[b].lower[2];
+    std::erase_if(below[b], [&](std::size_t s) { return bounds[s].upper[2] < top - 0.5 * height; });
+    std::sort(below[b].begin(), below[b].end());
+  }
+  return below;
+}
+
+// Second moments of the corners of all overlaps of one level about their mean, the lesser of x and y, m2.
+struct LevelMoments {
+  double points = 0.0;
+  std::array<double, 2> first{};
+  std::array<double, 2> second{};
+
+  void add(double low, double high, std::size_t axis) {
+    first[axis] += 2.0 * (low + high);
+    second[axis] += 2.0 * (low * low + high * high);
+  }
+  [[nodiscard]] double least() const {
+    if (points == 0.0) return 0.0;
+    return std::min(second[0] - first[0] * first[0] / points, second[1] - first[1] * first[1] / points);
+  }
+};
+
+constexpr double kPointsPerOverlap = 4.0;
+constexpr double kLoadedPoints = 2.0;        // a share that lies off centre rests on one side of the overlap
+constexpr double kBucklingParameter = 7.837; // Greenhill: w H^3 = 7.837 E I for a column under its own weight
+constexpr double kSwayReserve = 10.0;
+constexpr double kSeriesWithBlocks = 0.5;    // contacts and blocks bend alike
+
+}  // namespace
+
+LoadEstimate estimateLoads(const Scene& scene) {
+  const std::size_t count = scene.blocks.size();
+  std::vector<Bounds> bounds(count);
+  for (std::size_t b = 0; b < count; ++b) bounds[b] = boundsOf(scene.blocks[b]);
+  const auto below = supportsOf(bounds);
+
+  std::vector<std::size_t> fromTop(count);
+  std::iota(fromTop.begin(), fromTop.end(), std::size_t{0});
+  const auto middle = [&](std::size_t b) { return bounds[b].lower[2] + bounds[b].upper[2]; };
+  std::sort(fromTop.begin(), fromTop.end(), [&](std::size_t p, std::size_t q) { return middle(p) != middle(q) ? middle(p) > middle(q) : p < q; });
+
+  std::vector<double> load(count, 0.0);
+  LoadEstimate estimate;
+  double weight = 0.0;
+  for (const std::size_t b : fromTop) {
+    const double own = scene.blocks[b].mass * scene.gravity.magnitude;
+    load[b] += own;
+    weight += own;
+    const double shares = below[b].empty() ? 1.0 : static_cast<double>(below[b].size());
+    double& largest = below[b].empty() ? estimate.floorLoad_n : estimate.contactLoad_n;
+    largest = std::max(largest, load[b] / shares / kLoadedPoints);
+    estimate.blockLoad_n = std::max(estimate.blockLoad_n, load[b] / kLoadedPoints);
+    for (const std::size_t s : below[b]) load[s] += load[b] / shares;
+  }
+
+  std::vector<std::size_t> level(count, 0);
+  std::size_t levels = 0;
+  for (auto b = fromTop.rbegin(); b != fromTop.rend(); ++b) {
+    for (const std::size_t s : below[*b]) level[*b] = std::max(level[*b], level[s] + 1);
+    levels = std::max(levels, level[*b] + 1);
+  }
+  std::vector<LevelMoments> moments(levels);
+  std::array<double, 3> lower{1e300, 1e300, 1e300};
+  std::array<double, 3> upper{-1e300, -1e300, -1e300};
+  for (std::size_t b = 0; b < count; ++b) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      lower[a] = std::min(lower[a], bounds[b].lower[a]);
+      upper[a] = std::max(upper[a], bounds[b].upper[a]);
+    }
+    LevelMoments& here = moments[level[b]];
+    const auto addOverlap = [&](const Bounds& support) {
+      here.points += kPointsPerOverlap;
+      for (std::size_t a = 0; a < 2; ++a) {
+        here.add(std::max(bounds[b].lower[a], support.lower[a]), std::min(bounds[b].upper[a], support.upper[a]), a);
+      }
+    };
+    for (const std::size_t s : below[b]) addOverlap(bounds[s]);
+    if (below[b].empty()) addOverlap(bounds[b]);
+  }
+  if (count == 0) return estimate;
+  double compliance = 0.0;
+  for (const LevelMoments& here : moments) compliance += 1.0 / std::max(here.least(), 1e-12);
+  const auto n = static_cast<double>(levels);
+  const double height = upper[2] - lower[2];
+  // Weight per level w and level height h: a chain of n joints of stiffness S buckles near w h n^3 = 7.837 S.
+  const double jointNeeded = (weight / n) * (height / n) * n * n * n / kBucklingParameter;
+  estimate.swayStiffness_n_m = levels < 2 ? 0.0 : kSwayReserve * jointNeeded * (compliance / n) / kSeriesWithBlocks;
+
+  const double lean = std::abs(scene.gravity.tilt_deg) + std::abs(scene.gravity.sway_deg);
+  const double narrow = 0.5 * std::min(upper[0] - lower[0], upper[1] - lower[1]);
+  const double lever = std::min(1.0, 0.5 * height * std::tan(std::min(lean, 45.0) * M_PI / 180.0) / std::max(narrow, 1e-12));
+  estimate.contactLoad_n *= 1.0 + lever;
+  estimate.floorLoad_n *= 1.0 + lever;
+  estimate.blockLoad_n *= 1.0 + lever;
+  return estimate;
+}
+
+Stiffness stiffnessForTolerance(const LoadEstimate& loads, double tolerance_m) {
+  // A contact that nothing rests on yet still has to bear what may come: as much as a block's own share on the floor.
+  const auto stiffness = [&](double load) { return std::max(load / tolerance_m, loads.swayStiffness_n_m); };
+  return {stiffness(loads.contactLoad_n), stiffness(loads.floorLoad_n), stiffness(loads.blockLoad_n)};
+}
+
+double stableStep(double spectralRadius, double dampingTime_s, double margin) {
+  const double limit = 4.0 * margin * margin / spectralRadius;
+  return std::sqrt(dampingTime_s * dampingTime_s + limit) - dampingTime_s;
+}
+
+double stableSpectralRadius(double step_s, double dampingTime_s, double margin) {
+  return 4.0 * margin * margin / (step_s * (step_s + 2.0 * dampingTime_s));
+}
+
+}  // namespace springtower

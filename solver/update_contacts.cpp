@@ -1,0 +1,108 @@
+#include "core/error.h"
+#include "solver/contact_births.h"
+#include "solver/island_step.h"
+#include "solver/stage_clock.h"
+
+#include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+namespace springtower {
+
+namespace {
+
+// Path of each block's fastest corner in this step. NaN fails every comparison, so it is asked for what is sound.
+bool addTravel(IslandStep& step) {
+  Simulation& simulation = step.simulation;
+  const double longest = kMostTravelPerStep;
+  bool inside = true;
+  for (const std::int32_t block : step.blocks) {
+    const auto b = static_cast<std::size_t>(block);
+    const double* x = simulation.state.position.values(0, b);
+    const double* y = simulation.state.position.values(1, b);
+    const double* z = simulation.state.position.values(2, b);
+    const double* beforeX = step.engine.previous.values(0, b);
+    const double* beforeY = step.engine.previous.values(1, b);
+    const double* beforeZ = step.engine.previous.values(2, b);
+    double squared = 0.0;
+    double total = 0.0;
+    for (std::size_t c = 0; c < kCorners; ++c) {
+      const double dx = x[c] - beforeX[c];
+      const double dy = y[c] - beforeY[c];
+      const double dz = z[c] - beforeZ[c];
+      const double value = dx * dx + dy * dy + dz * dz;
+      squared = std::max(squared, value);
+      total += value;
+    }
+    const double path = std::sqrt(squared);
+    const double least = simulation.model.dimensions[b].minCoeff();
+    if (!(total < kCorners * (longest * least) * (longest * least))) {
+      const double time = step.time_s + step.drift_s;
+      throw DivergenceError(
+          fmt::format("block {} diverged at {:.6f} s: {}", block, time,
+                      std::isfinite(total) ? fmt::format("a corner moved {:.3g} m in one step of {:.3g} s", path, step.drift_s)
+                                           : std::string("its positions are no longer finite")),
+          block, time);
+    }
+    BlockClock& clock = step.engine.clock[b];
+    clock.travel += path;
+    if (clock.travel - step.engine.travelAtSweep[b] > step.engine.reach[b]) inside = false;
+  }
+  return inside;
+}
+
+double travelOf(const Engine& engine, const NearPair& pair) {
+  return engine.clock[static_cast<std::size_t>(pair.a)].travel +
+         (pair.b < 0 ? 0.0 : engine.clock[static_cast<std::size_t>(pair.b)].travel);
+}
+
+void updatePair(IslandStep& step, NearPair& pair, Counters& counters) {
+  const double travel = travelOf(step.engine, pair);
+  const double used = travel - pair.checkedTravel;
+  if (pair.manifold.touch == Touch::apart) {
+    if (used < pair.margin) return;
+    ++counters.marginsSpent;
+    pair.checkedTravel = travel;
+    watchApart(step, pair, counters);
+  } else if (used > refreshTravel(step.simulation)) {
+    pair.checkedTravel = travel;
+    renewManifold(step, pair, counters);
+  }
+}
+
+}  // namespace
+
+void findTouching(IslandStep& step) {
+  for (const std::int32_t at : step.pairs) {
+    NearPair& pair = step.engine.pairs[static_cast<std::size_t>(at)];
+    if (pair.manifold.touch == Touch::apart) watchApart(step, pair, step.counters);
+  }
+}
+
+bool updateContacts(IslandStep& step) {
+  StageClock clock(step.times);
+  const bool inside = addTravel(step);
+  if (step.blocks.size() >= kParallelBlocks) {
+    constexpr std::size_t kChunk = 256;
+    const std::size_t chunks = (step.pairs.size() + kChunk - 1) / kChunk;
+    std::vector<Counters>& counted = step.engine.chunkCounters;
+    if (counted.size() < chunks) counted.resize(chunks);
+    tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t chunk) {
+      counted[chunk] = Counters{};
+      const std::size_t last = std::min(step.pairs.size(), (chunk + 1) * kChunk);
+      for (std::size_t i = chunk * kChunk; i < last; ++i) {
+        updatePair(step, step.engine.pairs[static_cast<std::size_t>(step.pairs[i])], counted[chunk]);
+      }
+    });
+    for (std::size_t chunk = 0; chunk < chunks; ++chunk) step.counters += counted[chunk];
+  } else {
+    for (const std::int32_t at : step.pairs) updatePair(step, step.engine.pairs[static_cast<std::size_t>(at)], step.counters);
+  }
+  clock.lap(Stage::candidates);
+  return inside;
+}
+
+}  // namespace springtower

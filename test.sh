@@ -1,0 +1,42 @@
+#!/usr/bin/env bash
+# Installs what is missing, builds with warnings as errors, checks layout and names, and runs every test.
+#   ./test.sh              all of it
+#   ./test.sh --sanitize   builds with the address and undefined behaviour sanitizers and runs every test
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")"
+
+preset=ci
+case "${1-}" in
+  "") ;;
+  --sanitize) preset=asan ;;
+  *)
+    sed -n '2,4s/^# \{0,1\}//p' "${BASH_SOURCE[0]##*/}" >&2
+    exit 2
+    ;;
+esac
+
+step() { printf '\n== %s (after %d s)\n' "$1" "$SECONDS"; }
+
+step "packages"
+source .ci/packages.sh
+installPackages run test
+
+step "build"
+cmake --preset "$preset" --log-level=WARNING
+cmake --build --preset "$preset"
+
+if [[ $preset == ci ]]; then
+  folders=(core broadphase narrowphase solver apps bench tests)
+  step "layout: clang-format"
+  find "${folders[@]}" -name '*.cpp' -print0 -o -name '*.h' -print0 | xargs -0 clang-format --dry-run --Werror
+  step "names and common mistakes: clang-tidy"
+  # Only what this build compiles: clang-tidy needs the flags.
+  for source in {core,broadphase,narrowphase,solver,apps}/*.cpp; do
+    if grep -qF "/$source\"" "build/$preset/compile_commands.json"; then printf '%s\0' "$source"; fi
+  done |
+    xargs -0 -r -n 1 -P "$(nproc)" clang-tidy -p "build/$preset" --quiet 2>&1 |
+    sed -E '/^[0-9]+ warnings? generated\.$/d'
+fi
+
+step "tests"
+ctest --preset "$preset" -j "$(nproc)"

@@ -1,0 +1,179 @@
+#include "tests/apps/program.h"
+
+#include <fstream>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+namespace springtower {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::SizeIs;
+using Json = nlohmann::ordered_json;
+
+ProgramResult verdict(std::string_view input, std::vector<std::string> options = {}) {
+  options.insert(options.begin(), {"verdict", "-"});
+  return runProgram("springtower", options, input);
+}
+
+std::vector<Json> objectsOf(const ProgramResult& result) {
+  std::vector<Json> objects;
+  for (const std::string& line : linesOf(result.output)) objects.push_back(Json::parse(line));
+  return objects;
+}
+
+// A tower of one row stands; a top block beside its support falls.
+constexpr std::string_view kThree =
+    "{\"id\":\"stands\",\"config\":\"(111)\",\"expect\":{\"stands\":true,\"clear\":true,\"edge_mm\":13.3}}\n"
+    "\n"
+    "{\"id\":\"falls\",\"config\":\"(001)-(010)\",\"expect\":{\"stands\":false,\"clear\":true}}\n"
+    "{\"id\":\"slides\",\"config\":\"(010)\",\"mu\":0.2,\"gravity_tilt_deg\":15,\"gravity_direction_deg\":90}\n";
+
+TEST(Verdict, SaysForEachLineInOrderWhetherItStands) {
+  const ProgramResult result = verdict(kThree);
+  ASSERT_EQ(result.exitCode, 0) << result.error;
+  EXPECT_EQ(result.error, "");
+  const std::vector<Json> lines = objectsOf(result);
+  ASSERT_THAT(lines, SizeIs(3));
+  EXPECT_EQ(lines[0].at("id"), "stands");
+  EXPECT_EQ(lines[0].at("stands"), true);
+  EXPECT_EQ(lines[1].at("id"), "falls");
+  EXPECT_EQ(lines[1].at("stands"), false);
+  EXPECT_EQ(lines[2].at("id"), "slides");
+  EXPECT_EQ(lines[2].at("stands"), false);
+  EXPECT_EQ(lines[0].at("expect").dump(), "{\"stands\":true,\"clear\":true,\"edge_mm\":13.3}") << "carried along as it came";
+  EXPECT_FALSE(lines[2].contains("expect"));
+  for (const Json& line : lines) {
+    EXPECT_GT(line.at("steps"), 0);
+    EXPECT_GT(line.at("time_s"), 0.0);
+    EXPECT_LT(line.at("time_s"), 10.0);
+    EXPECT_TRUE(line.contains("max_penetration_mm"));
+    EXPECT_TRUE(line.contains("creep_mm"));
+  }
+  EXPECT_GE(lines[0].at("max_penetration_mm"), 0.0);
+  EXPECT_GE(lines[0].at("creep_mm"), 0.0);
+}
+
+TEST(Verdict, IsTheSameFromAFileForAnyThreadsAndWithoutSleep) {
+  const ScratchFolder scratch;
+  std::ofstream(scratch.file("three.jsonl")) << kThree;
+  const std::string one = verdict(kThree, {"--threads", "1"}).output;
+  EXPECT_EQ(runProgram("springtower", {"verdict", scratch.file("three.jsonl"), "--threads", "4"}).output, one);
+  const std::vector<Json> asleep = objectsOf(verdict(kThree));
+  const std::vector<Json> awake = objectsOf(verdict(kThree, {"--no-sleep"}));
+  ASSERT_EQ(asleep.size(), awake.size());
+  for (std::size_t i = 0; i < awake.size(); ++i) EXPECT_EQ(asleep[i].at("stands"), awake[i].at("stands"));
+}
+
+TEST(Verdict, EndsAfterTheSecondsGiven) {
+  const std::vector<Json> lines =
+      objectsOf(verdict("{\"id\":\"a\",\"config\":\"(111)\"}", {"--seconds", "0.1", "--substeps", "40"}));
+  ASSERT_THAT(lines, SizeIs(1));
+  EXPECT_TRUE(lines[0].at("stands"));
+  EXPECT_TRUE(lines[0].at("time_s").is_null()) << "neither fallen nor at rest yet";
+  EXPECT_EQ(lines[0].at("steps"), 6 * 40);
+}
+
+TEST(Verdict, OffsetsAndLooseBlocksCount) {
+  const std::string over =
+      "{\"id\":\"a\",\"config\":\"(010)-(010)\",\"offsets_m\":[{\"row\":1,\"position\":2,\"dx\":0.0,\"dy\":0.0%}]}";
+  const auto at = [&](const std::string& digits) {
+    std::string line = over;
+    line.replace(line.find('%'), 1, digits);
+    return objectsOf(verdict(line)).at(0).at("stands").get<bool>();
+  };
+  // The lower block is 26.7 mm wide: the centre of the upper one may stand 13.35 mm aside.
+  EXPECT_TRUE(at("11"));
+  EXPECT_FALSE(at("16"));
+  const std::string loose =
+      "{\"id\":\"a\",\"config\":\"(111)-(010)\",\"lower_m\":[{\"row\":0,\"position\":2},{\"row\":0,\"position\":1,\"by\":0.0005}]"
+      "}";
+  EXPECT_EQ(verdict(loose).exitCode, 0);
+}
+
+TEST(Verdict, CheckComparesWithWhatIsExpected) {
+  const ProgramResult agrees = verdict(kThree, {"--check"});
+  EXPECT_EQ(agrees.exitCode, 0);
+  EXPECT_THAT(objectsOf(agrees), SizeIs(3));
+  EXPECT_THAT(agrees.error, HasSubstr("stands          1        1        0"));
+  EXPECT_THAT(agrees.error, HasSubstr("falls           1        1        0"));
+
+  std::string wrong(kThree);
+  wrong.replace(wrong.find("false"), 5, "true");
+  const ProgramResult differs = verdict(wrong, {"--check"});
+  EXPECT_EQ(differs.exitCode, 1);
+  EXPECT_THAT(objectsOf(differs), SizeIs(3));
+  EXPECT_THAT(differs.error, HasSubstr("line 3: falls falls, expected that it stands"));
+
+  std::string unclear(wrong);
+  unclear.replace(unclear.rfind("\"clear\":true"), 12, "\"clear\":false");
+  EXPECT_EQ(verdict(unclear, {"--check"}).exitCode, 0) << "what is not clear is not judged";
+  EXPECT_EQ(verdict("{\"id\":\"a\",\"config\":\"(111)\"}", {"--check"}).exitCode, 2) << "nothing to compare with";
+}
+
+TEST(Verdict, OfNothingIsNothing) {
+  const ProgramResult result = verdict("");
+  EXPECT_EQ(result.exitCode, 0);
+  EXPECT_EQ(result.output, "");
+}
+
+struct BadLine {
+  std::string name;
+  std::string line;
+  std::string message;
+};
+
+class BrokenLineTest : public ::testing::TestWithParam<BadLine> {};
+
+TEST_P(BrokenLineTest, IsNamedByItsNumber) {
+  const std::string input =
+      "{\"id\":\"first\",\"config\":\"(010)\"}\n\n" + GetParam().line + "\n{\"id\":\"last\",\"config\":\"(111)\"}\n";
+  const ProgramResult result = verdict(input);
+  EXPECT_EQ(result.exitCode, 2);
+  EXPECT_EQ(result.output, "") << "nothing is simulated before all lines are read";
+  EXPECT_THAT(result.error, HasSubstr("standard input: line 3: "));
+  EXPECT_THAT(result.error, HasSubstr(GetParam().message));
+  EXPECT_THAT(linesOf(result.error), SizeIs(1));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Verdict, BrokenLineTest,
+    ::testing::Values(BadLine{"NoJson", "not json", "found 'not json'"}, BadLine{"HalfJson", "{\"id\":\"a\"", "JSON object"},
+                      BadLine{"TwoObjects", "{\"id\":\"a\",\"config\":\"(010)\"} {}", "JSON object"},
+                      BadLine{"NoObject", "[1, 2]", "an object"}, BadLine{"NoId", "{\"config\":\"(010)\"}", "id is missing"},
+                      BadLine{"NoConfig", "{\"id\":\"a\"}", "config is missing"},
+                      BadLine{"IdNoText", "{\"id\":7,\"config\":\"(010)\"}", "id: found '7'"},
+                      BadLine{"IdTwice", "{\"id\":\"first\",\"config\":\"(010)\"}", "second time"},
+                      BadLine{"Typo", "{\"id\":\"a\",\"config\":\"(010)-(0120)\"}", "character 10"},
+                      BadLine{"UnknownKey", "{\"id\":\"a\",\"config\":\"(010)\",\"colour\":1}", "unknown key 'colour'"},
+                      BadLine{"Removal", "{\"id\":\"a\",\"config\":\"(010)\",\"remove\":[]}", "unknown key 'remove'"},
+                      BadLine{"NegativeFriction", "{\"id\":\"a\",\"config\":\"(010)\",\"mu\":-0.1}", "mu: found '-0.1'"},
+                      BadLine{"FrictionNoNumber", "{\"id\":\"a\",\"config\":\"(010)\",\"mu\":\"rough\"}", "0 to 10"},
+                      BadLine{"OverflowingFriction", "{\"id\":\"a\",\"config\":\"(010)\",\"mu\":1e999}", "JSON object"},
+                      BadLine{"TiltTooFar", "{\"id\":\"a\",\"config\":\"(010)\",\"gravity_tilt_deg\":999}", "gravity_tilt_deg"},
+                      BadLine{"OffsetsNoList", "{\"id\":\"a\",\"config\":\"(010)\",\"offsets_m\":{}}", "a list"},
+                      BadLine{"OffsetWithoutRow", "{\"id\":\"a\",\"config\":\"(010)\",\"offsets_m\":[{\"position\":2}]}",
+                              "offsets_m[0]: the key row is missing"},
+                      BadLine{"OffsetOfAbsentBlock",
+                              "{\"id\":\"a\",\"config\":\"(010)\",\"offsets_m\":[{\"row\":0,\"position\":1,\"dx\":0.001}]}",
+                              "row 0, position 1"},
+                      BadLine{"PositionNoWholeNumber",
+                              "{\"id\":\"a\",\"config\":\"(010)\",\"offsets_m\":[{\"row\":0,\"position\":1.5}]}", "1 to 3"},
+                      BadLine{"AbsurdlyLow",
+                              "{\"id\":\"a\",\"config\":\"(010)\",\"lower_m\":[{\"row\":0,\"position\":2,\"by\":1}]}",
+                              "lower_m[0]: by"}),
+    [](const auto& tested) { return tested.param.name; });
+
+TEST(Verdict, NeedsAFileThatCanBeRead) {
+  for (const std::vector<std::string>& arguments :
+       std::vector<std::vector<std::string>>{{"verdict"}, {"verdict", "no-such-file.jsonl"}, {"verdict", "/"}}) {
+    const ProgramResult result = runProgram("springtower", arguments);
+    EXPECT_EQ(result.exitCode, 2);
+    EXPECT_EQ(result.output, "");
+    EXPECT_THAT(result.error, ::testing::StartsWith("springtower: "));
+  }
+}
+
+}  // namespace
+}  // namespace springtower

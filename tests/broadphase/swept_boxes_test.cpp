@@ -1,0 +1,123 @@
+#include "broadphase/swept_boxes.h"
+
+#include "tests/broadphase/random.h"
+
+#include <cmath>
+#include <gtest/gtest.h>
+#include <limits>
+#include <numeric>
+
+namespace springtower {
+namespace {
+
+constexpr double kGravity = 9.81;
+
+MotionState randomMotion(std::size_t blocks, Random& random) {
+  MotionState state;
+  state.resize(blocks);
+  for (std::size_t b = 0; b < blocks; ++b) {
+    const Vec3 place(random.between(-1.0, 1.0), random.between(-1.0, 1.0), random.between(0.0, 1.0));
+    for (std::size_t c = 0; c < kCorners; ++c) {
+      const auto number = [&](double most) { return random.between(-most, most); };
+      state.position.set(b, c, place + Vec3(number(0.04), number(0.04), number(0.04)));
+      state.velocity.set(b, c, Vec3(number(3.0), number(3.0), number(3.0)));
+    }
+  }
+  return state;
+}
+
+TEST(SweptBoxes, AreTheCornersGrownByTheReach) {
+  MotionState state;
+  state.resize(2);
+  for (std::size_t c = 0; c < kCorners; ++c) {
+    state.position.set(1, c, Vec3(5.0 + cornerSide(c, 0), -7.0 + 2.0 * cornerSide(c, 1), 0.5 * cornerSide(c, 2)));
+  }
+  state.velocity.set(1, 3, Vec3(0.0, 1.0, 0.0));
+  state.velocity.set(1, 6, Vec3(2.0, -3.0, 6.0));
+  SweptBoxes boxes;
+  boxes.resize(2);
+  std::vector<double> reach(2, -1.0);
+
+  // Speed 7, duration 1/2, gravity 8, margin 1/4: reach 3.5 + 1 + 0.25.
+  computeSweptBoxes(state, std::vector<std::int32_t>{1}, 8.0, 0.5, 0.25, boxes, reach);
+
+  EXPECT_EQ(reach[1], 4.75);
+  EXPECT_EQ(boxes.lower[0][1], 4.0 - 4.75);
+  EXPECT_EQ(boxes.upper[0][1], 6.0 + 4.75);
+  EXPECT_EQ(boxes.lower[1][1], -9.0 - 4.75);
+  EXPECT_EQ(boxes.upper[1][1], -5.0 + 4.75);
+  EXPECT_EQ(boxes.lower[2][1], -0.5 - 4.75);
+  EXPECT_EQ(boxes.upper[2][1], 0.5 + 4.75);
+}
+
+TEST(SweptBoxes, LeaveOtherBlocksAlone) {
+  Random random{SplitMix64(1)};
+  const MotionState state = randomMotion(3, random);
+  SweptBoxes boxes;
+  boxes.resize(3);
+  std::vector<double> reach(3, -1.0);
+  for (std::size_t a = 0; a < 3; ++a) {
+    boxes.lower[a].assign(3, -1.0);
+    boxes.upper[a].assign(3, -1.0);
+  }
+  computeSweptBoxes(state, std::vector<std::int32_t>{0, 2}, kGravity, 0.1, 0.001, boxes, reach);
+  EXPECT_EQ(reach[1], -1.0);
+  for (std::size_t a = 0; a < 3; ++a) {
+    EXPECT_EQ(boxes.lower[a][1], -1.0);
+    EXPECT_EQ(boxes.upper[a][1], -1.0);
+    EXPECT_NE(boxes.lower[a][0], -1.0);
+    EXPECT_NE(boxes.lower[a][2], -1.0);
+  }
+}
+
+TEST(SweptBoxes, HoldEveryCornerInFreeFlight) {
+  Random random{SplitMix64(2)};
+  constexpr std::size_t kBlocks = 50;
+  const MotionState state = randomMotion(kBlocks, random);
+  std::vector<std::int32_t> all(kBlocks);
+  std::iota(all.begin(), all.end(), 0);
+  SweptBoxes boxes;
+  boxes.resize(kBlocks);
+  std::vector<double> reach(kBlocks);
+  constexpr double kDuration_s = 0.05;
+  constexpr double kRounding_m = 1e-15;
+  computeSweptBoxes(state, all, kGravity, kDuration_s, kRounding_m, boxes, reach);
+  for (std::size_t b = 0; b < kBlocks; ++b) {
+    for (std::size_t c = 0; c < kCorners; ++c) {
+      for (const double time_s : {0.0, 0.5 * kDuration_s, kDuration_s}) {
+        const Vec3 travel = state.velocity.at(b, c) * time_s + Vec3(0.0, 0.0, -0.5 * kGravity * time_s * time_s);
+        const Vec3 corner = state.position.at(b, c) + travel;
+        EXPECT_LE(travel.norm(), reach[b]);
+        for (std::size_t a = 0; a < 3; ++a) {
+          EXPECT_LE(boxes.lower[a][b], corner[static_cast<Eigen::Index>(a)]);
+          EXPECT_GE(boxes.upper[a][b], corner[static_cast<Eigen::Index>(a)]);
+        }
+      }
+    }
+  }
+}
+
+TEST(SweptBoxes, WithoutDurationReachJustTheMargin) {
+  Random random{SplitMix64(3)};
+  const MotionState state = randomMotion(4, random);
+  SweptBoxes boxes;
+  boxes.resize(4);
+  std::vector<double> reach(4);
+  computeSweptBoxes(state, std::vector<std::int32_t>{0, 1, 2, 3}, kGravity, 0.0, 0.002, boxes, reach);
+  for (std::size_t b = 0; b < 4; ++b) {
+    EXPECT_EQ(reach[b], 0.002);
+    for (std::size_t a = 0; a < 3; ++a) {
+      double least = std::numeric_limits<double>::infinity();
+      double most = -least;
+      for (std::size_t c = 0; c < kCorners; ++c) {
+        least = std::min(least, state.position.values(a, b)[c]);
+        most = std::max(most, state.position.values(a, b)[c]);
+      }
+      EXPECT_EQ(boxes.lower[a][b], least - 0.002);
+      EXPECT_EQ(boxes.upper[a][b], most + 0.002);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace springtower

@@ -1,0 +1,96 @@
+#include "core/settings.h"
+
+#include "core/error.h"
+
+#include <gmock/gmock.h>
+#include <limits>
+#include <set>
+
+namespace springtower {
+namespace {
+
+using testing::ThrowsMessage;
+
+double& numberOf(Settings& settings, std::string_view key) {
+  for (const SettingRow& row : settingTable()) {
+    if (row.key == key) return settings.*std::get<double Settings::*>(row.member);
+  }
+  throw std::runtime_error("no such setting");
+}
+
+TEST(Settings, DefaultsAreWithinTheirOwnLimits) {
+  EXPECT_NO_THROW(checkSettings(Settings{}, "defaults"));
+}
+
+TEST(Settings, EveryRowNamesAnotherSettingAndGivesAReason) {
+  std::set<std::string_view> keys;
+  for (const SettingRow& row : settingTable()) {
+    EXPECT_TRUE(keys.insert(row.key).second) << row.key;
+    EXPECT_FALSE(row.reason.empty()) << row.key;
+    EXPECT_LT(row.least, row.most) << row.key;
+    const bool saysSeconds = row.key.ends_with("_s");
+    const bool saysMetres = row.key.ends_with("_m");
+    EXPECT_EQ(saysSeconds, row.unit == "s") << row.key;
+    EXPECT_EQ(saysMetres, row.unit == "m") << row.key;
+  }
+  std::set<const void*> members;
+  Settings settings;
+  for (const SettingRow& row : settingTable()) {
+    std::visit([&](auto member) { EXPECT_TRUE(members.insert(&(settings.*member)).second) << row.key; }, row.member);
+  }
+}
+
+TEST(Settings, EachNumberIsHeldToBothEndsOfItsRange) {
+  for (const SettingRow& row : settingTable()) {
+    if (!std::holds_alternative<double Settings::*>(row.member)) continue;
+    Settings settings;
+    double& value = numberOf(settings, row.key);
+    for (const double end : {row.least, row.most}) {
+      value = end;
+      EXPECT_NO_THROW(checkSettings(settings, "test")) << row.key;
+    }
+    const double infinity = std::numeric_limits<double>::infinity();
+    for (const double bad : {row.least - 1e-3, row.most + 1e-3, infinity, std::numeric_limits<double>::quiet_NaN()}) {
+      value = bad;
+      EXPECT_THROW(checkSettings(settings, "test"), InputError) << row.key << " = " << bad;
+    }
+  }
+}
+
+TEST(Settings, ComplaintNamesSourceKeyFoundAndAllowed) {
+  Settings settings;
+  settings.stepMargin = 1.5;
+  EXPECT_THAT([&] { checkSettings(settings, "command line"); },
+              ThrowsMessage<InputError>("command line: step_margin: found 1.5, allowed 0.05 to 1"));
+  settings = {};
+  settings.tolerance_m = -1e-5;
+  EXPECT_THAT([&] { checkSettings(settings, "command line"); },
+              ThrowsMessage<InputError>("command line: tolerance_m: found -1e-05, allowed 1e-07 to 0.01 m"));
+  settings = {};
+  settings.substeps = -1;
+  EXPECT_THAT([&] { checkSettings(settings, "command line"); },
+              ThrowsMessage<InputError>("command line: substeps: found -1, allowed 0 to 100000"));
+}
+
+TEST(Settings, NamesReadBackAsTheyAreWritten) {
+  for (const Method method : {Method::semiImplicitEuler, Method::midpoint, Method::rungeKutta4, Method::report}) {
+    EXPECT_EQ(methodFromName(nameOf(method), "test"), method);
+  }
+  for (const Inertia inertia : {Inertia::cuboid, Inertia::lumped}) EXPECT_EQ(inertiaFromName(nameOf(inertia), "test"), inertia);
+  for (const Sleep sleep : {Sleep::off, Sleep::on, Sleep::report}) EXPECT_EQ(sleepFromName(nameOf(sleep), "test"), sleep);
+  EXPECT_EQ(nameOf(Method::semiImplicitEuler), "semi-implicit-euler");
+  EXPECT_EQ(nameOf(Method::rungeKutta4), "runge-kutta-4");
+}
+
+TEST(Settings, UnknownNamesListWhatIsAllowed) {
+  EXPECT_THAT(
+      [] { methodFromName("euler", "--method"); },
+      ThrowsMessage<InputError>("--method: found 'euler', allowed semi-implicit-euler, midpoint, runge-kutta-4 or report"));
+  EXPECT_THAT([] { inertiaFromName("", "--inertia"); },
+              ThrowsMessage<InputError>("--inertia: found '', allowed cuboid or lumped"));
+  EXPECT_THAT([] { sleepFromName("o\nn", "s.toml"); },
+              ThrowsMessage<InputError>("s.toml: found 'o\\x0an', allowed off, on or report"));
+}
+
+}  // namespace
+}  // namespace springtower

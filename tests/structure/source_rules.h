@@ -1,0 +1,25 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace springtower {
+
+/// The longest file the project allows, in lines.
+inline constexpr int kMaxLines = 400;
+
+/// What a source file breaks, one line of text each, with the path and the line number; empty when it keeps every rule:
+/// an include names its file from the repository root and reaches only the folders below its own and its own (see kFolders in the
+/// source); a header starts with `#pragma once`; no file is longer than kMaxLines.
+/// `path` is relative to the repository root and starts with the folder whose rules apply; `text` is the content of the file.
+std::vector<std::string> brokenRules(std::string_view path, std::string_view text);
+
+/// All C++ files (.h, .cpp) of the project's folders under `root`, relative to it, sorted.
+std::vector<std::filesystem::path> sourceFiles(const std::filesystem::path& root);
+
+/// brokenRules() of every file of sourceFiles(root). Throws std::runtime_error when a file cannot be read.
+std::vector<std::string> brokenRulesInTree(const std::filesystem::path& root);
+
+}  // namespace springtower

@@ -1,0 +1,74 @@
+#include "tests/structure/source_rules.h"
+
+#include <filesystem>
+#include <fstream>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <string>
+
+namespace springtower {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+TEST(SourceRules, TheProjectKeepsThem) {
+  // A wrong root would have nothing to complain about.
+  ASSERT_GT(sourceFiles(SPRINGTOWER_SOURCE_DIR).size(), 10U);
+  EXPECT_THAT(brokenRulesInTree(SPRINGTOWER_SOURCE_DIR), IsEmpty());
+}
+
+TEST(SourceRules, EachFolderKnowsItselfAndTheFoldersBelow) {
+  const std::vector<std::string> folders = {"core", "broadphase", "narrowphase", "solver", "apps", "bench", "tests"};
+  const std::vector<std::string> allowed = {
+      "1000000",  // core
+      "1100000",  // broadphase
+      "1010000",  // narrowphase
+      "1111000",  // solver
+      "1111100",  // apps
+      "1111010",  // bench
+      "1111001",  // tests
+  };
+  for (size_t from = 0; from < folders.size(); ++from) {
+    for (size_t to = 0; to < folders.size(); ++to) {
+      const auto broken = brokenRules(folders[from] + "/user.cpp", "#include \"" + folders[to] + "/used.h\"\n");
+      EXPECT_EQ(broken.empty(), allowed[from][to] == '1') << folders[from] << " includes " << folders[to];
+    }
+  }
+}
+
+TEST(SourceRules, NameTheFileTheLineAndTheReason) {
+  EXPECT_THAT(brokenRules("core/state.cpp", "#include \"core/state.h\"\n\n  #  include \"solver/step.h\"\n"),
+              ElementsAre("core/state.cpp:3: #include of solver/step.h: core must not know solver"));
+}
+
+TEST(SourceRules, IncludesAreWrittenFromTheRootAndInQuotes) {
+  EXPECT_THAT(brokenRules("core/state.cpp", "#include \"state.h\"\n"), ElementsAre(HasSubstr("from the repository root")));
+  EXPECT_THAT(brokenRules("core/state.cpp", "#include \"../solver/step.h\"\n"), ElementsAre(HasSubstr("repository root")));
+  EXPECT_THAT(brokenRules("core/state.cpp", "#include <solver/step.h>\n"), ElementsAre(HasSubstr("needs quotes")));
+  EXPECT_THAT(brokenRules("core/state.cpp", "#include <vector>\n#include <Eigen/Core>\n// #include \"x.h\"\n"), IsEmpty());
+}
+
+TEST(SourceRules, HeadersAreGuardedAndFilesAreShort) {
+  EXPECT_THAT(brokenRules("core/state.h", "#pragma once\n"), IsEmpty());
+  EXPECT_THAT(brokenRules("core/state.h", "struct State;\n"), ElementsAre(HasSubstr("#pragma once")));
+  std::string text;
+  for (int line = 0; line < kMaxLines; ++line) text += "//\n";
+  EXPECT_THAT(brokenRules("core/state.cpp", text), IsEmpty());
+  EXPECT_THAT(brokenRules("core/state.cpp", text + "//\n"), ElementsAre("core/state.cpp: 401 lines, more than 400"));
+}
+
+TEST(SourceRules, AFilePlantedDeepInATreeIsFound) {
+  const std::filesystem::path root = std::filesystem::path(testing::TempDir()) / "springtower_source_rules";
+  std::filesystem::remove_all(root);
+  std::filesystem::create_directories(root / "broadphase/detail");
+  std::ofstream(root / "broadphase/sweep.cpp") << "#include \"core/state.h\"\n";
+  EXPECT_THAT(brokenRulesInTree(root), IsEmpty());
+  std::ofstream(root / "broadphase/detail/islands.h") << "#pragma once\n#include \"narrowphase/cubic.h\"\n";
+  EXPECT_THAT(brokenRulesInTree(root), ElementsAre(HasSubstr("broadphase/detail/islands.h:2: ")));
+  std::filesystem::remove_all(root);
+}
+
+}  // namespace
+}  // namespace springtower
