@@ -49,7 +49,7 @@ Subject subjectOf(const CornerArray& position) {
     medianCentre[a] = median();
   }
   for (std::size_t b = 0; b < blocks; ++b) values[b] = (centre(position, b) - medianCentre).norm();
-  const double far = 6.0 * median() + 2.0 * (position.at(0, 0) - position.at(0, 7)).norm();
+  const double far = 4.0 * median() + 2.0 * (position.at(0, 0) - position.at(0, 7)).norm();
   Subject subject;
   Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity());
   Vec3 high = -low;
@@ -160,7 +160,7 @@ class Painter {
     const double away = std::hypot(point.x() - subject_.middle.x(), point.y() - subject_.middle.y()) / subject_.radius;
     const double fade = std::clamp(2.0 - 0.75 * away, 0.0, 1.0);
     if (fade <= 0.0) return kBackground;
-    const bool onLine = std::min(toLine(point.x()), toLine(point.y())) < 0.018 * square_;
+    const bool onLine = std::min(toLine(point.x()), toLine(point.y())) < std::min(0.018 * square_, 0.0016 * subject_.radius);
     const Colour plain = onLine ? kGridColour : kFloorColour;
     const Colour shaded = plain * (isLit(point, column, line) ? 1.0 : 0.80);
     return kBackground + fade * fade * (3.0 - 2.0 * fade) * (shaded - kBackground);

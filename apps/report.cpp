@@ -85,7 +85,7 @@ Json reportJson(const Simulation& simulation, const RunResult& result, int threa
   report["tolerance_m"] = simulation.tolerance_m;
   report["stiffness_n_m"] = simulation.contactStiffness_n_m;
   report["spring_stiffness_n_m"] = simulation.springStiffness_n_m;
-  report["substeps"] = simulation.substeps;
+  report["substeps"] = result.substeps;
   report["threads"] = threads;
 
   report["stands"] = result.standing.stands;
@@ -130,7 +130,7 @@ void printResult(const Simulation& simulation, const RunResult& result, int thre
   row("tolerance", fmt::format("{:.4g} mm{}", kMillimetres * simulation.tolerance_m,
                                settings.substeps > 0 && !settings.toleranceGiven ? ", as the substeps allow" : ""));
   row("contact stiffness", fmt::format("{:.4g} kN/m", 1e-3 * simulation.contactStiffness_n_m));
-  row("substeps", fmt::format("{} in the last frame, {} in all", simulation.substeps, result.counters.steps));
+  row("substeps", fmt::format("{} in the last awake frame, {} in all", result.substeps, result.counters.steps));
   if (result.standing.stands) {
     row("stands", "yes");
   } else {

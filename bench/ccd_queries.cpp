@@ -38,7 +38,7 @@ constexpr const char* kFooter =
 
 struct Options {
   std::string path;
-  QueryKind kind = QueryKind::PointTriangle;
+  QueryKind kind = QueryKind::pointTriangle;
   std::string out;
 };
 
@@ -138,7 +138,7 @@ int runProgram(int argc, char** argv) {
     if (error.get_exit_code() == 0) return program.exit(error);
     return complain(std::string(error.what()) + " (try 'ccd_queries --help')", kBadInput);
   }
-  options.kind = kind == "vf" ? QueryKind::PointTriangle : QueryKind::EdgeEdge;
+  options.kind = kind == "vf" ? QueryKind::pointTriangle : QueryKind::edgeEdge;
   const std::vector<CollisionQuery> queries = readCollisionQueries(options.path);
   std::ofstream file;
   if (!options.out.empty()) {

@@ -29,18 +29,18 @@ struct Settings {
   int substeps = 0;             ///< steps a frame; 0 takes them from the tolerance
   bool toleranceGiven = false;  ///< whether the user named a tolerance; with substeps alone the largest stable stiffness is taken
   bool forceUnstable = false;   ///< allow a tolerance and substeps that do not fit together
-  double stepMargin = 0.85;     ///< fraction of the stability limit that is used
+  double stepMargin = 0.95;     ///< fraction of the stability limit that is used
   double springRatio = 1.0;     ///< stiffness of an upright edge spring over that of a contact
   double tangentialRatio = 0.8;  ///< tangential over normal contact stiffness; wood's Mindlin ratio is 2(1-nu)/(2-nu), about 0.8
   double viscoelasticRatio = 0.3;    ///< stiffness of the contact's relaxing branch over its lasting one; damps a tower's sway
-  double viscoelasticTime_s = 0.03;  ///< s; relaxation time of that branch
+  double viscoelasticTime_s = 0.05;  ///< s; relaxation time of that branch
   double dampingTime_s = 3e-5;       ///< s; dashpot over stiffness, of springs and contacts; sets the rebound and damps ringing
   double impactPenetration = 8.0;    ///< largest penetration aimed at in an impact, in tolerances
   bool continuousTests = true;       ///< find collisions by the cubic tests; off shows what a discrete method misses
   double restSpeed =
-      5e-3;                ///< in sqrt(g h); a block slower than this (corner speed of its rigid motion) is a candidate for sleep
+      2.5e-4;              ///< in sqrt(g h); a block slower than this (corner speed of its rigid motion) is a candidate for sleep
   double restTime = 12.0;  ///< in sqrt(h / g); how long it must have been at rest
-  double restImbalance = 1e-4;      ///< in block weights; largest mean force (or torque over h) that does not start a motion
+  double restImbalance = 2e-5;      ///< in block weights; largest mean force (or torque over h) that does not start a motion
   double reportRestitution = 0.1;   ///< e of the report's impulses (Eq. 2.11)
   double reportFrictionDrag = 5.0;  ///< 1/s; the report's drag on contact points, per unit of particle mass (report 5.7.2)
   double reportDisableDistance_m = 2e-4;  ///< m; the report's threshold on the summed travel of a block's particles (its

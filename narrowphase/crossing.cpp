@@ -40,7 +40,9 @@ bool overlap(const Sweep& p, const Sweep& q) {
   return true;
 }
 
-MovingPoint moving(const MovingBlock& block, int corner) { return {block.start.at(corner), block.end.at(corner)}; }
+MovingPoint moving(const MovingBlock& block, int corner) {
+  return {block.start.at(corner), block.end.at(corner)};
+}
 
 // The features of one block that come near the other's whole sweep: few, where two blocks stand side by side.
 template <std::size_t Features, std::size_t Count>

@@ -21,18 +21,21 @@ struct Integer {
   std::uint32_t size = 0;  ///< limbs in use; the last one is not zero; 0 for the number 0
   bool negative = false;
 
-  Integer() {}  // NOLINT: the limbs stay unset on purpose
-
-  Integer(std::int64_t value) : size(value != 0), negative(value < 0) {
+  Integer() {
+    // Not needed, but free, and compilers that unroll short loops no longer warn of limbs that are never read.
+    if constexpr (Capacity <= 4) limbs.fill(0);
+  }
+  Integer(std::int64_t value) : Integer() {
     const auto bits = static_cast<std::uint64_t>(value);
+    size = value != 0;
+    negative = value < 0;
     limbs[0] = negative ? 0 - bits : bits;
   }
-
   template <std::size_t Other>
-  Integer(const Integer<Other>& other) {
+  Integer(const Integer<Other>& other) : Integer() {
     assign(other);
   }
-  Integer(const Integer& other) { assign(other); }
+  Integer(const Integer& other) : Integer() { assign(other); }
   Integer& operator=(const Integer& other) {
     assign(other);
     return *this;

@@ -8,7 +8,8 @@ namespace springtower {
 
 namespace {
 
-// A corner of the clipped polygon: its place on the reference face (the clip's coordinates), on the incident face, and its height.
+// A corner of the clipped polygon: its place on the reference face (the clip's coordinates), on the incident face, and its
+// height.
 struct ClipPoint {
   double s;
   double t;
@@ -33,7 +34,8 @@ std::size_t clip(const Polygon& in, std::size_t count, double ClipPoint::*coordi
     const double insideP = 0.5 - side * p.*coordinate;
     const double insideQ = 0.5 - side * q.*coordinate;
     if (insideP >= 0.0) out[kept++] = p;
-    if ((insideP > 0.0 && insideQ < 0.0) || (insideP < 0.0 && insideQ > 0.0)) out[kept++] = between(p, q, insideP / (insideP - insideQ));
+    if ((insideP > 0.0 && insideQ < 0.0) || (insideP < 0.0 && insideQ > 0.0))
+      out[kept++] = between(p, q, insideP / (insideP - insideQ));
   }
   return kept;
 }
@@ -86,8 +88,8 @@ Vec3 pointOnIncidentFace(const Manifold& manifold, const CornerView& upper, std:
   return face.centre + manifold.u[point] * face.sideU + manifold.v[point] * face.sideV;
 }
 
-void buildFaceManifold(const CornerView& upper, const CornerView& lower, int incidentFace, int referenceFace, const ManifoldLimits& limits,
-                       Manifold& manifold) {
+void buildFaceManifold(const CornerView& upper, const CornerView& lower, int incidentFace, int referenceFace,
+                       const ManifoldLimits& limits, Manifold& manifold) {
   start(manifold, Touch::face, incidentFace, referenceFace);
   const FaceFrame incident = faceFrame(upper, incidentFace);
   const FaceFrame reference = faceFrame(lower, referenceFace);

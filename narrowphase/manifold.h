@@ -13,26 +13,28 @@ inline constexpr std::size_t kManifoldPoints = 8;  // two rectangles overlap in 
 /// What a pair of blocks (or a block and the floor) is to one another.
 enum class Touch : std::uint8_t { apart, face, edge };
 
-/// The contact manifold of a pair: where `upper` rests on `lower` (names only: up is along the normal), and the memory of each point.
-/// A face manifold holds points of upper's incident face against the plane of lower's reference face (or the floor); its points are
-/// corners of the overlap of the two faces: corners of one block over the other's face, and crossings of their edges. An edge manifold is
-/// one point where two edges cross. Structure of arrays over the points, so that four points fill one SIMD register.
+/// The contact manifold of a pair: where `upper` rests on `lower` (names only: up is along the normal), and the memory of each
+/// point. A face manifold holds points of upper's incident face against the plane of lower's reference face (or the floor); its
+/// points are corners of the overlap of the two faces: corners of one block over the other's face, and crossings of their edges.
+/// An edge manifold is one point where two edges cross. Structure of arrays over the points, so that four points fill one SIMD
+/// register.
 struct Manifold {
-  alignas(32) std::array<double, kManifoldPoints> u{};         ///< place on the incident face along its first side, -1/2..1/2
-  alignas(32) std::array<double, kManifoldPoints> v{};         ///< and along its second side
-  alignas(32) std::array<double, kManifoldPoints> stretchX{};  ///< the friction anchor: elastic tangential displacement of upper, m
+  alignas(32) std::array<double, kManifoldPoints> u{};  ///< place on the incident face along its first side, -1/2..1/2
+  alignas(32) std::array<double, kManifoldPoints> v{};  ///< and along its second side
+  alignas(
+      32) std::array<double, kManifoldPoints> stretchX{};  ///< the friction anchor: elastic tangential displacement of upper, m
   alignas(32) std::array<double, kManifoldPoints> stretchY{};
   alignas(32) std::array<double, kManifoldPoints> stretchZ{};
-  alignas(32) std::array<double, kManifoldPoints> relaxed{};   ///< depth that the viscoelastic branch has forgotten, m
-  alignas(32) std::array<double, kManifoldPoints> offset{};    ///< depth at which the point pushes nothing yet, m
-  alignas(32) std::array<double, kManifoldPoints> scale{};     ///< its stiffness over the resting one, >= 1 after an impact
-  alignas(32) std::array<double, kManifoldPoints> live{};      ///< 1 where it touches, 0 where not (a double, to serve as a lane)
-  alignas(32) std::array<double, kManifoldPoints> sliding{};   ///< 1 where it slides
+  alignas(32) std::array<double, kManifoldPoints> relaxed{};  ///< depth that the viscoelastic branch has forgotten, m
+  alignas(32) std::array<double, kManifoldPoints> offset{};   ///< depth at which the point pushes nothing yet, m
+  alignas(32) std::array<double, kManifoldPoints> scale{};    ///< its stiffness over the resting one, >= 1 after an impact
+  alignas(32) std::array<double, kManifoldPoints> live{};     ///< 1 where it touches, 0 where not (a double, to serve as a lane)
+  alignas(32) std::array<double, kManifoldPoints> sliding{};  ///< 1 where it slides
   std::int32_t upper = -1;
-  std::int32_t lower = -1;                                     ///< -1: the floor
+  std::int32_t lower = -1;  ///< -1: the floor
   std::int32_t count = 0;
-  std::int8_t incidentFace = 0;                                ///< of upper; for an edge manifold its edge
-  std::int8_t referenceFace = 0;                               ///< of lower; for an edge manifold its edge
+  std::int8_t incidentFace = 0;   ///< of upper; for an edge manifold its edge
+  std::int8_t referenceFace = 0;  ///< of lower; for an edge manifold its edge
   Touch touch = Touch::apart;
 };
 
@@ -54,16 +56,17 @@ struct ManifoldLimits {
   double reach;        ///< points farther than this above the reference plane are left out
 };
 
-/// Overlap of upper's incident face with lower's reference face: clips the one against the sides of the other (Sutherland & Hodgman 1974)
-/// and merges points that coincide. Fills u, v, count and names; the memory of all points starts empty. No overlap gives count 0.
-void buildFaceManifold(const CornerView& upper, const CornerView& lower, int incidentFace, int referenceFace, const ManifoldLimits& limits,
-                       Manifold& manifold);
+/// Overlap of upper's incident face with lower's reference face: clips the one against the sides of the other (Sutherland &
+/// Hodgman 1974) and merges points that coincide. Fills u, v, count and names; the memory of all points starts empty. No overlap
+/// gives count 0.
+void buildFaceManifold(const CornerView& upper, const CornerView& lower, int incidentFace, int referenceFace,
+                       const ManifoldLimits& limits, Manifold& manifold);
 
 /// The four corners of a block's lowest face against the floor z = 0; those higher than limits.reach are left out.
 void buildFloorManifold(const CornerView& upper, const ManifoldLimits& limits, Manifold& manifold);
 
-/// Hands the memory of an old manifold to the points of a new one of the same pair: each new point takes that of the nearest old point
-/// within `radius` (m, in space). Roles may have swapped. The corners are those of the blocks a manifold names as upper.
+/// Hands the memory of an old manifold to the points of a new one of the same pair: each new point takes that of the nearest old
+/// point within `radius` (m, in space). Roles may have swapped. The corners are those of the blocks a manifold names as upper.
 void carryMemory(const Manifold& old, const CornerView& oldUpper, Manifold& fresh, const CornerView& freshUpper, double radius);
 
 /// Place of a manifold's point in space, m: on the incident face (face manifolds only).

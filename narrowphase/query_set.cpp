@@ -103,7 +103,7 @@ std::vector<CollisionQuery> readCollisionQueries(const std::string& path) {
 
 TimeOfImpact answer(const CollisionQuery& query, QueryKind kind, DecidedBy* decidedBy) {
   const auto& [a, b, c, d] = query.points;
-  return kind == QueryKind::PointTriangle ? pointTriangleTimeOfImpact(a, b, c, d, decidedBy)
+  return kind == QueryKind::pointTriangle ? pointTriangleTimeOfImpact(a, b, c, d, decidedBy)
                                           : edgeEdgeTimeOfImpact(a, b, c, d, decidedBy);
 }
 

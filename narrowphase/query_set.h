@@ -9,7 +9,7 @@
 
 namespace springtower {
 
-enum class QueryKind { PointTriangle, EdgeEdge };
+enum class QueryKind { pointTriangle, edgeEdge };
 
 /// One continuous collision query with its exact answer.
 struct CollisionQuery {

@@ -35,7 +35,8 @@ struct Interval {
 
 Interval project(const Vec3& normal, const CornerView& block) {
   std::array<double, kCorners> value;
-  for (std::size_t c = 0; c < kCorners; ++c) value[c] = normal.x() * block.x[c] + normal.y() * block.y[c] + normal.z() * block.z[c];
+  for (std::size_t c = 0; c < kCorners; ++c)
+    value[c] = normal.x() * block.x[c] + normal.y() * block.y[c] + normal.z() * block.z[c];
   Interval interval{value[0], value[0]};
   for (std::size_t c = 1; c < kCorners; ++c) {
     interval.least = std::min(interval.least, value[c]);

@@ -17,9 +17,9 @@ inline CornerView cornersOf(const CornerArray& array, std::size_t block) {
   return {array.values(0, block), array.values(1, block), array.values(2, block)};
 }
 
-/// Gap between two blocks along a unit direction `normal` that points from `lower` to `upper`, m; negative where they overlap. For
-/// corners that move linearly the gap along a fixed direction is concave in time (a minimum of linear functions), so a direction that
-/// separates at both ends of a step separates all through it: Baraff's witness (report 2.3.4).
+/// Gap between two blocks along a unit direction `normal` that points from `lower` to `upper`, m; negative where they overlap.
+/// For corners that move linearly the gap along a fixed direction is concave in time (a minimum of linear functions), so a
+/// direction that separates at both ends of a step separates all through it: Baraff's witness (report 2.3.4).
 double gapAlong(const Vec3& normal, const CornerView& upper, const CornerView& lower);
 
 /// What separates two blocks best, by the fifteen separating axes of two cuboids (report 2.3.3), on the blocks' actual corners.

@@ -138,7 +138,7 @@ bool isCertainContact(const MovingPolygon<Vertices>& polygon, const TimeInterval
   return changesSign && holdsOriginWhenCoplanar(wide);
 }
 
-enum class Outcome { Miss, Hit, Undecided };
+enum class Outcome { miss, hit, undecided };
 
 struct Refined {
   Outcome outcome;
@@ -163,14 +163,14 @@ Refined refine(BernsteinCubic cubic, const MovingPolygon<Vertices>& polygon) {
       dropped = isSeparated(part);
     }
     if (dropped) {
-      if (remaining == 0) return {Outcome::Miss, 1.0};
+      if (remaining == 0) return {Outcome::miss, 1.0};
       time = {ends[static_cast<std::size_t>(remaining)], ends[static_cast<std::size_t>(remaining - 1)]};
       --remaining;
       part = partOf(polygon, time);
     } else if ((time.to - time.from) * polygon.motion <= smallest) {
-      if (!isCertainContact(polygon, time)) return {Outcome::Undecided, time.from};
+      if (!isCertainContact(polygon, time)) return {Outcome::undecided, time.from};
       clipToRoots(coplanarityCubic(part), time);
-      return {Outcome::Hit, time.from};
+      return {Outcome::hit, time.from};
     } else if (time.to - time.from > 0.5 * width) {
       ends[static_cast<std::size_t>(remaining)] = time.to;
       ++remaining;
@@ -180,7 +180,7 @@ Refined refine(BernsteinCubic cubic, const MovingPolygon<Vertices>& polygon) {
     }
     cubic = coplanarityCubic(part);
   }
-  return {Outcome::Undecided, time.from};
+  return {Outcome::undecided, time.from};
 }
 
 }  // namespace
@@ -189,15 +189,15 @@ TimeOfImpact pointTriangleTimeOfImpact(const MovingPoint& point, const MovingPoi
                                        DecidedBy* decidedBy) {
   DecidedBy ignored;
   DecidedBy& stage = decidedBy != nullptr ? *decidedBy : ignored;
-  stage = DecidedBy::Boxes;
+  stage = DecidedBy::boxes;
   if (!pointTriangleBoxesOverlap(point, a, b, c)) return {false, 1.0};
-  stage = DecidedBy::Cubic;
+  stage = DecidedBy::cubic;
   const BernsteinCubic cubic = coplanarityCubic(point, a, b, c);
   if (!mayVanish(cubic)) return {false, 1.0};
-  stage = DecidedBy::Refinement;
+  stage = DecidedBy::refinement;
   const Refined refined = refine<3>(cubic, differences<3>({&a, &b, &c}, {&point, &point, &point}));
-  if (refined.outcome != Outcome::Undecided) return {refined.outcome == Outcome::Hit, refined.time};
-  stage = DecidedBy::Exact;
+  if (refined.outcome != Outcome::undecided) return {refined.outcome == Outcome::hit, refined.time};
+  stage = DecidedBy::exact;
   return exactPointTriangleTimeOfImpact(point, a, b, c);
 }
 
@@ -205,15 +205,15 @@ TimeOfImpact edgeEdgeTimeOfImpact(const MovingPoint& a, const MovingPoint& b, co
                                   DecidedBy* decidedBy) {
   DecidedBy ignored;
   DecidedBy& stage = decidedBy != nullptr ? *decidedBy : ignored;
-  stage = DecidedBy::Boxes;
+  stage = DecidedBy::boxes;
   if (!edgeEdgeBoxesOverlap(a, b, c, d)) return {false, 1.0};
-  stage = DecidedBy::Cubic;
+  stage = DecidedBy::cubic;
   const BernsteinCubic cubic = coplanarityCubic(a, b, c, d);
   if (!mayVanish(cubic)) return {false, 1.0};
-  stage = DecidedBy::Refinement;
+  stage = DecidedBy::refinement;
   const Refined refined = refine<4>(cubic, differences<4>({&c, &d, &d, &c}, {&a, &a, &b, &b}));
-  if (refined.outcome != Outcome::Undecided) return {refined.outcome == Outcome::Hit, refined.time};
-  stage = DecidedBy::Exact;
+  if (refined.outcome != Outcome::undecided) return {refined.outcome == Outcome::hit, refined.time};
+  stage = DecidedBy::exact;
   return exactEdgeEdgeTimeOfImpact(a, b, c, d);
 }
 

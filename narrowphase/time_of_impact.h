@@ -13,10 +13,10 @@ struct TimeOfImpact {
 
 /// What decided a query, in the order in which it is tried; for counting.
 enum class DecidedBy {
-  Boxes,       ///< the swept boxes do not meet
-  Cubic,       ///< the coplanarity cubic has no root in [0, 1]
-  Refinement,  ///< root isolation in floating point with error bounds
-  Exact        ///< exact arithmetic (exact_time_of_impact.h)
+  boxes,       ///< the swept boxes do not meet
+  cubic,       ///< the coplanarity cubic has no root in [0, 1]
+  refinement,  ///< root isolation in floating point with error bounds
+  exact        ///< exact arithmetic (exact_time_of_impact.h)
 };
 
 /// The stated error e of a time of impact: at the reported time the features are no farther apart than kContactError times the

@@ -9,13 +9,13 @@
 
 namespace springtower {
 
-// Contacts see a block through its affine part: centre C and the three mean edges E_x, E_y, E_z, 12 of its 24 freedoms. A point with block
-// coordinates xi (each -1/2 .. 1/2) lies at C + sum xi_a E_a, which is the mean of the corners with weights 1/8 + sum s_a xi_a / 4. Forces
-// go back with the same weights, so momentum is kept and what no contact can feel (warped faces) is never excited; and a corner resists
-// with an inverse mass of 10/m instead of 22/m, which lengthens the stable step.
+// Contacts see a block through its affine part: centre C and the three mean edges E_x, E_y, E_z, 12 of its 24 freedoms. A point
+// with block coordinates xi (each -1/2 .. 1/2) lies at C + sum xi_a E_a, which is the mean of the corners with weights 1/8 + sum
+// s_a xi_a / 4. Forces go back with the same weights, so momentum is kept and what no contact can feel (warped faces) is never
+// excited; and a corner resists with an inverse mass of 10/m instead of 22/m, which lengthens the stable step.
 
-/// Affine part of a field on a block's corners: positions (m), velocities (m/s), or, as sums, forces (N): there `centre` is the total force
-/// and `side[a]` the sum of forces times xi_a.
+/// Affine part of a field on a block's corners: positions (m), velocities (m/s), or, as sums, forces (N): there `centre` is the
+/// total force and `side[a]` the sum of forces times xi_a.
 struct AffineField {
   std::array<double, 3> centre{};
   std::array<std::array<double, 3>, 3> side{};  ///< [axis a][component]
@@ -28,7 +28,8 @@ struct BlockFrame {
   std::array<std::array<double, 3>, 3> normal{};  ///< unit; of the faces across axis a, towards its positive side
 };
 
-/// Axes of each face: the one it lies across, its side (-1/2 or 1/2) on it, and the axes of the face's own u and v (see kFaceCorners).
+/// Axes of each face: the one it lies across, its side (-1/2 or 1/2) on it, and the axes of the face's own u and v (see
+/// kFaceCorners).
 struct FaceAxes {
   std::size_t across;
   double side;

@@ -10,8 +10,8 @@ namespace springtower {
 
 namespace {
 
-// Two blocks touch along the face normals while these are within this of parallel: an edge direction that separates slightly tilted
-// crossed blocks a little better would turn four points into one (cosine of 18 degrees).
+// Two blocks touch along the face normals while these are within this of parallel: an edge direction that separates slightly
+// tilted crossed blocks a little better would turn four points into one (cosine of 18 degrees).
 constexpr double kFaceCosine = 0.951;
 
 ManifoldLimits limitsOf(const Simulation& simulation) {
@@ -20,8 +20,8 @@ ManifoldLimits limitsOf(const Simulation& simulation) {
 }
 
 // The overlap of the faces along the normal of one of them: b's if `referenceIsB`, else a's.
-void faceManifold(const Separation& separation, const CornerView& a, const CornerView& b, const ManifoldLimits& limits, const NearPair& pair,
-                  bool referenceIsB, Manifold& fresh) {
+void faceManifold(const Separation& separation, const CornerView& a, const CornerView& b, const ManifoldLimits& limits,
+                  const NearPair& pair, bool referenceIsB, Manifold& fresh) {
   const CornerView& incidentBlock = referenceIsB ? a : b;
   const Vec3 towardsIncident = referenceIsB ? separation.normalFaceB : Vec3(-separation.normalFaceA);
   fresh.upper = referenceIsB ? pair.a : pair.b;
@@ -41,10 +41,10 @@ void edgeManifold(const Separation& separation, const NearPair& pair, Manifold& 
   fresh.scale.fill(1.0);
 }
 
-// The faces or edges that touch, given what separates the blocks best. A face that was the reference stays so until the other is clearly
-// better, and faces are preferred to edges. Where the faces have no common outline the next best direction is taken.
-void chooseManifold(const Separation& separation, const CornerView& a, const CornerView& b, const ManifoldLimits& limits, double slack,
-                    const NearPair& pair, Manifold& fresh) {
+// The faces or edges that touch, given what separates the blocks best. A face that was the reference stays so until the other is
+// clearly better, and faces are preferred to edges. Where the faces have no common outline the next best direction is taken.
+void chooseManifold(const Separation& separation, const CornerView& a, const CornerView& b, const ManifoldLimits& limits,
+                    double slack, const NearPair& pair, Manifold& fresh) {
   const bool wasA = pair.manifold.touch == Touch::face && pair.manifold.lower == pair.a;
   const bool wasB = pair.manifold.touch == Touch::face && pair.manifold.lower == pair.b;
   const bool referenceIsB = separation.faceB + (wasB ? slack : 0.0) >= separation.faceA + (wasA ? slack : 0.0);
@@ -89,7 +89,9 @@ void keepMemory(const Manifold& old, const CornerArray& position, double radius,
               cornersOf(position, static_cast<std::size_t>(fresh.upper)), radius);
 }
 
-double lowestCorner(const CornerView& block) { return *std::min_element(block.z, block.z + kCorners); }
+double lowestCorner(const CornerView& block) {
+  return *std::min_element(block.z, block.z + kCorners);
+}
 
 void watchFloor(IslandStep& step, NearPair& pair, Counters& counters) {
   const auto block = static_cast<std::size_t>(pair.a);
@@ -114,7 +116,9 @@ void watchFloor(IslandStep& step, NearPair& pair, Counters& counters) {
 
 }  // namespace
 
-double refreshTravel(const Simulation& simulation) { return kRefreshTravel * simulation.lengths.blockHeight_m; }
+double refreshTravel(const Simulation& simulation) {
+  return kRefreshTravel * simulation.lengths.blockHeight_m;
+}
 
 void watchApart(IslandStep& step, NearPair& pair, Counters& counters) {
   if (pair.b < 0) {

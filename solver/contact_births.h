@@ -4,8 +4,8 @@
 
 namespace springtower {
 
-/// Looks at a pair that was apart and whose margin is used up, after a step: a direction that separates the blocks all through the step
-/// renews the margin; otherwise the cubic tests decide, and if features meet a contact is born.
+/// Looks at a pair that was apart and whose margin is used up, after a step: a direction that separates the blocks all through
+/// the step renews the margin; otherwise the cubic tests decide, and if features meet a contact is born.
 void watchApart(IslandStep& step, NearPair& pair, Counters& counters);
 
 /// Renews the manifold of a touching pair from the positions now, keeping its memory; lets the pair go when it has parted.

@@ -54,21 +54,26 @@ struct LawStep {
 SPRINGTOWER_INLINE LawStep lawStep(const Manifold& m, const ContactLaw& law, const ContactStep& step, double reducedMass) {
   const double aim = law.impactPenetration_m;
   const double stiffness = m.lower < 0 ? law.floorStiffness_n_m : law.stiffness_n_m;
-  return {law, step, stiffness, reducedMass / (stiffness * aim * aim), 1.0 / (1.0 + step.advance_s / law.scaleTime_s),
+  return {law,
+          step,
+          stiffness,
+          reducedMass / (stiffness * aim * aim),
+          1.0 / (1.0 + step.advance_s / law.scaleTime_s),
           step.advance_s / (law.relaxingTime_s + step.advance_s)};
 }
 
-// The contact law on four points. `relative` is the velocity of upper against lower, `carried` the one that moved them since the memory
-// was last brought up to date; `inUse` is 1 for lanes that hold a point.
-SPRINGTOWER_INLINE void pointLaw(const LawStep& s, const Lanes& depth, const Lanes* relative, const Lanes* carried, const double* normal,
-                                 const Lanes& inUse, PointLanes& p) {
+// The contact law on four points. `relative` is the velocity of upper against lower, `carried` the one that moved them since the
+// memory was last brought up to date; `inUse` is 1 for lanes that hold a point.
+SPRINGTOWER_INLINE void pointLaw(const LawStep& s, const Lanes& depth, const Lanes* relative, const Lanes* carried,
+                                 const double* normal, const Lanes& inUse, PointLanes& p) {
   const Lanes zero = {0.0, 0.0, 0.0, 0.0};
   const Lanes one = zero + 1.0;
   const ContactLaw& law = s.law;
   const Lanes closing = -(relative[0] * normal[0] + relative[1] * normal[1] + relative[2] * normal[2]);
 
-  // A point that is reached in this step starts with no force: its offset is the depth it is found at, so it adds no energy. It is
-  // stiffened so that its impact stops within the depth aimed at. The offset shrinks as the point lifts, where it stores nothing.
+  // A point that is reached in this step starts with no force: its offset is the depth it is found at, so it adds no energy. It
+  // is stiffened so that its impact stops within the depth aimed at. The offset shrinks as the point lifts, where it stores
+  // nothing.
   const LaneMask touching = (depth > zero) & (inUse > zero);
   const LaneMask known = touching & (p.live > zero);
   Lanes impact = s.impactFactor * closing * closing;
@@ -81,7 +86,8 @@ SPRINGTOWER_INLINE void pointLaw(const LawStep& s, const Lanes& depth, const Lan
 
   const Lanes elastic = depth - p.offset;
   const Lanes relaxed = p.relaxed + (elastic - p.relaxed) * s.relaxGain;
-  const Lanes pushedOut = elastic * (1.0 + 1.0 / std::max(law.relaxingRatio, kLeastRelaxingRatio));  // beyond this the branch would pull
+  const Lanes pushedOut =
+      elastic * (1.0 + 1.0 / std::max(law.relaxingRatio, kLeastRelaxingRatio));  // beyond this the branch would pull
   p.relaxed = known ? (relaxed < pushedOut ? relaxed : pushedOut) : zero;
   const Lanes stiffness = s.stiffness * p.scale;
   Lanes push = stiffness * (elastic + law.relaxingRatio * (elastic - p.relaxed) + law.dampingTime_s * closing);
@@ -160,8 +166,8 @@ SPRINGTOWER_INLINE void place(const Lanes& total, double sign, const FaceAxes& f
 }
 
 template <bool Floor, bool SameMotion>
-SPRINGTOWER_INLINE void faceForces(Manifold& m, const ContactSide& upper, const ContactSide& lower, const LawStep& law, bool commit,
-                                   PairForce& result, PointForces* report) {
+SPRINGTOWER_INLINE void faceForces(Manifold& m, const ContactSide& upper, const ContactSide& lower, const LawStep& law,
+                                   bool commit, PairForce& result, PointForces* report) {
   const FaceAxes& upperFace = kFaceAxes[static_cast<std::size_t>(m.incidentFace)];
   const FaceAxes& lowerFace = kFaceAxes[static_cast<std::size_t>(m.referenceFace)];
   FaceField placeUpper, motionUpper, carriedUpper, placeLower, motionLower, carriedLower;
@@ -267,11 +273,13 @@ SPRINGTOWER_INLINE double onEdge(const AffineField& field, const EdgeAxes& edge,
          t * field.side[edge.along][k];
 }
 
-SPRINGTOWER_INLINE double dot(const double* p, const double* q) { return p[0] * q[0] + p[1] * q[1] + p[2] * q[2]; }
+SPRINGTOWER_INLINE double dot(const double* p, const double* q) {
+  return p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
+}
 
 // Edges that cross: one point, whose normal is the edges' common normal and whose places are where they come closest.
-SPRINGTOWER_INLINE void edgeForces(Manifold& m, const ContactSide& upper, const ContactSide& lower, const LawStep& law, bool commit,
-                                   PairForce& result, PointForces* report) {
+SPRINGTOWER_INLINE void edgeForces(Manifold& m, const ContactSide& upper, const ContactSide& lower, const LawStep& law,
+                                   bool commit, PairForce& result, PointForces* report) {
   const EdgeAxes edgeUpper = edgeAxes(m.incidentFace);
   const EdgeAxes edgeLower = edgeAxes(m.referenceFace);
   const double* d1 = upper.frame->place.side[edgeUpper.along].data();
@@ -342,8 +350,8 @@ SPRINGTOWER_INLINE void evaluate(Manifold& m, const ContactSide& upper, const Co
 }  // namespace
 
 SPRINGTOWER_KERNEL
-void manifoldForces(Manifold& manifold, const ContactSide& upper, const ContactSide& lower, const ContactLaw& law, const ContactStep& step,
-                    double reducedMass_kg, bool commit, PairForce& result) {
+void manifoldForces(Manifold& manifold, const ContactSide& upper, const ContactSide& lower, const ContactLaw& law,
+                    const ContactStep& step, double reducedMass_kg, bool commit, PairForce& result) {
   const LawStep constants = lawStep(manifold, law, step, reducedMass_kg);
   evaluate(manifold, upper, lower, constants, commit, result, nullptr);
 }
@@ -362,11 +370,12 @@ double manifoldEnergy(const Manifold& manifold, const PointForces& points, const
   for (std::size_t i = 0; i < static_cast<std::size_t>(manifold.count); ++i) {
     const double elastic = points.depth[i] - manifold.offset[i];
     if (manifold.live[i] == 0.0 || elastic <= 0.0) continue;
-    const double lag = elastic - std::min(manifold.relaxed[i], elastic * (1.0 + 1.0 / std::max(law.relaxingRatio, kLeastRelaxingRatio)));
+    const double lag =
+        elastic - std::min(manifold.relaxed[i], elastic * (1.0 + 1.0 / std::max(law.relaxingRatio, kLeastRelaxingRatio)));
     const double stretch = manifold.stretchX[i] * manifold.stretchX[i] + manifold.stretchY[i] * manifold.stretchY[i] +
                            manifold.stretchZ[i] * manifold.stretchZ[i];
-    energy += 0.5 * stiffness * manifold.scale[i] *
-              (elastic * elastic + law.relaxingRatio * lag * lag + law.tangentialRatio * stretch);
+    energy +=
+        0.5 * stiffness * manifold.scale[i] * (elastic * elastic + law.relaxingRatio * lag * lag + law.tangentialRatio * stretch);
   }
   return energy;
 }

@@ -7,9 +7,9 @@
 
 namespace springtower {
 
-/// The law of a contact point, with its constants. In the normal direction a spring of stiffness k on the elastic depth e = depth - offset,
-/// a relaxing (Maxwell) branch beside it, and a dashpot; never pulling. Tangentially a spring on the anchor's stretch with a dashpot,
-/// bounded by Coulomb's cone (Cundall & Strack 1979): what the cone does not carry slides and is forgotten.
+/// The law of a contact point, with its constants. In the normal direction a spring of stiffness k on the elastic depth e = depth
+/// - offset, a relaxing (Maxwell) branch beside it, and a dashpot; never pulling. Tangentially a spring on the anchor's stretch
+/// with a dashpot, bounded by Coulomb's cone (Cundall & Strack 1979): what the cone does not carry slides and is forgotten.
 struct ContactLaw {
   double stiffness_n_m = 0.0;        ///< k between blocks, N/m
   double floorStiffness_n_m = 0.0;   ///< k on the floor, N/m
@@ -21,13 +21,13 @@ struct ContactLaw {
   double kineticFriction = 0.0;      ///< and while it slides
   double impactPenetration_m = 1.0;  ///< depth aimed at in an impact; decides how much a new contact is stiffened
   double scaleTime_s = 0.01;         ///< s in which that stiffening fades; lowering a stiffness only takes energy out
-  double offsetPerSlip = 0.0;        ///< how much of the offset fades per length of slip; its work is paid by the slip's own friction
+  double offsetPerSlip = 0.0;  ///< how much of the offset fades per length of slip; its work is paid by the slip's own friction
 };
 
 /// What changes from step to step.
 struct ContactStep {
-  double advance_s = 0.0;   ///< s by which the contact memory is behind the positions
-  double scaleMost = 1.0;   ///< most a contact that is born now may be stiffened
+  double advance_s = 0.0;  ///< s by which the contact memory is behind the positions
+  double scaleMost = 1.0;  ///< most a contact that is born now may be stiffened
 };
 
 /// Forces of one manifold on its two blocks, as sums over their affine coordinates (solver/block_frames.h), N.
@@ -36,8 +36,8 @@ struct PairForce {
   AffineField lower;
 };
 
-/// One block of a contact: its frame, how it moves, and the motion that carried it since the contact memory was last brought up to date (in
-/// the multi-stage methods not that of the state).
+/// One block of a contact: its frame, how it moves, and the motion that carried it since the contact memory was last brought up
+/// to date (in the multi-stage methods not that of the state).
 struct ContactSide {
   const BlockFrame* frame = nullptr;  ///< null for the floor
   const AffineField* motion = nullptr;
@@ -54,10 +54,10 @@ struct PointForces {
   Vec3 direction = Vec3::UnitZ();                ///< unit normal from lower to upper
 };
 
-/// Evaluates a manifold: advances a copy of its memory by `step.advance_s` and returns the forces. With `commit` the advanced memory is
-/// kept. `reducedMass_kg` is that of the two blocks. Precondition: the manifold is not apart.
-void manifoldForces(Manifold& manifold, const ContactSide& upper, const ContactSide& lower, const ContactLaw& law, const ContactStep& step,
-                    double reducedMass_kg, bool commit, PairForce& result);
+/// Evaluates a manifold: advances a copy of its memory by `step.advance_s` and returns the forces. With `commit` the advanced
+/// memory is kept. `reducedMass_kg` is that of the two blocks. Precondition: the manifold is not apart.
+void manifoldForces(Manifold& manifold, const ContactSide& upper, const ContactSide& lower, const ContactLaw& law,
+                    const ContactStep& step, double reducedMass_kg, bool commit, PairForce& result);
 
 /// The same for reports: evaluates without advancing or keeping anything.
 PointForces pointForces(const Manifold& manifold, const ContactSide& upper, const ContactSide& lower, const ContactLaw& law);

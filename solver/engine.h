@@ -7,6 +7,7 @@
 #include "core/state.h"
 #include "narrowphase/manifold.h"
 #include "solver/contact_force.h"
+#include "solver/report_state.h"
 #include "solver/simulation.h"
 
 #include <array>
@@ -15,24 +16,24 @@
 
 namespace springtower {
 
-/// A pair of near blocks a < b (or block a and the floor, b = -1), kept as long as their swept boxes overlap: how they touch, and until
-/// how much travel that need not be looked at again.
+/// A pair of near blocks a < b (or block a and the floor, b = -1), kept as long as their swept boxes overlap: how they touch, and
+/// until how much travel that need not be looked at again.
 struct NearPair {
   std::int32_t a = 0;
   std::int32_t b = -1;
   Manifold manifold;
-  Vec3 witness = Vec3::UnitZ();  ///< apart: a direction that separated them last, from b to a
-  double margin = 0.0;           ///< apart: their gap along it when last measured, m
-  double checkedTravel = 0.0;    ///< sum of both blocks' travel when last looked at, m
-  Vec3 restForce = Vec3::Zero(); ///< N on the block that fell asleep, when it did; what its partner must keep up
+  Vec3 witness = Vec3::UnitZ();   ///< apart: a direction that separated them last, from b to a
+  double margin = 0.0;            ///< apart: their gap along it when last measured, m
+  double checkedTravel = 0.0;     ///< sum of both blocks' travel when last looked at, m
+  Vec3 restForce = Vec3::Zero();  ///< N on the block that fell asleep, when it did; what its partner must keep up
 };
 
 /// One island's private record, kept by the island's smallest block so that it survives other islands' coming and going.
 struct BlockClock {
-  double lastDrift_s = 0.0;    ///< s; the step in which the block's positions last moved
-  double travel = 0.0;         ///< m; path length of the block's fastest corner, ever growing
-  double spectralRadius = 0.0; ///< 1/s2; largest eigenvalue of M^-1 K last found for the block's island
-  std::uint64_t contactSignature = 0;  ///< what that eigenvalue was computed for
+  double lastDrift_s = 0.0;            ///< s; the step in which the block's positions last moved
+  double travel = 0.0;                 ///< m; path length of the block's fastest corner, ever growing
+  double spectralRadius = 0.0;         ///< 1/s2; bound of the largest eigenvalue of M^-1 K of the block's island
+  std::uint64_t contactSignature = 0;  ///< what that bound was computed for
 };
 
 /// What is known of a block's rest: its rigid motion when the window that is running began.
@@ -50,52 +51,55 @@ inline constexpr std::size_t kParallelBlocks = 256;
 struct Engine {
   SortAndSweep sweep;
   SweptBoxes boxes;
-  std::vector<double> reach;               ///< m a block may travel before its swept box is spent, [blocks]
-  std::vector<double> travelAtSweep;       ///< m, [blocks]
-  bool swept = false;                      ///< whether the order of the sweep has been set up
+  std::vector<double> reach;          ///< m a block may travel before its swept box is spent, [blocks]
+  std::vector<double> travelAtSweep;  ///< m, [blocks]
+  bool swept = false;                 ///< whether the order of the sweep has been set up
   std::vector<BlockPair> sweptPairs;
-  std::vector<BlockPair> keys;             ///< working space: the pairs asked for, the floor as b = -1
-  std::vector<std::int32_t> awakeBlocks;   ///< ascending
+  std::vector<BlockPair> keys;            ///< working space: the pairs asked for, the floor as b = -1
+  std::vector<std::int32_t> awakeBlocks;  ///< ascending
   std::size_t awakeCount = 0;
-  std::vector<NearPair> pairs;             ///< by (a, b), the floor first for each a
-  std::vector<NearPair> pairsBefore;       ///< the same before the last merge; its storage is reused
+  std::vector<NearPair> pairs;        ///< by (a, b), the floor first for each a
+  std::vector<NearPair> pairsBefore;  ///< the same before the last merge; its storage is reused
   Islands islands;
-  std::vector<std::int32_t> pairStart;     ///< pairs of island i are islandPairs[pairStart[i] .. pairStart[i + 1]]
+  std::vector<std::int32_t> pairStart;  ///< pairs of island i are islandPairs[pairStart[i] .. pairStart[i + 1]]
   std::vector<std::int32_t> islandPairs;
   std::vector<std::int32_t> blockPairStart;  ///< pairs of block b are blockPairs[blockPairStart[b] .. blockPairStart[b + 1]]
   std::vector<std::int32_t> blockPairs;
-  std::vector<std::int32_t> cursor;        ///< working space of counting sorts
+  std::vector<std::int32_t> cursor;  ///< working space of counting sorts
   std::vector<BlockPair> touchingEdges;
   CornerArray force;                       ///< N, [blocks][8]
   std::vector<BlockFrame> frames;          ///< affine parts of the blocks at the stage being evaluated; of sleepers, as they lie
   std::vector<AffineField> motion;         ///< and of their velocities
   std::vector<AffineField> carriedMotion;  ///< and of the velocities that carried them, in the multi-stage methods
   std::vector<AffineField> contactForce;   ///< N, what contacts put on each block
-  CornerArray mode;                        ///< the stiffest mode found so far: start of the next power iteration
-  CornerArray previous;                    ///< m, positions at the start of the step, [blocks][8]
-  std::array<MotionState, 4> stage;        ///< states inside a step of the multi-stage methods; empty for the others
+  std::vector<double> springRadius;        ///< 1/s2, largest eigenvalue of M^-1 K of each block alone
+  std::vector<Eigen::Matrix4d>
+      contactMetric;     ///< 1/s2, working space: stiffness of each block's contacts on its affine part, over its mass
+  CornerArray previous;  ///< m, positions at the start of the step, [blocks][8]
+  std::array<MotionState, 4> stage;              ///< states inside a step of the multi-stage methods; empty for the others
   std::array<CornerArray, 4> stageAcceleration;  ///< m/s2, of the stages
-  CornerArray carried;                     ///< m/s, mean velocity of the last step of a multi-stage method
-  std::vector<PairForce> pairForce;        ///< N, by position in `pairs`; for islands that run on many threads
-  std::vector<BlockClock> clock;           ///< [blocks]
-  std::vector<std::int32_t> lostPartner;   ///< sleeping blocks whose awake neighbour went out of reach in this frame
-  std::vector<std::int32_t> toWake;        ///< working space
-  std::vector<std::int32_t> restless;      ///< working space
-  std::vector<std::int32_t> parent;        ///< working space of connectedBlocks
-  std::vector<std::uint8_t> joined;        ///< working space: 1 where a block touches a restless one, directly or through others
-  std::vector<RestWindow> rest;            ///< [blocks]
-  Vec3 gravitySlept = Vec3::Zero();        ///< m/s2, gravity when the last block fell asleep
-  MotionState frameStart;                  ///< what a frame that has to be run again starts from
-  CornerArray frameStartMode;
+  CornerArray carried;                           ///< m/s, mean velocity of the last step of a multi-stage method
+  std::vector<PairForce> pairForce;              ///< N, by position in `pairs`; for islands that run on many threads
+  std::vector<BlockClock> clock;                 ///< [blocks]
+  std::vector<std::int32_t> lostPartner;         ///< sleeping blocks whose awake neighbour went out of reach in this frame
+  std::vector<std::int32_t> toWake;              ///< working space
+  std::vector<std::int32_t> restless;            ///< working space
+  std::vector<std::int32_t> parent;              ///< working space of connectedBlocks
+  std::vector<std::uint8_t> joined;  ///< working space: 1 where a block touches a restless one, directly or through others
+  std::vector<RestWindow> rest;      ///< [blocks]
+  Vec3 gravitySlept = Vec3::Zero();  ///< m/s2, gravity when the last block fell asleep
+  ReportState report;                ///< of method `report`; empty for the others
+  MotionState frameStart;            ///< what a frame that has to be run again starts from
   std::vector<BlockClock> frameStartClock;
   std::vector<NearPair> frameStartPairs;
-  std::vector<Counters> chunkCounters;     ///< of ranges of pairs inside a large island
+  std::vector<Counters> chunkCounters;  ///< of ranges of pairs inside a large island
   std::vector<Counters> islandCounters;
   std::vector<StageTimes> islandTimes;
-  std::vector<int> islandOutcome;          ///< steps of each island, -1 where a block left its swept box
+  std::vector<int> islandOutcome;  ///< steps of each island, -1 where a block left its swept box
 };
 
-/// The velocities that carried the positions during the last step: those of the state, or the mean over the stages of a multi-stage method.
+/// The velocities that carried the positions during the last step: those of the state, or the mean over the stages of a
+/// multi-stage method.
 const CornerArray& carriedVelocities(const Simulation& simulation);
 
 }  // namespace springtower

@@ -49,8 +49,8 @@ struct Evaluation {
 void evaluatePair(IslandStep& step, const Evaluation& evaluation, Manifold& manifold, PairForce& force) {
   const ContactSide upper = sideOf(step.engine, manifold.upper, evaluation.sameMotion);
   const ContactSide lower = sideOf(step.engine, manifold.lower, evaluation.sameMotion);
-  manifoldForces(manifold, upper, lower, step.law, evaluation.contactStep, reducedMass(step.simulation.model, manifold), evaluation.commit,
-                 force);
+  manifoldForces(manifold, upper, lower, step.law, evaluation.contactStep, reducedMass(step.simulation.model, manifold),
+                 evaluation.commit, force);
 }
 
 void contactsInOrder(IslandStep& step, const Evaluation& evaluation) {
@@ -112,7 +112,8 @@ void addUserForces(IslandStep& step) {
 
 std::uint64_t pointsOf(const IslandStep& step) {
   std::uint64_t points = 0;
-  for (const std::int32_t at : step.pairs) points += static_cast<std::uint64_t>(step.engine.pairs[static_cast<std::size_t>(at)].manifold.count);
+  for (const std::int32_t at : step.pairs)
+    points += static_cast<std::uint64_t>(step.engine.pairs[static_cast<std::size_t>(at)].manifold.count);
   return points;
 }
 
@@ -135,7 +136,8 @@ void evaluateForces(IslandStep& step, const MotionState& state, const CornerArra
     contactsInOrder(step, evaluation);
   }
   clock.lap(Stage::contacts);
-  overBlocks(step, parallel, [&](Blocks blocks) { springForces(step.simulation.model, state, blocks, engine.contactForce, engine.force); });
+  overBlocks(step, parallel,
+             [&](Blocks blocks) { springForces(step.simulation.model, state, blocks, engine.contactForce, engine.force); });
   if (!step.simulation.scene.forces.empty()) addUserForces(step);
   clock.lap(Stage::springs);
   step.counters.springEvaluations += kSprings * step.blocks.size();

@@ -74,8 +74,9 @@ std::vector<ContactForce> contactForces(const Simulation& simulation) {
     const PointForces& points = now.points;
     for (std::size_t i = 0; i < static_cast<std::size_t>(m.count); ++i) {
       if (points.normal[i] <= 0.0) continue;
-      forces.push_back({static_cast<BlockId>(m.upper), static_cast<BlockId>(m.lower), points.place[i], points.lowerPlace[i], points.direction,
-                        points.normal[i], Vec3(points.friction[i][0], points.friction[i][1], points.friction[i][2]), points.depth[i],
+      forces.push_back({static_cast<BlockId>(m.upper), static_cast<BlockId>(m.lower), points.place[i], points.lowerPlace[i],
+                        points.direction, points.normal[i],
+                        Vec3(points.friction[i][0], points.friction[i][1], points.friction[i][2]), points.depth[i],
                         now.manifold.sliding[i] != 0.0});
     }
   }

@@ -3,24 +3,21 @@
 #include "solver/inertia.h"
 #include "solver/island_step.h"
 #include "solver/near_pairs.h"
+#include "solver/report_collisions.h"
 #include "solver/rest.h"
 #include "solver/stability.h"
 #include "solver/stiffness.h"
 
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <oneapi/tbb/parallel_for.h>
 #include <optional>
 
 namespace springtower {
 
 namespace {
 
-constexpr int kFirstIterations = 40;     // of the power iteration, from a mode that holds everything
-constexpr int kFollowingIterations = 5;  // when the contacts have changed a little since
-constexpr double kEigenvalueReserve = 1.05;  // the Rayleigh quotient comes from below
 constexpr int kMostSubsteps = 6000;
 
 // What may meet in an island during this frame.
@@ -85,16 +82,16 @@ int chooseSubsteps(IslandStep& step) {
   BlockClock& record = step.engine.clock[static_cast<std::size_t>(step.blocks.front())];
   const std::uint64_t signature = contactSignature(step.engine, step.pairs) ^ (step.blocks.size() << 1U);
   if (signature != record.contactSignature || record.spectralRadius == 0.0) {
-    const int iterations = record.spectralRadius == 0.0 ? kFirstIterations : kFollowingIterations;
-    record.spectralRadius = spectralRadius(simulation, step.blocks, step.pairs, iterations);
+    record.spectralRadius = spectralBound(simulation, step.blocks, step.pairs);
     record.contactSignature = signature;
   }
-  const double standing = kEigenvalueReserve * record.spectralRadius;
+  const double standing = record.spectralRadius;
   const double stiffness = simulation.contactStiffness_n_m * (1.0 + settings.viscoelasticRatio);
-  const Approach approach = approachOf(step);
+  const Approach approach = settings.method == Method::report ? Approach{} : approachOf(step);  // its contacts have no stiffness
   const double depth = settings.impactPenetration * simulation.tolerance_m;
-  const double wanted = approach.reducedMass * approach.speed * approach.speed / (depth * depth * simulation.contactStiffness_n_m);
-  const double born = stiffness * approach.cornerInverse;  // what one new contact at rest stiffness adds
+  const double wanted =
+      approach.reducedMass * approach.speed * approach.speed / (depth * depth * simulation.contactStiffness_n_m);
+  const double born = 2.0 * stiffness * approach.cornerInverse;  // what one new contact at rest stiffness adds
 
   double allowed = 0.0;  // largest eigenvalue the step bears
   int substeps = simulation.fixedSubsteps;
@@ -112,10 +109,18 @@ int chooseSubsteps(IslandStep& step) {
 
 void stepIsland(Method method, IslandStep& step) {
   switch (method) {
-    case Method::semiImplicitEuler: stepSemiImplicitEuler(step); return;
-    case Method::midpoint: stepMidpoint(step); return;
-    case Method::rungeKutta4: stepRungeKutta4(step); return;
-    case Method::report: stepReport(step); return;
+    case Method::semiImplicitEuler:
+      stepSemiImplicitEuler(step);
+      return;
+    case Method::midpoint:
+      stepMidpoint(step);
+      return;
+    case Method::rungeKutta4:
+      stepRungeKutta4(step);
+      return;
+    case Method::report:
+      stepReport(step);
+      return;
   }
 }
 
@@ -128,7 +133,7 @@ IslandOutcome runIsland(IslandStep& step) {
   const Simulation& simulation = step.simulation;
   const Settings& settings = simulation.scene.settings;
   IslandOutcome outcome;
-  if (simulation.frame == 0) findTouching(step);
+  if (simulation.frame == 0 && settings.method != Method::report) findTouching(step);
   outcome.substeps = chooseSubsteps(step);
   step.drift_s = settings.frame_s / outcome.substeps;
   BlockClock& record = step.engine.clock[static_cast<std::size_t>(step.blocks.front())];
@@ -140,8 +145,7 @@ IslandOutcome runIsland(IslandStep& step) {
     step.advance_s = last;
     stepIsland(settings.method, step);
     last = step.drift_s;
-    if (settings.method == Method::report) continue;
-    outcome.inside = updateContacts(step);
+    outcome.inside = settings.method == Method::report ? acceptReportStep(step) : updateContacts(step);
     if (!outcome.inside) break;
   }
   for (const std::int32_t block : step.blocks) step.engine.clock[static_cast<std::size_t>(block)].lastDrift_s = last;
@@ -154,7 +158,8 @@ void checkShapes(const Simulation& simulation, std::span<const std::int32_t> blo
   for (const std::int32_t block : blocks) {
     const auto b = static_cast<std::size_t>(block);
     const CornerArray& x = simulation.state.position;
-    const double volume = meanEdge(x, b, 0).cross(meanEdge(x, b, 1)).dot(meanEdge(x, b, 2)) / simulation.model.dimensions[b].prod();
+    const double volume =
+        meanEdge(x, b, 0).cross(meanEdge(x, b, 1)).dot(meanEdge(x, b, 2)) / simulation.model.dimensions[b].prod();
     if (volume > kLeastVolume) continue;
     throw DivergenceError(fmt::format("block {} diverged at {:.6f} s: it was turned inside out (volume {:.3g} of its own)", block,
                                       simulation.time_s, volume),
@@ -170,12 +175,14 @@ bool runIslands(Simulation& simulation) {
   engine.islandTimes.assign(islands, StageTimes{});
   engine.islandOutcome.assign(islands, 0);
   const ContactLaw law = contactLaw(simulation);
+  if (simulation.scene.settings.method == Method::report) prepareReportFrame(simulation);
   tbb::parallel_for(std::size_t{0}, islands, [&](std::size_t i) {
     const auto first = static_cast<std::size_t>(engine.pairStart[i]);
     IslandStep step{simulation,
                     engine,
                     engine.islands.island(i),
-                    std::span<const std::int32_t>(engine.islandPairs).subspan(first, static_cast<std::size_t>(engine.pairStart[i + 1]) - first),
+                    std::span<const std::int32_t>(engine.islandPairs)
+                        .subspan(first, static_cast<std::size_t>(engine.pairStart[i + 1]) - first),
                     engine.islandCounters[i],
                     engine.islandTimes[i],
                     law};
@@ -202,7 +209,6 @@ void stepFrame(Simulation& simulation) {
   if (engine.awakeCount > 0) {
     double margin = kSweepMargin * simulation.lengths.blockHeight_m;
     engine.frameStart = simulation.state;
-    engine.frameStartMode = engine.mode;
     engine.frameStartClock = engine.clock;
     findNearPairs(simulation, margin);
     engine.frameStartPairs = engine.pairs;
@@ -211,9 +217,9 @@ void stepFrame(Simulation& simulation) {
       ++simulation.counters.replayedFrames;
       margin *= 4.0;
       simulation.state = engine.frameStart;
-      engine.mode = engine.frameStartMode;
       engine.clock = engine.frameStartClock;
       engine.pairs = engine.frameStartPairs;
+      if (simulation.scene.settings.method == Method::report) rewindReportFrame(simulation);
       findNearPairs(simulation, margin);
       engine.frameStartPairs = engine.pairs;
     }

@@ -6,8 +6,8 @@
 namespace springtower {
 
 /// How forces on the eight corners of a block accelerate them: a_i = (own f_i - shared F) / m with F the sum of the f_i.
-/// `lumped`: eight masses m/8, own = 8, shared = 0 (the report's). `cuboid`: the mass matrix of a block whose particles carry a uniform
-/// cuboid, own = 24, shared = 2; its mass and moments of inertia are exactly the cuboid's.
+/// `lumped`: eight masses m/8, own = 8, shared = 0 (the report's). `cuboid`: the mass matrix of a block whose particles carry a
+/// uniform cuboid, own = 24, shared = 2; its mass and moments of inertia are exactly the cuboid's.
 struct InverseMass {
   double own;
   double shared;
@@ -17,12 +17,14 @@ constexpr InverseMass inverseMass(Inertia inertia) {
   return inertia == Inertia::cuboid ? InverseMass{24.0, 2.0} : InverseMass{8.0, 0.0};
 }
 
-/// Largest inverse mass, times the block's mass, of a point that contacts push: a corner of the block's affine part, whose weights on the
-/// eight corners have the squares' sum 1/2.
-constexpr double affineCornerInverseMass(Inertia inertia) { return 0.5 * inverseMass(inertia).own - inverseMass(inertia).shared; }
+/// Largest inverse mass, times the block's mass, of a point that contacts push: a corner of the block's affine part, whose
+/// weights on the eight corners have the squares' sum 1/2.
+constexpr double affineCornerInverseMass(Inertia inertia) {
+  return 0.5 * inverseMass(inertia).own - inverseMass(inertia).shared;
+}
 
-/// Inner product p^T M q of two fields on a block's corners, in units of its mass: the mean's part counts fully, what differs from the
-/// mean by 1/own for each corner.
+/// Inner product p^T M q of two fields on a block's corners, in units of its mass: the mean's part counts fully, what differs
+/// from the mean by 1/own for each corner.
 inline double massProduct(Inertia inertia, const CornerArray& p, const CornerArray& q, std::size_t block) {
   const InverseMass inverse = inverseMass(inertia);
   double total = 0.0;
@@ -43,9 +45,9 @@ inline double massProduct(Inertia inertia, const CornerArray& p, const CornerArr
   return total;
 }
 
-/// Rigid part of a block's motion: velocity of its centre and angular velocity, from momentum and angular momentum with the corners'
-/// own moments (in either inertia the corners' deviations carry equal mass, so their common factor drops out). The spread of all corners
-/// is the second moment the angular velocity is found from.
+/// Rigid part of a block's motion: velocity of its centre and angular velocity, from momentum and angular momentum with the
+/// corners' own moments (in either inertia the corners' deviations carry equal mass, so their common factor drops out). The
+/// spread of all corners is the second moment the angular velocity is found from.
 struct RigidMotion {
   Vec3 centre;
   Vec3 velocity;

@@ -7,8 +7,8 @@
 
 namespace springtower {
 
-/// One island on its way through one frame: what a method's step needs, and where it may write. Everything it touches belongs to the
-/// island alone, so islands run side by side.
+/// One island on its way through one frame: what a method's step needs, and where it may write. Everything it touches belongs to
+/// the island alone, so islands run side by side.
 struct IslandStep {
   Simulation& simulation;
   Engine& engine;
@@ -17,36 +17,40 @@ struct IslandStep {
   Counters& counters;
   StageTimes& times;
   ContactLaw law;
-  Vec3 gravity = Vec3::Zero();          ///< m/s2, at the step's time
-  double time_s = 0.0;                  ///< s, start of the step
-  double drift_s = 0.0;                 ///< s; step of the positions
-  double kick_s = 0.0;                  ///< s; step of the velocities: mean of the last and this drift (leapfrog with changing steps)
-  double advance_s = 0.0;               ///< s by which the contact memory is behind the positions
-  double scaleMost = 1.0;               ///< most a contact that is born now may be stiffened
+  Vec3 gravity = Vec3::Zero();  ///< m/s2, at the step's time
+  double time_s = 0.0;          ///< s, start of the step
+  double drift_s = 0.0;         ///< s; step of the positions
+  double kick_s = 0.0;          ///< s; step of the velocities: mean of the last and this drift (leapfrog with changing steps)
+  double advance_s = 0.0;       ///< s by which the contact memory is behind the positions
+  double scaleMost = 1.0;       ///< most a contact that is born now may be stiffened
 };
 
 /// Forces on the island's corners at `state`: springs, contacts and user forces (gravity is an acceleration and comes with the
-/// integration); fills engine.force for its blocks. `carried` are the velocities that moved the positions during the last `advance_s`;
-/// with `commit` the contact memory is brought up to date. Deterministic: contacts are summed in the order of the pairs for any number of
-/// threads.
+/// integration); fills engine.force for its blocks. `carried` are the velocities that moved the positions during the last
+/// `advance_s`; with `commit` the contact memory is brought up to date. Deterministic: contacts are summed in the order of the
+/// pairs for any number of threads.
 void evaluateForces(IslandStep& step, const MotionState& state, const CornerArray& carried, double advance_s, bool commit);
 
 /// Acceleration of one block's corners from engine.force and gravity: a_i = (own f_i - shared F) / m + g.
 void accelerate(const IslandStep& step, std::size_t block, double (&acceleration)[3][kCorners]);
 
-/// The methods: each advances simulation.state by one step and leaves the positions it started from in engine.previous. The contact
-/// memory is brought up to date once a step.
+/// The methods: each advances simulation.state by one step and leaves the positions it started from in engine.previous. The
+/// contact memory is brought up to date once a step.
 void stepSemiImplicitEuler(IslandStep& step);
 void stepMidpoint(IslandStep& step);
 void stepRungeKutta4(IslandStep& step);
 void stepReport(IslandStep& step);
 
+/// Adds the path of the step just taken to each block's travel. Returns false when a block has left its swept box, so that the
+/// frame has to be run again with a wider one. Throws DivergenceError when a position is not finite or moved too far.
+bool addTravel(IslandStep& step);
+
 /// Before the first frame: blocks that touch as they are placed get their contacts at once (cubic tests without motion).
 void findTouching(IslandStep& step);
 
-/// Looks after the pairs of an island once a step has moved it: finds new contacts by the cubic tests, renews manifolds whose blocks have
-/// moved, and lets go of those that parted. Adds the step's path to each block's travel. Returns false when a block has left its swept
-/// box, so that the frame has to be run again with a wider one. Throws DivergenceError.
+/// Looks after the pairs of an island once a step has moved it: finds new contacts by the cubic tests, renews manifolds whose
+/// blocks have moved, and lets go of those that parted. Adds the step's path to each block's travel. Returns false when a block
+/// has left its swept box, so that the frame has to be run again with a wider one. Throws DivergenceError.
 bool updateContacts(IslandStep& step);
 
 }  // namespace springtower

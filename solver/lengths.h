@@ -4,8 +4,8 @@ namespace springtower {
 
 // Sizes by which contacts are judged, in heights of the scene's lowest block, so that any size of block works unchanged.
 
-/// A manifold is renewed when its blocks have moved this far together. Between renewals its points are fixed on the upper block's face
-/// and slide over the lower one's, which is exact for the depth; only the outline of the overlap is late by this much.
+/// A manifold is renewed when its blocks have moved this far together. Between renewals its points are fixed on the upper block's
+/// face and slide over the lower one's, which is exact for the depth; only the outline of the overlap is late by this much.
 inline constexpr double kRefreshTravel = 0.02;
 /// Points higher above the reference face than this are left out; three renewals away, so none can be missed.
 inline constexpr double kManifoldReach = 0.06;
@@ -13,12 +13,13 @@ inline constexpr double kManifoldReach = 0.06;
 inline constexpr double kMergeRadius = 0.01;
 /// A new manifold's point takes over the memory of an old one within this; it is above what an outline can move between renewals.
 inline constexpr double kCarryRadius = 0.05;
-/// How much better the other block's face must separate before it becomes the reference; also what a crossing of edges must win by.
+/// How much better the other block's face must separate before it becomes the reference; also what a crossing of edges must win
+/// by.
 inline constexpr double kReferenceSlack = 0.005;
 /// A pair is let go when it is farther apart than this and no point touches.
 inline constexpr double kPartingGap = 1e-3;
-/// Stated error of the collision tests.
-inline constexpr double kContactError = 1e-6;
+/// A contact whose blocks overlapped by more than this before its step was born penetrating.
+inline constexpr double kBornError = 1e-6;
 /// Swept boxes are grown by this, for what contacts may add to the motion foreseen.
 inline constexpr double kSweepMargin = 0.1;
 /// A corner that moves farther than this share of its block's least side in one step has diverged.
@@ -26,7 +27,7 @@ inline constexpr double kMostTravelPerStep = 0.5;
 
 /// The scene's own scale, and the sizes above in metres.
 struct Lengths {
-  double blockHeight_m = 0.0;     ///< least side of any block
+  double blockHeight_m = 0.0;  ///< least side of any block
   double contactError_m = 0.0;
   double partingGap_m = 0.0;
 };

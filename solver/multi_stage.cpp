@@ -49,6 +49,8 @@ void copyCorners(const IslandStep& step, const CornerArray& from, CornerArray& t
   }
 }
 
-void rememberPositions(IslandStep& step) { copyCorners(step, step.simulation.state.position, step.engine.previous); }
+void rememberPositions(IslandStep& step) {
+  copyCorners(step, step.simulation.state.position, step.engine.previous);
+}
 
 }  // namespace springtower

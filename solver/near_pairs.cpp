@@ -9,12 +9,18 @@ namespace {
 
 using Key = std::tuple<std::int32_t, std::int32_t>;
 
-Key keyOf(const NearPair& pair) { return {pair.a, pair.b}; }
+Key keyOf(const NearPair& pair) {
+  return {pair.a, pair.b};
+}
 
-bool sleeps(const Simulation& simulation, std::int32_t block) { return block < 0 || simulation.asleep[static_cast<std::size_t>(block)] != 0; }
+bool sleeps(const Simulation& simulation, std::int32_t block) {
+  return block < 0 || simulation.asleep[static_cast<std::size_t>(block)] != 0;
+}
 
 // Whether a pair met before is kept though the sweep did not report it: nothing moves in it.
-bool dormant(const Simulation& simulation, const NearPair& pair) { return sleeps(simulation, pair.a) && sleeps(simulation, pair.b); }
+bool dormant(const Simulation& simulation, const NearPair& pair) {
+  return sleeps(simulation, pair.a) && sleeps(simulation, pair.b);
+}
 
 // A sleeping block whose awake neighbour has gone must be asked whether it still stands.
 void noteLostPartner(Simulation& simulation, const NearPair& pair) {
@@ -92,7 +98,9 @@ void listIslandPairs(Simulation& simulation) {
   engine.cursor.assign(engine.pairStart.begin(), engine.pairStart.end());
   for (std::size_t p = 0; p < engine.pairs.size(); ++p) {
     const std::int32_t island = islandOf(engine, engine.pairs[p]);
-    if (island >= 0) engine.islandPairs[static_cast<std::size_t>(engine.cursor[static_cast<std::size_t>(island)]++)] = static_cast<std::int32_t>(p);
+    if (island >= 0)
+      engine.islandPairs[static_cast<std::size_t>(engine.cursor[static_cast<std::size_t>(island)]++)] =
+          static_cast<std::int32_t>(p);
   }
 
   bool parallel = false;
@@ -110,7 +118,9 @@ void listIslandPairs(Simulation& simulation) {
   engine.blockPairs.resize(static_cast<std::size_t>(engine.blockPairStart[blocks]));
   engine.cursor.assign(engine.blockPairStart.begin(), engine.blockPairStart.end());
   for (std::size_t p = 0; p < engine.pairs.size(); ++p) {
-    forEachAwake(engine.pairs[p], [&](std::size_t b) { engine.blockPairs[static_cast<std::size_t>(engine.cursor[b]++)] = static_cast<std::int32_t>(p); });
+    forEachAwake(engine.pairs[p], [&](std::size_t b) {
+      engine.blockPairs[static_cast<std::size_t>(engine.cursor[b]++)] = static_cast<std::int32_t>(p);
+    });
   }
 }
 
@@ -124,8 +134,8 @@ void findNearPairs(Simulation& simulation, double margin_m) {
     for (std::size_t b = 0; b < simulation.asleep.size(); ++b) {
       if (simulation.asleep[b] == 0) engine.awakeBlocks.push_back(static_cast<std::int32_t>(b));
     }
-    computeSweptBoxes(simulation.state, engine.awakeBlocks, simulation.scene.gravity.magnitude, simulation.scene.settings.frame_s, margin_m,
-                      engine.boxes, engine.reach);
+    computeSweptBoxes(simulation.state, engine.awakeBlocks, simulation.scene.gravity.magnitude, simulation.scene.settings.frame_s,
+                      margin_m, engine.boxes, engine.reach);
     for (const std::int32_t block : engine.awakeBlocks) {
       const auto b = static_cast<std::size_t>(block);
       engine.travelAtSweep[b] = engine.clock[b].travel;

@@ -15,12 +15,16 @@ constexpr double kWakeForce = 0.02;
 // What gravity may have turned since the last block fell asleep, in g.
 constexpr double kWakeGravity = 1e-4;
 
-double timeScale(const Simulation& s) { return std::sqrt(s.lengths.blockHeight_m / std::max(s.scene.gravity.magnitude, 1e-9)); }
-double speedScale(const Simulation& s) { return std::sqrt(s.lengths.blockHeight_m * s.scene.gravity.magnitude); }
+double timeScale(const Simulation& s) {
+  return std::sqrt(s.lengths.blockHeight_m / std::max(s.scene.gravity.magnitude, 1e-9));
+}
+double speedScale(const Simulation& s) {
+  return std::sqrt(s.lengths.blockHeight_m * s.scene.gravity.magnitude);
+}
 
-// A block is at rest while its rigid motion is slow: compressing and ringing keep no block awake. It also has to be in balance: over each
-// window the mean force and torque, seen as what they do to the speed of its corners, stay below a small share of gravity. A block that
-// starts to tip is slow but out of balance.
+// A block is at rest while its rigid motion is slow: compressing and ringing keep no block awake. It also has to be in balance:
+// over each window the mean force and torque, seen as what they do to the speed of its corners, stay below a small share of
+// gravity. A block that starts to tip is slow but out of balance.
 void judge(Simulation& simulation, std::size_t b) {
   const Settings& settings = simulation.scene.settings;
   RestWindow& window = simulation.engine->rest[b];
@@ -104,7 +108,8 @@ void putGroupsToSleep(Simulation& simulation) {
   if (simulation.scene.settings.sleep == Sleep::on) {
     for (const NearPair& pair : engine.pairs) {
       if (pair.b < 0 || pair.manifold.touch == Touch::apart) continue;
-      const bool bothAwake = simulation.asleep[static_cast<std::size_t>(pair.a)] == 0 && simulation.asleep[static_cast<std::size_t>(pair.b)] == 0;
+      const bool bothAwake =
+          simulation.asleep[static_cast<std::size_t>(pair.a)] == 0 && simulation.asleep[static_cast<std::size_t>(pair.b)] == 0;
       if (bothAwake) engine.touchingEdges.push_back({pair.a, pair.b});
     }
   }
@@ -112,7 +117,8 @@ void putGroupsToSleep(Simulation& simulation) {
   connectedBlocks(engine.touchingEdges, engine.restless, engine.parent, engine.joined);
   for (NearPair& pair : engine.pairs) {
     const auto falls = [&](std::int32_t block) {
-      return block >= 0 && simulation.asleep[static_cast<std::size_t>(block)] == 0 && engine.joined[static_cast<std::size_t>(block)] == 0;
+      return block >= 0 && simulation.asleep[static_cast<std::size_t>(block)] == 0 &&
+             engine.joined[static_cast<std::size_t>(block)] == 0;
     };
     if (falls(pair.a) || falls(pair.b)) pair.restForce = forceOnA(simulation, pair);
   }

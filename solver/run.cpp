@@ -56,13 +56,12 @@ class Recorder {
     wall_ms_.push_back(1e3 * wall_s);
     processor_ms_.push_back(1e3 * processor_s);
     if (!unchanged && !result_.fallTime_s) judge(simulation);
+    if (simulation.substeps > 0) result_.substeps = simulation.substeps;
     const bool resting = atRest(simulation);
-    if (!result_.restTime_s && resting) {
-      result_.restTime_s = simulation.time_s;
-      settle(simulation);
-    } else if (!settled_ && simulation.time_s - startTime_s_ > kSettledTime_s - 0.5 * simulation.scene.settings.frame_s) {
-      settle(simulation);
-    }
+    const bool firstRest = resting && !result_.restTime_s;
+    if (firstRest) result_.restTime_s = simulation.time_s;
+    const double ran_s = simulation.time_s - startTime_s_ + 0.5 * simulation.scene.settings.frame_s;
+    if (firstRest || (!settled_ && ran_s > kSettledTime_s)) settle(simulation);
     if (!unchanged && options_.measureEveryFrame) {
       measure(simulation);
       if (!resting || !rested_) measureEnergy(energy(simulation).total());
@@ -187,7 +186,9 @@ RunResult runScene(Simulation& simulation, const RunOptions& options, const Fram
     if (afterFrame) afterFrame(simulation);
     const RunResult& soFar = recorder.soFar();
     if (options.stopWhenFallen && soFar.fallTime_s) break;
-    if (options.stopWhenAtRest && soFar.restTime_s && simulation.time_s >= *soFar.restTime_s + options.secondsAfterRest) {
+    const double halfFrame_s = 0.5 * simulation.scene.settings.frame_s;  // times are sums of frames, with their rounding
+    if (options.stopWhenAtRest && soFar.restTime_s &&
+        simulation.time_s > *soFar.restTime_s + options.secondsAfterRest - halfFrame_s) {
       break;
     }
   }

@@ -41,6 +41,7 @@ struct RunResult {
   std::optional<double> fallTime_s;        ///< first frame in which it had fallen
   std::optional<double> restTime_s;        ///< first frame in which all blocks were at rest (`atRest`)
   std::uint64_t frames = 0;                ///< of this run
+  int substeps = 0;                        ///< steps of the last frame in which a block was awake
   double simulated_s = 0.0;                ///< what this run added
   double wall_s = 0.0;                     ///< whole run, measures and callback included
   FrameTimes frameTimes;                   ///< ms

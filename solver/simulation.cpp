@@ -31,8 +31,8 @@ void placeBlock(const BlockSpec& spec, std::size_t b, Simulation& simulation) {
   }
 }
 
-// Largest eigenvalue of M^-1 K, 1/s2, that any contact set of this scene is expected to reach with a stiffness: the stiffest block's springs,
-// and contacts that press a block from both sides against neighbours that give way as easily.
+// Largest eigenvalue of M^-1 K, 1/s2, that any contact set of this scene is expected to reach with a stiffness: the stiffest
+// block's springs, and contacts that press a block from both sides against neighbours that give way as easily.
 double foreseenSpectralRadius(const Simulation& simulation, const Stiffness& stiffness) {
   const Settings& settings = simulation.scene.settings;
   BlockModel model = simulation.model;
@@ -46,13 +46,15 @@ double foreseenSpectralRadius(const Simulation& simulation, const Stiffness& sti
     springs = std::max(springs, blockSpectralRadius(model, settings.inertia, b));
   }
   constexpr double kPointsPerSide = 12.0;  // three neighbours of four points
-  const double compressionMass = inverseMass(settings.inertia).own / 2.0;  // 1/m times this, of the mode that presses a block flat
-  const double contact = std::max(2.0 * kPointsPerSide * stiffness.contact_n_m, 4.0 * stiffness.floor_n_m) / 4.0 * 2.0 * compressionMass;
+  const double compressionMass =
+      inverseMass(settings.inertia).own / 2.0;  // 1/m times this, of the mode that presses a block flat
+  const double contact =
+      std::max(2.0 * kPointsPerSide * stiffness.contact_n_m, 4.0 * stiffness.floor_n_m) / 4.0 * 2.0 * compressionMass;
   return springs + (1.0 + settings.viscoelasticRatio) * contact / lightest;
 }
 
-// Tolerance to stiffness to substeps, or the other way round (design section 2). Stiffness goes as one over the tolerance, the square of the
-// steps as the stiffness.
+// Tolerance to stiffness to substeps, or the other way round (design section 2). Stiffness goes as one over the tolerance, the
+// square of the steps as the stiffness.
 void chooseStiffness(Simulation& simulation) {
   const Settings& settings = simulation.scene.settings;
   LoadEstimate loads = estimateLoads(simulation.scene);
@@ -60,7 +62,8 @@ void chooseStiffness(Simulation& simulation) {
   simulation.tolerance_m = settings.tolerance_m;
   Stiffness stiffness = stiffnessForTolerance(loads, settings.tolerance_m);
   if (settings.substeps > 0) {
-    const double allowed = stableSpectralRadius(settings.frame_s / settings.substeps, settings.dampingTime_s, settings.stepMargin);
+    const double allowed =
+        stableSpectralRadius(settings.frame_s / settings.substeps, settings.dampingTime_s, settings.stepMargin);
     const double needed = foreseenSpectralRadius(simulation, stiffness);
     if (!settings.toleranceGiven) {
       loads.swayStiffness_n_m = 0.0;
@@ -68,10 +71,11 @@ void chooseStiffness(Simulation& simulation) {
       simulation.tolerance_m = unit / allowed;
       stiffness = stiffnessForTolerance(loads, simulation.tolerance_m);
     } else if (needed > allowed && !settings.forceUnstable) {
-      throw InputError(fmt::format("settings: found tolerance_m = {:g} with substeps = {}, allowed: at least {} substeps for this tolerance, or "
-                                   "force_unstable",
-                                   settings.tolerance_m, settings.substeps,
-                                   static_cast<int>(std::ceil(settings.frame_s / stableStep(needed, settings.dampingTime_s, settings.stepMargin)))));
+      throw InputError(fmt::format(
+          "settings: found tolerance_m = {:g} with substeps = {}, allowed: at least {} substeps for this tolerance, or "
+          "force_unstable",
+          settings.tolerance_m, settings.substeps,
+          static_cast<int>(std::ceil(settings.frame_s / stableStep(needed, settings.dampingTime_s, settings.stepMargin)))));
     }
   }
   simulation.contactStiffness_n_m = stiffness.contact_n_m;
@@ -99,10 +103,11 @@ Simulation::Simulation(const Scene& given) : scene(given), engine(std::make_uniq
     placeBlock(scene.blocks[b], b, *this);
     lengths.blockHeight_m = std::min(lengths.blockHeight_m, scene.blocks[b].dimensions.minCoeff());
   }
-  lengths.contactError_m = kContactError * lengths.blockHeight_m;
+  lengths.contactError_m = kBornError * lengths.blockHeight_m;
   lengths.partingGap_m = kPartingGap * lengths.blockHeight_m;
   chooseStiffness(*this);
-  for (std::size_t b = 0; b < count; ++b) setSprings(model, b, springStiffness_n_m, lengths.blockHeight_m, scene.settings.dampingTime_s);
+  for (std::size_t b = 0; b < count; ++b)
+    setSprings(model, b, springStiffness_n_m, lengths.blockHeight_m, scene.settings.dampingTime_s);
 
   Engine& e = *engine;
   e.boxes.resize(count);
@@ -112,15 +117,19 @@ Simulation::Simulation(const Scene& given) : scene(given), engine(std::make_uniq
   e.frames.resize(count);
   e.motion.resize(count);
   e.contactForce.resize(count);
-  e.mode.resize(count);
+  e.contactMetric.resize(count);
+  e.springRadius.resize(count);
   e.previous = state.position;
   e.clock.assign(count, BlockClock{});
   e.rest.resize(count);
   e.awakeCount = count;
   for (std::size_t b = 0; b < count; ++b) {
-    seedMode(e, b);
+    const bool asBefore =
+        b > 0 && scene.blocks[b].dimensions == scene.blocks[b - 1].dimensions && model.mass[b] == model.mass[b - 1];
+    e.springRadius[b] = asBefore ? e.springRadius[b - 1] : blockSpectralRadius(model, scene.settings.inertia, b);
     e.rest[b].centre = centre(state.position, b);
   }
+  if (scene.settings.method == Method::report) e.report.resize(count);
   if (scene.settings.method == Method::midpoint || scene.settings.method == Method::rungeKutta4) {
     e.carried.resize(count);
     e.carriedMotion.resize(count);

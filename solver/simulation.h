@@ -22,7 +22,7 @@ struct Simulation {
 
   Scene scene;
   BlockModel model;
-  Lengths lengths;                     ///< the scene's own scale
+  Lengths lengths;  ///< the scene's own scale
   MotionState state;
   double time_s = 0.0;                ///< simulated time, s
   std::uint64_t frame = 0;            ///< frames done

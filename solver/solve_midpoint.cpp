@@ -2,8 +2,8 @@
 
 namespace springtower {
 
-// The textbook midpoint method (report 4.3.2): forces half a step ahead move the whole step. Figure 4.12 as printed reads a stale state
-// there and is first order. Undamped it is never stable: amplitudes grow by (w dt)^4 / 8 a step.
+// The textbook midpoint method (report 4.3.2): forces half a step ahead move the whole step. Figure 4.12 as printed reads a stale
+// state there and is first order. Undamped it is never stable: amplitudes grow by (w dt)^4 / 8 a step.
 void stepMidpoint(IslandStep& step) {
   Engine& engine = step.engine;
   MotionState& state = step.simulation.state;

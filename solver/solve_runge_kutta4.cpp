@@ -29,7 +29,8 @@ void stepRungeKutta4(IslandStep& step) {
                                  stage[2].velocity.values(a, b)[c]) /
                                 6.0;
         const double acceleration =
-            (rate[0].values(a, b)[c] + 2.0 * rate[1].values(a, b)[c] + 2.0 * rate[2].values(a, b)[c] + rate[3].values(a, b)[c]) / 6.0;
+            (rate[0].values(a, b)[c] + 2.0 * rate[1].values(a, b)[c] + 2.0 * rate[2].values(a, b)[c] + rate[3].values(a, b)[c]) /
+            6.0;
         carried[c] = velocity;
         x[c] += step.drift_s * velocity;
         v[c] += step.drift_s * acceleration;

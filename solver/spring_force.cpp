@@ -14,8 +14,8 @@ struct Pull {
   Lanes x, y, z;
 };
 
-SPRINGTOWER_INLINE void pull(const Lanes* p, const Lanes* q, const Lanes* vp, const Lanes* vq, double restLength, double stiffness,
-                             double damping, Pull& result) {
+SPRINGTOWER_INLINE void pull(const Lanes* p, const Lanes* q, const Lanes* vp, const Lanes* vq, double restLength,
+                             double stiffness, double damping, Pull& result) {
   const Lanes dx = q[0] - p[0];
   const Lanes dy = q[1] - p[1];
   const Lanes dz = q[2] - p[2];
@@ -37,8 +37,8 @@ SPRINGTOWER_INLINE void shuffle(const Lanes& low, const Lanes& high, Lanes& to) 
 
 // Springs inside the lower and upper halves (groups 1, 2, 3): four first corners, their four partners, and the way back.
 template <int P0, int P1, int P2, int P3, int Q0, int Q1, int Q2, int Q3>
-SPRINGTOWER_INLINE void pullWithinHalves(const Lanes* low, const Lanes* high, const Lanes* vlow, const Lanes* vhigh, double restLength,
-                                         double stiffness, double damping, Lanes* first, Lanes* second) {
+SPRINGTOWER_INLINE void pullWithinHalves(const Lanes* low, const Lanes* high, const Lanes* vlow, const Lanes* vhigh,
+                                         double restLength, double stiffness, double damping, Lanes* first, Lanes* second) {
   Lanes p[3], q[3], vp[3], vq[3];
   for (int a = 0; a < 3; ++a) {
     shuffle<P0, P1, P2, P3>(low[a], high[a], p[a]);
@@ -56,8 +56,9 @@ SPRINGTOWER_INLINE void pullWithinHalves(const Lanes* low, const Lanes* high, co
 
 // Springs between the halves (groups 4 to 7): lower corner i with upper corner 4 + (i xor X).
 template <int X>
-SPRINGTOWER_INLINE void pullBetweenHalves(const Lanes* low, const Lanes* high, const Lanes* vlow, const Lanes* vhigh, double restLength,
-                                          double stiffness, double damping, Lanes* forceLow, Lanes* forceHigh) {
+SPRINGTOWER_INLINE void pullBetweenHalves(const Lanes* low, const Lanes* high, const Lanes* vlow, const Lanes* vhigh,
+                                          double restLength, double stiffness, double damping, Lanes* forceLow,
+                                          Lanes* forceHigh) {
   Lanes q[3], vq[3];
   for (int a = 0; a < 3; ++a) {
     shuffle<0 ^ X, 1 ^ X, 2 ^ X, 3 ^ X>(high[a], high[a], q[a]);
@@ -74,7 +75,8 @@ SPRINGTOWER_INLINE void pullBetweenHalves(const Lanes* low, const Lanes* high, c
   }
 }
 
-SPRINGTOWER_INLINE void blockSprings(const BlockModel& model, const MotionState& state, std::size_t b, const AffineField& contact, CornerArray& force) {
+SPRINGTOWER_INLINE void blockSprings(const BlockModel& model, const MotionState& state, std::size_t b, const AffineField& contact,
+                                     CornerArray& force) {
   Lanes low[3], high[3], vlow[3], vhigh[3], forceLow[3], forceHigh[3];
   for (std::size_t a = 0; a < 3; ++a) {
     load(state.position.values(a, b), low[a]);

@@ -1,6 +1,5 @@
 #include "solver/stability.h"
 
-#include "solver/block_frames.h"
 #include "solver/inertia.h"
 
 #include <Eigen/Eigenvalues>
@@ -11,153 +10,84 @@ namespace springtower {
 
 namespace {
 
-// K times the mode: the springs' part, along each spring's direction now (what changes of direction add is small against the stiffness).
-void springPart(const BlockModel& model, const CornerArray& position, const CornerArray& mode, std::size_t b, CornerArray& force) {
-  std::array<std::array<double, kCorners>, 3> sum{};
-  for (std::size_t group = 1; group <= kSpringGroups; ++group) {
-    const double stiffness = model.springStiffness[group - 1][b];
-    for (std::size_t c = 0; c < kCorners; ++c) {
-      const std::size_t partner = c ^ group;
-      if (partner < c) continue;
-      const Vec3 along = (position.at(b, partner) - position.at(b, c)).normalized();
-      const Vec3 f = stiffness * along.dot(mode.at(b, partner) - mode.at(b, c)) * along;
-      for (std::size_t a = 0; a < 3; ++a) {
-        sum[a][partner] += f[static_cast<Eigen::Index>(a)];
-        sum[a][c] -= f[static_cast<Eigen::Index>(a)];
-      }
-    }
-  }
-  for (std::size_t a = 0; a < 3; ++a) std::copy(sum[a].begin(), sum[a].end(), force.values(a, b));
+// A point's weights on a block's affine part, in its mass metric: the centre carries m, each side m/12 for a cuboid and m/4 for
+// eight lumps (8 corners of m/own, half a side away).
+Eigen::Vector4d affineWeights(const std::array<double, 3>& place, Inertia inertia, double mass) {
+  const double side = std::sqrt(0.5 * inverseMass(inertia).own);
+  return Eigen::Vector4d(1.0, side * place[0], side * place[1], side * place[2]) / std::sqrt(mass);
 }
 
-// Block coordinates of a manifold's point on its upper and its lower block, and its normal.
-struct PointPlace {
-  std::array<double, 3> upper;
-  std::array<double, 3> lower{};
-  Vec3 normal = Vec3::UnitZ();
-};
-
-Vec3 vectorOf(const std::array<double, 3>& values) { return {values[0], values[1], values[2]}; }
-
-std::array<double, 3> edgeMiddle(int edge) {
+std::array<double, 3> edgeEnd(int edge) {
   const int along = edge / 4;
-  const int first = along == 0 ? 1 : 0;
-  const int second = along == 2 ? 1 : 2;
-  std::array<double, 3> place{};
-  place[static_cast<std::size_t>(first)] = (edge & 1) != 0 ? 0.5 : -0.5;
-  place[static_cast<std::size_t>(second)] = (edge & 2) != 0 ? 0.5 : -0.5;
+  std::array<double, 3> place{0.5, 0.5, 0.5};
+  place[along == 0 ? 1 : 0] = (edge & 1) != 0 ? 0.5 : -0.5;
+  place[along == 2 ? 1 : 2] = (edge & 2) != 0 ? 0.5 : -0.5;
   return place;
 }
 
-PointPlace placeOf(const Manifold& m, const CornerArray& position, std::size_t point) {
-  PointPlace place;
-  const BlockFrame upper = blockFrame(position, static_cast<std::size_t>(m.upper));
-  if (m.touch == Touch::edge) {
-    // The ends of the edges resist least and bound any crossing.
-    const BlockFrame lower = blockFrame(position, static_cast<std::size_t>(m.lower));
-    const auto alongUpper = static_cast<std::size_t>(m.incidentFace / 4);
-    const auto alongLower = static_cast<std::size_t>(m.referenceFace / 4);
-    place.upper = edgeMiddle(m.incidentFace);
-    place.lower = edgeMiddle(m.referenceFace);
-    place.upper[alongUpper] = 0.5;
-    place.lower[alongLower] = 0.5;
-    place.normal = vectorOf(upper.place.side[alongUpper]).cross(vectorOf(lower.place.side[alongLower])).normalized();
-    return place;
-  }
-  const FaceAxes& face = kFaceAxes[static_cast<std::size_t>(m.incidentFace)];
-  place.upper[face.across] = face.side;
-  place.upper[face.u] = m.u[point];
-  place.upper[face.v] = m.v[point];
-  if (m.lower < 0) return place;
-  Vec3 at = vectorOf(upper.place.centre);
-  for (std::size_t a = 0; a < 3; ++a) at += place.upper[a] * vectorOf(upper.place.side[a]);
-  const BlockFrame lower = blockFrame(position, static_cast<std::size_t>(m.lower));
-  const FaceAxes& reference = kFaceAxes[static_cast<std::size_t>(m.referenceFace)];
-  const Vec3 arm = at - vectorOf(lower.place.centre);
-  for (std::size_t a = 0; a < 3; ++a) place.lower[a] = vectorOf(lower.dual[a]).dot(arm);
-  place.lower[reference.across] = reference.side;
-  place.normal = vectorOf(lower.normal[reference.across]);
-  return place;
-}
-
-// Weight of a corner in a point of the affine part.
-double weightOf(std::size_t corner, const std::array<double, 3>& place) {
-  double weight = 0.125;
-  for (std::size_t a = 0; a < 3; ++a) weight += 0.25 * cornerSide(corner, a) * place[a];
-  return weight;
-}
-
-void contactPart(const Simulation& simulation, const Manifold& m, const CornerArray& mode, CornerArray& force) {
+void addManifold(Simulation& simulation, const Manifold& m) {
+  Engine& engine = *simulation.engine;
   const Settings& settings = simulation.scene.settings;
-  const std::vector<std::uint8_t>& asleep = simulation.asleep;
   const auto upper = static_cast<std::size_t>(m.upper);
   const auto lower = static_cast<std::size_t>(std::max(m.lower, 0));
-  const bool moveUpper = asleep[upper] == 0;
-  const bool moveLower = m.lower >= 0 && asleep[lower] == 0;
+  const bool moveUpper = simulation.asleep[upper] == 0;
+  const bool moveLower = m.lower >= 0 && simulation.asleep[lower] == 0;
+  const double share = moveUpper && moveLower ? 1.0 : 0.5;  // against what cannot move there is no factor of two
+  const double stiffness = (m.lower < 0 ? simulation.floorStiffness_n_m : simulation.contactStiffness_n_m) *
+                           std::max(1.0 + settings.viscoelasticRatio, settings.tangentialRatio) * share;
+  const auto add = [&](std::size_t block, const std::array<double, 3>& place, double k) {
+    const Eigen::Vector4d w = affineWeights(place, settings.inertia, simulation.model.mass[block]);
+    engine.contactMetric[block] += k * w * w.transpose();
+  };
   for (std::size_t p = 0; p < static_cast<std::size_t>(m.count); ++p) {
-    const PointPlace place = placeOf(m, simulation.state.position, p);
-    Vec3 relative = Vec3::Zero();
-    for (std::size_t c = 0; c < kCorners; ++c) {
-      if (moveUpper) relative += weightOf(c, place.upper) * mode.at(upper, c);
-      if (moveLower) relative -= weightOf(c, place.lower) * mode.at(lower, c);
+    const double k = stiffness * m.scale[p];
+    if (m.touch == Touch::edge) {
+      if (moveUpper) add(upper, edgeEnd(m.incidentFace), k);
+      if (moveLower) add(lower, edgeEnd(m.referenceFace), k);
+      continue;
     }
-    const Vec3 normalPart = relative.dot(place.normal) * place.normal;
-    const double stiffness = (m.lower < 0 ? simulation.floorStiffness_n_m : simulation.contactStiffness_n_m) * m.scale[p];
-    const Vec3 f = stiffness * ((1.0 + settings.viscoelasticRatio) * normalPart + settings.tangentialRatio * (relative - normalPart));
-    for (std::size_t c = 0; c < kCorners; ++c) {
-      if (moveUpper) force.add(upper, c, weightOf(c, place.upper) * f);
-      if (moveLower) force.add(lower, c, -weightOf(c, place.lower) * f);
+    const FaceAxes& face = kFaceAxes[static_cast<std::size_t>(m.incidentFace)];
+    std::array<double, 3> place{};
+    place[face.across] = face.side;
+    place[face.u] = m.u[p];
+    place[face.v] = m.v[p];
+    if (moveUpper) add(upper, place, k);
+    if (!moveLower) continue;
+    const BlockFrame& above = engine.frames[upper];
+    const BlockFrame& below = engine.frames[lower];
+    std::array<double, 3> arm{};
+    for (std::size_t a = 0; a < 3; ++a) {
+      arm[a] = above.place.centre[a] - below.place.centre[a];
+      for (std::size_t i = 0; i < 3; ++i) arm[a] += place[i] * above.place.side[i][a];
     }
+    std::array<double, 3> foot{};
+    for (std::size_t i = 0; i < 3; ++i)
+      foot[i] = below.dual[i][0] * arm[0] + below.dual[i][1] * arm[1] + below.dual[i][2] * arm[2];
+    add(lower, foot, k);
   }
 }
 
 }  // namespace
 
-double spectralRadius(Simulation& simulation, std::span<const std::int32_t> blocks, std::span<const std::int32_t> pairs, int iterations) {
+double spectralBound(Simulation& simulation, std::span<const std::int32_t> blocks, std::span<const std::int32_t> pairs) {
   Engine& engine = *simulation.engine;
-  const Inertia inertia = simulation.scene.settings.inertia;
-  const InverseMass inverse = inverseMass(inertia);
-  double radius = 0.0;
-  for (int iteration = 0; iteration < iterations; ++iteration) {
-    for (const std::int32_t block : blocks) {
-      springPart(simulation.model, simulation.state.position, engine.mode, static_cast<std::size_t>(block), engine.force);
-    }
-    for (const std::int32_t at : pairs) {
-      const Manifold& manifold = engine.pairs[static_cast<std::size_t>(at)].manifold;
-      if (manifold.touch != Touch::apart) contactPart(simulation, manifold, engine.mode, engine.force);
-    }
-    double stored = 0.0;
-    double moving = 0.0;
-    double largest = 0.0;
-    for (const std::int32_t block : blocks) {
-      const auto b = static_cast<std::size_t>(block);
-      const double mass = simulation.model.mass[b];
-      moving += mass * massProduct(inertia, engine.mode, engine.mode, b);
-      for (std::size_t a = 0; a < 3; ++a) {
-        const double* f = engine.force.values(a, b);
-        double* d = engine.mode.values(a, b);
-        double sum = 0.0;
-        for (std::size_t c = 0; c < kCorners; ++c) {
-          stored += d[c] * f[c];
-          sum += f[c];
-        }
-        for (std::size_t c = 0; c < kCorners; ++c) {
-          d[c] = (inverse.own * f[c] - inverse.shared * sum) / mass;
-          largest = std::max(largest, std::abs(d[c]));
-        }
-      }
-    }
-    radius = moving > 0.0 ? stored / moving : 0.0;
-    if (!(largest > 0.0)) break;
-    const double scale = 1.0 / largest;
-    for (const std::int32_t block : blocks) {
-      for (std::size_t a = 0; a < 3; ++a) {
-        double* d = engine.mode.values(a, static_cast<std::size_t>(block));
-        for (std::size_t c = 0; c < kCorners; ++c) d[c] *= scale;
-      }
-    }
+  computeFrames(simulation.state.position, blocks, engine.frames);
+  for (const std::int32_t block : blocks) engine.contactMetric[static_cast<std::size_t>(block)].setZero();
+  for (const std::int32_t at : pairs) {
+    const Manifold& manifold = engine.pairs[static_cast<std::size_t>(at)].manifold;
+    if (manifold.touch != Touch::apart) addManifold(simulation, manifold);
   }
-  return radius;
+  double springs = 0.0;
+  double contacts = 0.0;
+  for (const std::int32_t block : blocks) {
+    const auto b = static_cast<std::size_t>(block);
+    springs = std::max(springs, engine.springRadius[b]);
+    // The trace is a bound as well and often settles that a block is not the largest.
+    if (engine.contactMetric[b].trace() <= contacts) continue;
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> solver(engine.contactMetric[b], Eigen::EigenvaluesOnly);
+    contacts = std::max(contacts, solver.eigenvalues()[3]);
+  }
+  return springs + 2.0 * contacts;
 }
 
 double blockSpectralRadius(const BlockModel& model, Inertia inertia, std::size_t block) {
@@ -206,21 +136,10 @@ std::uint64_t contactSignature(const Engine& engine, std::span<const std::int32_
     mix(static_cast<std::uint64_t>(at));
     mix(static_cast<std::uint64_t>(m.count) + 16U * static_cast<std::uint64_t>(m.incidentFace) +
         256U * static_cast<std::uint64_t>(m.referenceFace));
-    for (std::size_t p = 0; p < static_cast<std::size_t>(m.count); ++p) mix(static_cast<std::uint64_t>(16.0 * std::log2(m.scale[p])));
+    for (std::size_t p = 0; p < static_cast<std::size_t>(m.count); ++p)
+      mix(static_cast<std::uint64_t>(16.0 * std::log2(m.scale[p])));
   }
   return hash;
-}
-
-void seedMode(Engine& engine, std::size_t block) {
-  std::uint64_t bits = 0x9e3779b97f4a7c15ULL * (static_cast<std::uint64_t>(block) + 1U);
-  for (std::size_t a = 0; a < 3; ++a) {
-    for (std::size_t c = 0; c < kCorners; ++c) {
-      bits ^= bits >> 12U;
-      bits ^= bits << 25U;
-      bits ^= bits >> 27U;
-      engine.mode.values(a, block)[c] = static_cast<double>(static_cast<std::int64_t>(bits * 0x2545f4914f6cdd1dULL)) * 0x1p-63;
-    }
-  }
 }
 
 }  // namespace springtower

@@ -74,11 +74,28 @@ struct LevelMoments {
   }
 };
 
+// How much the tops of a block's supports differ, m.
+double unevenness(const std::vector<Bounds>& bounds, const std::vector<std::size_t>& supports) {
+  if (supports.empty()) return 0.0;
+  double lowest = 1e300;
+  double highest = -1e300;
+  for (const std::size_t s : supports) {
+    lowest = std::min(lowest, bounds[s].upper[2]);
+    highest = std::max(highest, bounds[s].upper[2]);
+  }
+  return highest - lowest;
+}
+
 constexpr double kPointsPerOverlap = 4.0;
-constexpr double kLoadedPoints = 2.0;        // a share that lies off centre rests on one side of the overlap
-constexpr double kBucklingParameter = 7.837; // Greenhill: w H^3 = 7.837 E I for a column under its own weight
+constexpr double kLoadedPoints = 2.0;  // a share that lies off centre rests on one side of the overlap
+// A block on tops that differ by more than this share of its height rests on two of them, and the paths of the load through
+// uneven rows bear up to this much more than their even share (measured over seeds: the heaviest point of 18 rows with 0.2 mm
+// deviation).
+constexpr double kUnevenHeight = 2e-4;
+constexpr double kUnevenLoad = 3.0;
+constexpr double kBucklingParameter = 7.837;  // Greenhill: w H^3 = 7.837 E I for a column under its own weight
 constexpr double kSwayReserve = 10.0;
-constexpr double kSeriesWithBlocks = 0.5;    // contacts and blocks bend alike
+constexpr double kSeriesWithBlocks = 0.5;  // contacts and blocks bend alike
 
 }  // namespace
 
@@ -91,20 +108,26 @@ LoadEstimate estimateLoads(const Scene& scene) {
   std::vector<std::size_t> fromTop(count);
   std::iota(fromTop.begin(), fromTop.end(), std::size_t{0});
   const auto middle = [&](std::size_t b) { return bounds[b].lower[2] + bounds[b].upper[2]; };
-  std::sort(fromTop.begin(), fromTop.end(), [&](std::size_t p, std::size_t q) { return middle(p) != middle(q) ? middle(p) > middle(q) : p < q; });
+  std::sort(fromTop.begin(), fromTop.end(),
+            [&](std::size_t p, std::size_t q) { return middle(p) != middle(q) ? middle(p) > middle(q) : p < q; });
 
   std::vector<double> load(count, 0.0);
   LoadEstimate estimate;
   double weight = 0.0;
+  bool anyUneven = false;
   for (const std::size_t b : fromTop) {
     const double own = scene.blocks[b].mass * scene.gravity.magnitude;
     load[b] += own;
     weight += own;
-    const double shares = below[b].empty() ? 1.0 : static_cast<double>(below[b].size());
+    const double spread = unevenness(bounds, below[b]);
+    const bool uneven = spread > kUnevenHeight * (bounds[b].upper[2] - bounds[b].lower[2]);
+    anyUneven = anyUneven || uneven;
+    const double supports = std::max(1.0, static_cast<double>(below[b].size()));
+    const double shares = uneven ? std::min(supports, 2.0) : supports;
     double& largest = below[b].empty() ? estimate.floorLoad_n : estimate.contactLoad_n;
     largest = std::max(largest, load[b] / shares / kLoadedPoints);
     estimate.blockLoad_n = std::max(estimate.blockLoad_n, load[b] / kLoadedPoints);
-    for (const std::size_t s : below[b]) load[s] += load[b] / shares;
+    for (const std::size_t s : below[b]) load[s] += load[b] / supports;
   }
 
   std::vector<std::size_t> level(count, 0);
@@ -143,9 +166,10 @@ LoadEstimate estimateLoads(const Scene& scene) {
   const double lean = std::abs(scene.gravity.tilt_deg) + std::abs(scene.gravity.sway_deg);
   const double narrow = 0.5 * std::min(upper[0] - lower[0], upper[1] - lower[1]);
   const double lever = std::min(1.0, 0.5 * height * std::tan(std::min(lean, 45.0) * M_PI / 180.0) / std::max(narrow, 1e-12));
-  estimate.contactLoad_n *= 1.0 + lever;
-  estimate.floorLoad_n *= 1.0 + lever;
-  estimate.blockLoad_n *= 1.0 + lever;
+  const double concentration = (1.0 + lever) * (anyUneven ? kUnevenLoad : 1.0);
+  estimate.contactLoad_n *= concentration;
+  estimate.floorLoad_n *= concentration;
+  estimate.blockLoad_n *= concentration;
   return estimate;
 }
 

@@ -3,16 +3,13 @@
 #include "solver/island_step.h"
 #include "solver/stage_clock.h"
 
-#include <oneapi/tbb/blocked_range.h>
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/parallel_for.h>
 
 namespace springtower {
-
-namespace {
 
 // Path of each block's fastest corner in this step. NaN fails every comparison, so it is asked for what is sound.
 bool addTravel(IslandStep& step) {
@@ -53,6 +50,8 @@ bool addTravel(IslandStep& step) {
   }
   return inside;
 }
+
+namespace {
 
 double travelOf(const Engine& engine, const NearPair& pair) {
   return engine.clock[static_cast<std::size_t>(pair.a)].travel +

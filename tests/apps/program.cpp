@@ -39,6 +39,7 @@ ProgramResult runProgram(std::string_view name, const std::vector<std::string>& 
   std::vector<std::string> words = {std::string(name)};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> pointers;
+  pointers.reserve(words.size() + 1);
   for (std::string& word : words) pointers.push_back(word.data());
   pointers.push_back(nullptr);
 

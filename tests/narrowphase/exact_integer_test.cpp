@@ -107,6 +107,10 @@ TEST(ExactPolynomial, FindsEachRootOnceInOrderAndRoundsItDown) {
   // Two roots 2^-60 apart, closer than doubles there are.
   const std::int64_t close = std::int64_t{1} << 60;
   EXPECT_EQ(roots(cubicWithRoots({{{close / 2 + 1, close}, {1, 2}, {2, 1}}})), (std::vector<double>{0.5, 0.5}));
+  // A root next to one at the end of the step.
+  const std::int64_t fine = std::int64_t{1} << 45;
+  EXPECT_EQ(roots(cubicWithRoots({{{0, 1}, {1, fine}, {2, 1}}})), (std::vector<double>{0.0, 0x1p-45}));
+  EXPECT_EQ(roots(cubicWithRoots({{{1, 1}, {fine - 1, fine}, {2, 1}}})), (std::vector<double>{1.0 - 0x1p-45, 1.0}));
   // 2 t^2 - 1 and 2 t^3 - 1: irrational; the double nearest to the root of 1/2 is above it.
   EXPECT_EQ(roots({{Integer<1>(-1), {}, Integer<1>(2), {}}}), (std::vector<double>{std::nextafter(std::sqrt(0.5), 0.0)}));
   EXPECT_EQ(roots({{Integer<1>(-1), {}, {}, Integer<1>(2)}}).size(), 1u);
@@ -141,6 +145,24 @@ TEST(ExactPolynomial, DecidesSignsAtIrrationalRoots) {
     return false;
   });
   EXPECT_EQ(signs, (std::vector<std::array<int, 3>>{{0, -1, 0}, {1, 0, 1}}));
+}
+
+TEST(ExactPolynomial, SignOfAFactorWithoutRealRoots) {
+  // (1000 t - 501) (2^k (2 t - 1)^2 + 1): the second factor comes close to zero beside the root and is positive.
+  for (std::uint32_t k = 0; k < 40; k += 3) {
+    const Integer<1> one(1), size(std::int64_t{1} << k);
+    const Polynomial<2, 2> factor{{size + one, -(Integer<1>(4) * size), Integer<1>(4) * size}};
+    const auto& [c, b, a] = factor.coefficients;
+    const Integer<1> slope(1000), constant(-501);
+    const Polynomial<3, 3> product{{constant * c, constant * b + slope * c, constant * a + slope * b, slope * a}};
+    int visited = 0;
+    exact::visitRoots(product, [&](auto root) {
+      ++visited;
+      EXPECT_EQ(exact::signAtRoot(factor, root), 1) << k;
+      return false;
+    });
+    EXPECT_EQ(visited, 1);
+  }
 }
 
 }  // namespace

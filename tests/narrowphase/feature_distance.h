@@ -18,7 +18,7 @@ inline std::array<Vec3, 4> differencesAt(const CollisionQuery& query, QueryKind 
   const auto& points = query.points;
   const Vec3 a = positionAt(points[0], time), b = positionAt(points[1], time), c = positionAt(points[2], time),
              d = positionAt(points[3], time);
-  if (kind == QueryKind::PointTriangle) return {b - a, c - a, d - a, d - a};
+  if (kind == QueryKind::pointTriangle) return {b - a, c - a, d - a, d - a};
   return {c - a, d - a, d - b, c - b};
 }
 

@@ -117,8 +117,8 @@ TEST(MaxPenetration, NamesTheLowestCornerBelowTheFloor) {
 }
 
 TEST(MaxPenetration, NamesThePairThatOverlapsMost) {
-  std::vector<TestBox> boxes;
-  for (int i = 0; i < 4; ++i) boxes.push_back({{0.0, 0.0, 0.5 * kBlock.z() + i * (kBlock.z() - 1e-5)}, kBlock});
+  std::vector<TestBox> boxes(4, {Vec3(0.0, 0.0, 0.5 * kBlock.z()), kBlock});
+  for (std::size_t i = 1; i < 4; ++i) boxes[i].centre.z() = boxes[i - 1].centre.z() + kBlock.z() - 1e-5;
   boxes[3].centre.z() -= 3e-5;
   PenetrationWorkspace workspace;
   const Penetration deepest = maxPenetration(cornersOf(boxes), true, workspace);

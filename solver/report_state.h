@@ -1,0 +1,53 @@
+#pragma once
+
+#include "core/state.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace springtower {
+
+// What method `report` keeps beside the state itself: the collisions of its last step, which is all that its friction knows of
+// contacts (report 4.6), and working space of its collision loop.
+
+/// A collision between a few corners of one block and a few of another, or of the floor: a corner and a face (1 and 3 corners),
+/// two edges (2 and 2), a corner and the floor (1 and 0). The weights of either side sum up to 1 (report Eq. 4.14 to 4.16).
+struct ReportContact {
+  std::int32_t first = -1;
+  std::int32_t second = -1;  ///< -1: the floor
+  std::int8_t firstCount = 0;
+  std::int8_t secondCount = 0;
+  std::array<std::int8_t, 4> corner{};  ///< those of the first block, then those of the second
+  std::array<double, 4> weight{};
+  Vec3 normal = Vec3::UnitZ();  ///< unit, from the second to the first
+  double impulse = 0.0;         ///< N s, on the first along the normal, summed over the step's passes; > 0
+};
+
+struct ReportState {
+  /// Collisions of the last step, [blocks]: each with an awake block of its two, so that islands never share a list.
+  std::vector<std::vector<ReportContact>> contacts;
+  std::vector<std::vector<ReportContact>> frameStartContacts;  ///< what a frame that has to be run again starts from
+  std::vector<std::vector<std::int32_t>> struck;  ///< disabled blocks that each awake one has hit hard in this frame, [blocks]
+  CornerArray from;  ///< m; the straight paths of the step, a little longer than the step at both ends
+  CornerArray to;
+  CornerArray low;  ///< m; the box that each corner sweeps
+  CornerArray high;
+  std::vector<std::uint32_t> version;  ///< changes whenever a block's path does, [blocks]
+  std::vector<std::array<std::uint32_t, 2>>
+      testedAt;  ///< versions of a pair's blocks when last found clear, by position in the pairs
+
+  void resize(std::size_t blocks) {
+    contacts.resize(blocks);
+    frameStartContacts.resize(blocks);
+    struck.resize(blocks);
+    from.resize(blocks);
+    to.resize(blocks);
+    low.resize(blocks);
+    high.resize(blocks);
+    version.assign(blocks, 0);
+  }
+};
+
+}  // namespace springtower
