@@ -137,7 +137,7 @@ void watchApart(IslandStep& step, NearPair& pair, Counters& counters) {
     return;
   }
   const Separation before = findSeparation(movingA.start, movingB.start);
-  const Vec3 witness = before.bestNormal();
+  const Vec3& witness = before.bestNormal();
   const double newGap = gapAlong(witness, movingA.end, movingB.end);
   pair.margin = std::max(0.0, newGap);
   pair.witness = witness;

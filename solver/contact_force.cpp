@@ -152,9 +152,16 @@ SPRINGTOWER_INLINE void at(const FaceField& face, const Lanes& u, const Lanes& v
 // Sums of three lane vectors at once: [sum a, sum b, sum c, 0].
 SPRINGTOWER_INLINE void sums(const Lanes& a, const Lanes& b, const Lanes& c, Lanes& result) {
   const Lanes none = {0.0, 0.0, 0.0, 0.0};
-  const Lanes ab = __builtin_shuffle(a, b, LaneMask{0, 4, 2, 6}) + __builtin_shuffle(a, b, LaneMask{1, 5, 3, 7});
-  const Lanes cd = __builtin_shuffle(c, none, LaneMask{0, 4, 2, 6}) + __builtin_shuffle(c, none, LaneMask{1, 5, 3, 7});
-  result = __builtin_shuffle(ab, cd, LaneMask{0, 1, 4, 5}) + __builtin_shuffle(ab, cd, LaneMask{2, 3, 6, 7});
+  Lanes even, odd;
+  shuffle<0, 4, 2, 6>(a, b, even);
+  shuffle<1, 5, 3, 7>(a, b, odd);
+  const Lanes ab = even + odd;
+  shuffle<0, 4, 2, 6>(c, none, even);
+  shuffle<1, 5, 3, 7>(c, none, odd);
+  const Lanes cd = even + odd;
+  shuffle<0, 1, 4, 5>(ab, cd, even);
+  shuffle<2, 3, 6, 7>(ab, cd, odd);
+  result = even + odd;
 }
 
 // Puts [force, moment along u, moment along v] of one component into a block's affine forces.

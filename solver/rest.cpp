@@ -104,10 +104,12 @@ void putGroupsToSleep(Simulation& simulation) {
   if (!anyReady) return;
 
   // Sleep is decided by groups that touch: whoever is joined to a restless block stays awake. The report decides block by block.
+  // Method `report` does not know from step to step who touches whom: there whoever is near counts.
   engine.touchingEdges.clear();
+  const bool nearCounts = simulation.scene.settings.method == Method::report;
   if (simulation.scene.settings.sleep == Sleep::on) {
     for (const NearPair& pair : engine.pairs) {
-      if (pair.b < 0 || pair.manifold.touch == Touch::apart) continue;
+      if (pair.b < 0 || (pair.manifold.touch == Touch::apart && !nearCounts)) continue;
       const bool bothAwake =
           simulation.asleep[static_cast<std::size_t>(pair.a)] == 0 && simulation.asleep[static_cast<std::size_t>(pair.b)] == 0;
       if (bothAwake) engine.touchingEdges.push_back({pair.a, pair.b});

@@ -30,11 +30,6 @@ SPRINGTOWER_INLINE void pull(const Lanes* p, const Lanes* q, const Lanes* vp, co
   result.z = along * dz;
 }
 
-template <int A, int B, int C, int D>
-SPRINGTOWER_INLINE void shuffle(const Lanes& low, const Lanes& high, Lanes& to) {
-  to = __builtin_shuffle(low, high, LaneMask{A, B, C, D});
-}
-
 // Springs inside the lower and upper halves (groups 1, 2, 3): four first corners, their four partners, and the way back.
 template <int P0, int P1, int P2, int P3, int Q0, int Q1, int Q2, int Q3>
 SPRINGTOWER_INLINE void pullWithinHalves(const Lanes* low, const Lanes* high, const Lanes* vlow, const Lanes* vhigh,
