@@ -20,8 +20,8 @@ namespace {
 constexpr double kTimeThreshold = 0.01;
 // Edges whose directions are nearer to parallel than this (sine of the angle) do not collide; their ends do, with faces.
 constexpr double kParallelSine = 0.01;
-// A disabled block is enabled by an impulse that would give one of its particles this speed, in sqrt(g h) (report 4.7 leaves the threshold
-// open). A heavier load than some ten rows, or a collision at a few block heights a second.
+// A disabled block is enabled by an impulse that would give one of its particles this speed, in sqrt(g h) (report 4.7 leaves the
+// threshold open): a collision at a few block heights a second, while what rests on it gives less.
 constexpr double kEnablingSpeed = 0.2;
 
 // The straight paths of one block's corners. A disabled block does not move.

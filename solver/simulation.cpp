@@ -63,7 +63,7 @@ void chooseStiffness(Simulation& simulation) {
   Stiffness stiffness = stiffnessForTolerance(loads, settings.tolerance_m);
   if (settings.substeps > 0) {
     const double allowed =
-        stableSpectralRadius(settings.frame_s / settings.substeps, settings.dampingTime_s, settings.stepMargin);
+        stableSpectralRadius(settings.method, settings.frame_s / settings.substeps, settings.dampingTime_s, settings.stepMargin);
     const double needed = foreseenSpectralRadius(simulation, stiffness);
     if (!settings.toleranceGiven) {
       loads.swayStiffness_n_m = 0.0;
@@ -75,7 +75,8 @@ void chooseStiffness(Simulation& simulation) {
           "settings: found tolerance_m = {:g} with substeps = {}, allowed: at least {} substeps for this tolerance, or "
           "force_unstable",
           settings.tolerance_m, settings.substeps,
-          static_cast<int>(std::ceil(settings.frame_s / stableStep(needed, settings.dampingTime_s, settings.stepMargin)))));
+          static_cast<int>(
+              std::ceil(settings.frame_s / stableStep(settings.method, needed, settings.dampingTime_s, settings.stepMargin)))));
     }
   }
   simulation.contactStiffness_n_m = stiffness.contact_n_m;
@@ -196,6 +197,16 @@ std::uint64_t stateHash(const Simulation& simulation) {
     mixDoubles(m.stretchZ);
     mixDoubles(m.relaxed);
     mixDoubles(m.offset);
+  }
+  for (const std::vector<ReportContact>& contacts : simulation.engine->report.contacts) {
+    for (const ReportContact& contact : contacts) {
+      mix(&contact.first, sizeof contact.first);
+      mix(&contact.second, sizeof contact.second);
+      mix(contact.corner.data(), contact.corner.size());
+      mixDoubles(contact.weight);
+      mixDoubles(contact.normal);
+      mix(&contact.impulse, sizeof contact.impulse);
+    }
   }
   return hash;
 }

@@ -127,6 +127,9 @@ LoadEstimate estimateLoads(const Scene& scene) {
     double& largest = below[b].empty() ? estimate.floorLoad_n : estimate.contactLoad_n;
     largest = std::max(largest, load[b] / shares / kLoadedPoints);
     estimate.blockLoad_n = std::max(estimate.blockLoad_n, load[b] / kLoadedPoints);
+    // Nothing may rest on this block yet, but another like it may come.
+    estimate.contactLoad_n = std::max(estimate.contactLoad_n, own / kLoadedPoints);
+    estimate.floorLoad_n = std::max(estimate.floorLoad_n, own / kLoadedPoints);
     for (const std::size_t s : below[b]) load[s] += load[b] / supports;
   }
 
@@ -174,18 +177,20 @@ LoadEstimate estimateLoads(const Scene& scene) {
 }
 
 Stiffness stiffnessForTolerance(const LoadEstimate& loads, double tolerance_m) {
-  // A contact that nothing rests on yet still has to bear what may come: as much as a block's own share on the floor.
   const auto stiffness = [&](double load) { return std::max(load / tolerance_m, loads.swayStiffness_n_m); };
   return {stiffness(loads.contactLoad_n), stiffness(loads.floorLoad_n), stiffness(loads.blockLoad_n)};
 }
 
-double stableStep(double spectralRadius, double dampingTime_s, double margin) {
+double stableStep(Method method, double spectralRadius, double dampingTime_s, double margin) {
   const double limit = 4.0 * margin * margin / spectralRadius;
-  return std::sqrt(dampingTime_s * dampingTime_s + limit) - dampingTime_s;
+  const double step = std::sqrt(dampingTime_s * dampingTime_s + limit) - dampingTime_s;
+  return method == Method::midpoint ? std::min(step, margin * std::cbrt(4.0 * dampingTime_s / spectralRadius)) : step;
 }
 
-double stableSpectralRadius(double step_s, double dampingTime_s, double margin) {
-  return 4.0 * margin * margin / (step_s * (step_s + 2.0 * dampingTime_s));
+double stableSpectralRadius(Method method, double step_s, double dampingTime_s, double margin) {
+  const double radius = 4.0 * margin * margin / (step_s * (step_s + 2.0 * dampingTime_s));
+  const double step = step_s / margin;
+  return method == Method::midpoint ? std::min(radius, 4.0 * dampingTime_s / (step * step * step)) : radius;
 }
 
 }  // namespace springtower
