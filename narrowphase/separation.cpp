@@ -9,9 +9,11 @@ namespace springtower {
 
 namespace {
 
+// Mean edges and face normals: in a sheared block the normal of a face is not the direction of the edges that cross it.
 struct Frame {
   Vec3 centre;
   std::array<Vec3, 3> axis;
+  std::array<Vec3, 3> normal;
 };
 
 Frame frameOf(const CornerView& block) {
@@ -25,6 +27,10 @@ Frame frameOf(const CornerView& block) {
   }
   frame.centre = sum / static_cast<double>(kCorners);
   for (std::size_t a = 0; a < 3; ++a) frame.axis[a] = edge[a].normalized();
+  for (std::size_t a = 0; a < 3; ++a) {
+    const Vec3 normal = edge[(a + 1) % 3].cross(edge[(a + 2) % 3]);
+    frame.normal[a] = normal.normalized();
+  }
   return frame;
 }
 
@@ -72,8 +78,8 @@ Separation findSeparation(const CornerView& a, const CornerView& b) {
   Separation result;
   result.faceA = result.faceB = result.edge = kNothing;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const bool along = frameB.axis[axis].dot(between) >= 0.0;
-    const Vec3 normal = along ? frameB.axis[axis] : Vec3(-frameB.axis[axis]);
+    const bool along = frameB.normal[axis].dot(between) >= 0.0;
+    const Vec3 normal = along ? frameB.normal[axis] : Vec3(-frameB.normal[axis]);
     const double gap = gapAlong(normal, a, b);
     if (gap > result.faceB) {
       result.faceB = gap;
@@ -82,8 +88,8 @@ Separation findSeparation(const CornerView& a, const CornerView& b) {
     }
   }
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const bool along = frameA.axis[axis].dot(between) >= 0.0;
-    const Vec3 normal = along ? frameA.axis[axis] : Vec3(-frameA.axis[axis]);
+    const bool along = frameA.normal[axis].dot(between) >= 0.0;
+    const Vec3 normal = along ? frameA.normal[axis] : Vec3(-frameA.normal[axis]);
     const double gap = gapAlong(normal, a, b);
     if (gap > result.faceA) {
       result.faceA = gap;

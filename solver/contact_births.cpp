@@ -74,8 +74,18 @@ bool anyLive(const Manifold& manifold) {
   return std::any_of(manifold.live.begin(), manifold.live.begin() + manifold.count, [](double live) { return live != 0.0; });
 }
 
-// Carries over what the old manifold knew. An edge contact that stays one keeps everything.
-void keepMemory(const Manifold& old, const CornerArray& position, double radius, Manifold& fresh) {
+// Depth of a face manifold's points below the reference face or the floor, m.
+double depthOf(const Manifold& m, const CornerArray& position, std::size_t point) {
+  const Vec3 place = pointOnIncidentFace(m, cornersOf(position, static_cast<std::size_t>(m.upper)), point);
+  if (m.lower < 0) return -place.z();
+  const FaceFrame face = faceFrame(cornersOf(position, static_cast<std::size_t>(m.lower)), m.referenceFace);
+  return -face.normal.dot(place - face.centre);
+}
+
+// Carries over what the old manifold knew. An edge contact that stays one keeps everything. Points that are new in a pair that
+// already touches start with as much energy as a resting point may store, k tolerance^2 / 2, and the stiffness of the others:
+// were each to start unloaded at the depth it is found at, a rolling pair that keeps changing its points would sink.
+void keepMemory(const Manifold& old, const CornerArray& position, double radius, double tolerance_m, Manifold& fresh) {
   if (old.touch == Touch::edge && fresh.touch == Touch::edge) {
     const std::int8_t incident = fresh.incidentFace;
     const std::int8_t reference = fresh.referenceFace;
@@ -84,9 +94,41 @@ void keepMemory(const Manifold& old, const CornerArray& position, double radius,
     fresh.referenceFace = reference;
     return;
   }
-  if (old.touch != Touch::face || fresh.touch != Touch::face) return;
-  carryMemory(old, cornersOf(position, static_cast<std::size_t>(old.upper)), fresh,
-              cornersOf(position, static_cast<std::size_t>(fresh.upper)), radius);
+  if (old.touch == Touch::face && fresh.touch == Touch::face) {
+    carryMemory(old, cornersOf(position, static_cast<std::size_t>(old.upper)), fresh,
+                cornersOf(position, static_cast<std::size_t>(fresh.upper)), radius);
+  }
+  if (!anyLive(old) || fresh.touch != Touch::face) return;
+  double surface = 0.0;
+  double scale = 1.0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(old.count); ++i) {
+    surface = std::max(surface, old.live[i] * old.offset[i]);
+    scale = std::max(scale, old.live[i] * old.scale[i]);
+  }
+  for (std::size_t i = 0; i < static_cast<std::size_t>(fresh.count); ++i) {
+    if (fresh.live[i] != 0.0) continue;
+    fresh.live[i] = 1.0;
+    fresh.offset[i] = std::max(surface, depthOf(fresh, position, i) - tolerance_m / std::sqrt(scale));
+    fresh.scale[i] = scale;
+  }
+}
+
+// How far a block's corners are from its affine part, m. The separating axes of two blocks are exact for that part, so an overlap
+// by them that is not larger than both warps is none of the faces.
+double warp(const CornerArray& position, std::size_t block) {
+  const AffineField field = affineField(position, block);
+  double largest = 0.0;
+  for (std::size_t c = 0; c < kCorners; ++c) {
+    double squared = 0.0;
+    for (std::size_t a = 0; a < 3; ++a) {
+      double place = field.centre[a];
+      for (std::size_t k = 0; k < 3; ++k) place += 0.5 * cornerSide(c, k) * field.side[k][a];
+      const double apart = position.values(a, block)[c] - place;
+      squared += apart * apart;
+    }
+    largest = std::max(largest, squared);
+  }
+  return std::sqrt(largest);
 }
 
 double lowestCorner(const CornerView& block) {
@@ -147,7 +189,8 @@ void watchApart(IslandStep& step, NearPair& pair, Counters& counters) {
     pair.margin = 0.0;
     return;
   }
-  if (step.simulation.frame > 0 && before.best() < -step.simulation.lengths.contactError_m) ++counters.contactsBornPenetrating;
+  const double unsure = step.simulation.lengths.contactError_m + warp(step.engine.previous, a) + warp(step.engine.previous, b);
+  if (step.simulation.frame > 0 && before.best() < -unsure) ++counters.contactsBornPenetrating;
   Manifold fresh;
   chooseManifold(before, movingA.end, movingB.end, limitsOf(step.simulation), 0.0, pair, fresh);
   pair.margin = 0.0;
@@ -187,7 +230,7 @@ void renewManifold(IslandStep& step, NearPair& pair, Counters& counters) {
       return;
     }
   }
-  keepMemory(pair.manifold, position, radius, fresh);
+  keepMemory(pair.manifold, position, radius, simulation.tolerance_m, fresh);
   pair.manifold = fresh;
 }
 

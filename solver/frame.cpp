@@ -3,7 +3,7 @@
 #include "solver/inertia.h"
 #include "solver/island_step.h"
 #include "solver/near_pairs.h"
-#include "solver/report_collisions.h"
+#include "solver/report_frame.h"
 #include "solver/rest.h"
 #include "solver/stability.h"
 #include "solver/stiffness.h"
@@ -228,6 +228,7 @@ void stepFrame(Simulation& simulation) {
       engine.frameStartPairs = engine.pairs;
     }
     simulation.counters.steps += static_cast<std::uint64_t>(simulation.substeps);
+    simulation.time_s += simulation.scene.settings.frame_s;
     checkShapes(simulation, engine.awakeBlocks);
   } else {
     simulation.substeps = 0;

@@ -65,6 +65,7 @@ void fallAsleep(Simulation& simulation, std::size_t b) {
   engine.frames[b] = blockFrame(simulation.state.position, b);
   engine.motion[b] = AffineField{};
   if (!engine.carriedMotion.empty()) engine.carriedMotion[b] = AffineField{};
+  if (!engine.report.contacts.empty()) engine.report.contacts[b].clear();
 }
 
 // Force on block a of a pair, as its contacts push now, N.

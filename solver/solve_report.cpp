@@ -1,26 +1,23 @@
 #include "solver/report_collisions.h"
+#include "solver/report_response.h"
 #include "solver/stage_clock.h"
 
-#include <cmath>
+#include <algorithm>
 
 namespace springtower {
 
 namespace {
 
-Vec3 pointVelocity(const CornerArray& velocity, std::int32_t block, const std::int8_t* corner, const double* weight,
-                   std::int8_t count) {
-  Vec3 sum = Vec3::Zero();
-  for (std::int8_t i = 0; i < count; ++i) {
-    sum += weight[i] * velocity.at(static_cast<std::size_t>(block), static_cast<std::size_t>(corner[i]));
+void addToCorners(CornerArray& force, const ReportSide& side, const Vec3& total) {
+  for (std::size_t i = 0; i < side.corner.size(); ++i) {
+    force.add(static_cast<std::size_t>(side.block), static_cast<std::size_t>(side.corner[i]), side.weight[i] * total);
   }
-  return sum;
 }
 
-void addToCorners(CornerArray& force, std::int32_t block, const std::int8_t* corner, const double* weight, std::int8_t count,
-                  const Vec3& total) {
-  for (std::int8_t i = 0; i < count; ++i) {
-    force.add(static_cast<std::size_t>(block), static_cast<std::size_t>(corner[i]), weight[i] * total);
-  }
+double particleMass(const BlockModel& model, const ReportContact& contact) {
+  double mass = model.mass[static_cast<std::size_t>(contact.first)];
+  if (contact.second >= 0) mass = std::min(mass, model.mass[static_cast<std::size_t>(contact.second)]);
+  return mass / static_cast<double>(kCorners);
 }
 
 // Dynamic friction from the collisions of the step before (report 4.6 and Eq. 2.18), against the tangential velocity now, and the
@@ -30,32 +27,24 @@ void addFriction(IslandStep& step) {
   const Simulation& simulation = step.simulation;
   const Engine& engine = step.engine;
   const std::int32_t island = engine.islands.islandOf[static_cast<std::size_t>(step.blocks.front())];
-  const double drag = simulation.scene.settings.reportFrictionDrag;
   for (const std::int32_t block : step.blocks) {
     for (const ReportContact& contact : engine.report.contacts[static_cast<std::size_t>(block)]) {
-      const auto moves = [&](std::int32_t b) { return b >= 0 && simulation.asleep[static_cast<std::size_t>(b)] == 0; };
-      const auto elsewhere = [&](std::int32_t b) {
-        return moves(b) && engine.islands.islandOf[static_cast<std::size_t>(b)] != island;
+      const ReportSide first = firstSide(contact);
+      const ReportSide second = secondSide(contact);
+      const auto elsewhere = [&](const ReportSide& side) {
+        return moves(step, side) && engine.islands.islandOf[static_cast<std::size_t>(side.block)] != island;
       };
-      if (elsewhere(contact.first) || elsewhere(contact.second)) continue;  // they have parted since
-      const std::int8_t* secondCorner = contact.corner.data() + contact.firstCount;
-      const double* secondWeight = contact.weight.data() + contact.firstCount;
-      Vec3 relative = pointVelocity(simulation.state.velocity, contact.first, contact.corner.data(), contact.weight.data(),
-                                    contact.firstCount) -
-                      pointVelocity(simulation.state.velocity, contact.second, secondCorner, secondWeight, contact.secondCount);
+      if (elsewhere(first) || elsewhere(second)) continue;  // they have parted since
+      Vec3 relative = velocityOf(step, first) - velocityOf(step, second);
       relative -= relative.dot(contact.normal) * contact.normal;
       const double speed = relative.norm();
       if (speed == 0.0) continue;
-      double mass = simulation.model.mass[static_cast<std::size_t>(contact.first)];
-      if (contact.second >= 0) mass = std::min(mass, simulation.model.mass[static_cast<std::size_t>(contact.second)]);
       const double normalForce = contact.impulse / step.advance_s;
-      const double size = simulation.scene.kineticFriction * normalForce + drag * mass / static_cast<double>(kCorners) * speed;
+      const double size = simulation.scene.kineticFriction * normalForce +
+                          simulation.scene.settings.reportFrictionDrag * particleMass(simulation.model, contact) * speed;
       const Vec3 force = -size / speed * relative;
-      if (moves(contact.first)) {
-        addToCorners(step.engine.force, contact.first, contact.corner.data(), contact.weight.data(), contact.firstCount, force);
-      }
-      if (moves(contact.second))
-        addToCorners(step.engine.force, contact.second, secondCorner, secondWeight, contact.secondCount, -force);
+      if (moves(step, first)) addToCorners(step.engine.force, first, force);
+      if (moves(step, second)) addToCorners(step.engine.force, second, -force);
     }
   }
 }

@@ -112,11 +112,13 @@ LoadEstimate estimateLoads(const Scene& scene) {
             [&](std::size_t p, std::size_t q) { return middle(p) != middle(q) ? middle(p) > middle(q) : p < q; });
 
   std::vector<double> load(count, 0.0);
+  // Without gravity nothing loads a contact, yet blocks must be stiff: they are taken to weigh what they would on Earth.
+  const double weighing = scene.gravity.magnitude > 0.0 ? scene.gravity.magnitude : kStandardGravity_m_s2;
   LoadEstimate estimate;
   double weight = 0.0;
   bool anyUneven = false;
   for (const std::size_t b : fromTop) {
-    const double own = scene.blocks[b].mass * scene.gravity.magnitude;
+    const double own = scene.blocks[b].mass * weighing;
     load[b] += own;
     weight += own;
     const double spread = unevenness(bounds, below[b]);

@@ -11,37 +11,37 @@
 
 namespace springtower {
 
-// Path of each block's fastest corner in this step. NaN fails every comparison, so it is asked for what is sound.
+// Adds up the path of each block's fastest corner. A block whose corners move apart by half its least side in one step has
+// diverged: free flight is as fast as it likes, but nothing sound deforms like that. NaN fails every comparison, so what is sound
+// is asked for.
 bool addTravel(IslandStep& step) {
   Simulation& simulation = step.simulation;
-  const double longest = kMostTravelPerStep;
   bool inside = true;
   for (const std::int32_t block : step.blocks) {
     const auto b = static_cast<std::size_t>(block);
-    const double* x = simulation.state.position.values(0, b);
-    const double* y = simulation.state.position.values(1, b);
-    const double* z = simulation.state.position.values(2, b);
-    const double* beforeX = step.engine.previous.values(0, b);
-    const double* beforeY = step.engine.previous.values(1, b);
-    const double* beforeZ = step.engine.previous.values(2, b);
-    double squared = 0.0;
-    double total = 0.0;
-    for (std::size_t c = 0; c < kCorners; ++c) {
-      const double dx = x[c] - beforeX[c];
-      const double dy = y[c] - beforeY[c];
-      const double dz = z[c] - beforeZ[c];
-      const double value = dx * dx + dy * dy + dz * dz;
-      squared = std::max(squared, value);
-      total += value;
+    double moved[3][kCorners];
+    double squared[kCorners] = {};
+    double deformed = 0.0;
+    for (std::size_t a = 0; a < 3; ++a) {
+      const double* now = simulation.state.position.values(a, b);
+      const double* before = step.engine.previous.values(a, b);
+      double mean = 0.0;
+      for (std::size_t c = 0; c < kCorners; ++c) {
+        moved[a][c] = now[c] - before[c];
+        squared[c] += moved[a][c] * moved[a][c];
+        mean += moved[a][c] / static_cast<double>(kCorners);
+      }
+      for (std::size_t c = 0; c < kCorners; ++c) deformed += (moved[a][c] - mean) * (moved[a][c] - mean);
     }
-    const double path = std::sqrt(squared);
-    const double least = simulation.model.dimensions[b].minCoeff();
-    if (!(total < kCorners * (longest * least) * (longest * least))) {
+    const double path = std::sqrt(*std::max_element(squared, squared + kCorners));
+    const double most = kMostTravelPerStep * simulation.model.dimensions[b].minCoeff();
+    if (!(deformed < static_cast<double>(kCorners) * most * most)) {
       const double time = step.time_s + step.drift_s;
       throw DivergenceError(
           fmt::format("block {} diverged at {:.6f} s: {}", block, time,
-                      std::isfinite(total) ? fmt::format("a corner moved {:.3g} m in one step of {:.3g} s", path, step.drift_s)
-                                           : std::string("its positions are no longer finite")),
+                      std::isfinite(deformed) ? fmt::format("its corners moved apart by {:.3g} m in one step of {:.3g} s",
+                                                            std::sqrt(deformed / static_cast<double>(kCorners)), step.drift_s)
+                                              : std::string("its positions are no longer finite")),
           block, time);
     }
     BlockClock& clock = step.engine.clock[b];

@@ -90,8 +90,7 @@ inline Vector24 stiffestMode(const Simulation& simulation, std::size_t block) {
     springForces(simulation.model, state, only, noContacts, force);
     return cornerVector(force, block);
   };
-  for (Eigen::Index i = 0; i < 24; ++i)
-    stiffness.col(i) = -(forceAt(i, change_m) - forceAt(i, -change_m)) / (2.0 * change_m);
+  for (Eigen::Index i = 0; i < 24; ++i) stiffness.col(i) = -(forceAt(i, change_m) - forceAt(i, -change_m)) / (2.0 * change_m);
   const Matrix24 symmetric = 0.5 * (stiffness + stiffness.transpose());
   const Matrix24 mass = massMatrix(simulation.scene.settings.inertia, simulation.model.mass[block]);
   const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix24> solver(symmetric, mass);
@@ -138,8 +137,8 @@ struct Momentum {
 inline Momentum momentum(const Simulation& simulation) {
   Momentum sum;
   for (std::size_t b = 0; b < simulation.model.blockCount(); ++b) {
-    const Vector24 p = massMatrix(simulation.scene.settings.inertia, simulation.model.mass[b]) *
-                       cornerVector(simulation.state.velocity, b);
+    const Vector24 p =
+        massMatrix(simulation.scene.settings.inertia, simulation.model.mass[b]) * cornerVector(simulation.state.velocity, b);
     for (std::size_t c = 0; c < kCorners; ++c) {
       const Vec3 part = p.segment<3>(static_cast<Eigen::Index>(3 * c));
       sum.linear += part;

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "tests/support/block_scenes.h"
+
+namespace springtower {
+
+/// A scene simulated as the 2003 report does, and with its inertia, awake.
+inline Scene asReported(Scene scene, Inertia inertia = Inertia::lumped) {
+  scene.settings.method = Method::report;
+  scene.settings.inertia = inertia;
+  scene.settings.sleep = Sleep::off;
+  return scene;
+}
+
+/// A scene at its tolerance with this many steps a frame.
+inline Scene withSubsteps(Scene scene, int substeps) {
+  scene.settings.substeps = substeps;
+  scene.settings.toleranceGiven = true;
+  return scene;
+}
+
+}  // namespace springtower
