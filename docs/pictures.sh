@@ -4,4 +4,4 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 program=build/release/bin/springtower
 "$program" run tower:18 --seconds 2 --picture docs/pictures/tower18.png
-"$program" run tower:18 --seconds 0.9 --gravity-tilt 14.5 --gravity-direction 30 --no-sleep --picture docs/pictures/collapse.png
+"$program" run tower:18 --seconds 0.55 --gravity-tilt 16 --gravity-direction 30 --no-sleep --picture docs/pictures/collapse.png
