@@ -1,7 +1,8 @@
 // Fixed scenes whose instructions are counted by callgrind (bench/callgrind.py): one thread, a few frames each, everything awake.
 //   gate_scenes            lists the scenes
-//   gate_scenes SCENE      runs one and prints a JSON object: accuracy and the hash of the state at the end
-// Only the frames at the end are counted; what comes before brings the scene to where it is interesting.
+//   gate_scenes SCENE      runs one and prints a JSON object: accuracy and the hash of the state at the end. Only the last frames
+//                          are counted; what comes before brings the scene to where it is interesting.
+//   gate_scenes SCENE 300  runs it for 300 frames instead: what accuracy it settles to
 
 #include "core/error.h"
 #include "core/scene.h"
@@ -81,7 +82,7 @@ void pull(Simulation& simulation, std::size_t block, double speed_m_s, double& f
   simulation.scene.forces = {{static_cast<int>(block), -1, (friction_n + 0.5 * unit_n) * along, simulation.time_s, end_s}};
 }
 
-void runGate(const GateScene& gate, Method method) {
+void runGate(const GateScene& gate, Method method, int frames) {
   Simulation simulation(sceneOf(gate, method));
   const CornerArray start = simulation.state.position;
   const std::size_t pulled = pulledBlock(simulation.scene, gate.rows);
@@ -90,7 +91,8 @@ void runGate(const GateScene& gate, Method method) {
     if (gate.pull_m_s > 0.0 && simulation.frame >= kPullFrom) pull(simulation, pulled, gate.pull_m_s, friction_n);
     stepFrame(simulation);
   };
-  for (int frame = 0; frame < gate.before; ++frame) step();
+  const int before = std::max(0, frames - gate.counted);
+  for (int frame = 0; frame < before; ++frame) step();
   CALLGRIND_START_INSTRUMENTATION;
   for (int frame = 0; frame < gate.counted; ++frame) step();
   CALLGRIND_STOP_INSTRUMENTATION;
@@ -120,7 +122,7 @@ int gate(const std::vector<std::string_view>& arguments) {
         fmt::print("{}\n", name);
       } else if (arguments[0] == name) {
         found = true;
-        runGate(gate, method);
+        runGate(gate, method, arguments.size() > 1 ? std::stoi(std::string(arguments[1])) : gate.before + gate.counted);
       }
     }
   }
