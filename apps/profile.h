@@ -38,8 +38,8 @@ struct ProfileCase {
   ProfileScene scene = ProfileScene::rest;
   int rows = 0;
   int towers = 1;
-  Method method = Method::semiImplicitEuler;
-  Inertia inertia = Inertia::cuboid;
+  Method method = Settings{}.method;
+  Inertia inertia = Settings{}.inertia;
   double tolerance_m = 0.0;
   int threads = 1;
 };
@@ -60,45 +60,8 @@ struct FrameCost {
   double max = 0.0;
 };
 
-/// What came of a case. The frames of every sample are the same frames, so of each the least time over the samples is what it
-/// costs and the rest is other programs' doing; `raw` are the times as they came.
-struct ProfileResult {
-  ProfileCase what;
-  std::string methodName;  ///< nameOf(what.method)
-  std::size_t blocks = 0;
-  std::string failure;      ///< empty, or why there is no time: diverged, does not fall asleep
-  double prepared_s = 0.0;  ///< simulated before the measurement
-  int frames = 0;           ///< timed in each sample
-  int samples = 0;
-  FrameCost processor_ms;                  ///< of the whole process, over all threads; least over the samples
-  FrameCost wall_ms;                       ///< least over the samples
-  FrameCost rawWall_ms;                    ///< of all frames of all samples
-  std::array<double, kStages> stage_ms{};  ///< mean a frame, of the samples with the least wall time; summed over threads
-  std::array<double, 16> counted{};        ///< a frame, in the order of kCounterNames
-  double substeps = 0.0;                   ///< mean a frame
-  double stiffness_n_m = 0.0;              ///< of one resting contact
-  double penetration_mm = 0.0;             ///< largest while measured
-  double compression_mm = 0.0;             ///< of the bottom row when the state was kept
-  bool stands = true;                      ///< at the end of the sample; a block that is pulled does not count
-  double stateBytes = 0.0;                 ///< a block
-  double contactBytes = 0.0;               ///< a block
-  double allBytes = 0.0;                   ///< a block: these, the springs, and working space
-  std::vector<double> frame_ms;            ///< `cost` of each frame, least over the samples
-
-  /// What a frame costs, for charts: processor time on one thread, which other programs disturb least; wall time on more.
-  [[nodiscard]] const FrameCost& cost() const { return what.threads == 1 ? processor_ms : wall_ms; }
-  [[nodiscard]] double framesPerSecond() const { return cost().median > 0.0 ? 1e3 / cost().median : 0.0; }
-};
-
-/// A whole profile: what is written to JSON and can be read back.
-struct Profile {
-  Provenance provenance;
-  ProfileLimits limits;
-  std::vector<ProfileResult> results;
-};
-
 /// The counters of a frame that a profile keeps, by name.
-inline constexpr std::array<std::pair<std::string_view, std::uint64_t Counters::*>, 16> kCounterNames = {
+inline constexpr auto kCounterNames = std::to_array<std::pair<std::string_view, std::uint64_t Counters::*>>(
     {{"frames", &Counters::frames},
      {"steps", &Counters::steps},
      {"replayed_frames", &Counters::replayedFrames},
@@ -114,7 +77,44 @@ inline constexpr std::array<std::pair<std::string_view, std::uint64_t Counters::
      {"manifold_refreshes", &Counters::manifoldRefreshes},
      {"contact_evaluations", &Counters::contactEvaluations},
      {"spring_evaluations", &Counters::springEvaluations},
-     {"response_iterations", &Counters::responseIterations}}};
+     {"response_iterations", &Counters::responseIterations}});
+
+/// What came of a case. The frames of every sample are the same frames, so of each the least time over the samples is what it
+/// costs and the rest is other programs' doing; `raw` are the times as they came.
+struct ProfileResult {
+  ProfileCase what;
+  std::string methodName;  ///< nameOf(what.method)
+  std::size_t blocks = 0;
+  std::string failure;      ///< empty, or why there is no time: diverged, does not fall asleep
+  double prepared_s = 0.0;  ///< simulated before the measurement
+  int frames = 0;           ///< timed in each sample
+  int samples = 0;
+  FrameCost processor_ms;                  ///< of the whole process, over all threads; least over the samples
+  FrameCost wall_ms;                       ///< least over the samples
+  FrameCost rawWall_ms;                    ///< of all frames of all samples
+  std::array<double, kStages> stage_ms{};  ///< mean a frame, of the samples with the least wall time; summed over threads
+  std::array<double, kCounterNames.size()> counted{};  ///< a frame, in the order of kCounterNames
+  double substeps = 0.0;                               ///< mean a frame
+  double stiffness_n_m = 0.0;                          ///< of one resting contact
+  double penetration_mm = 0.0;                         ///< largest while measured
+  double compression_mm = 0.0;                         ///< of the bottom row when the state was kept
+  bool stands = true;                                  ///< at the end of the sample; a block that is pulled does not count
+  double stateBytes = 0.0;                             ///< a block
+  double contactBytes = 0.0;                           ///< a block
+  double allBytes = 0.0;                               ///< a block: these, the springs, and working space
+  std::vector<double> frame_ms;                        ///< `cost` of each frame, least over the samples
+
+  /// What a frame costs, for charts: processor time on one thread, which other programs disturb least; wall time on more.
+  [[nodiscard]] const FrameCost& cost() const { return what.threads == 1 ? processor_ms : wall_ms; }
+  [[nodiscard]] double framesPerSecond() const { return cost().median > 0.0 ? 1e3 / cost().median : 0.0; }
+};
+
+/// A whole profile: what is written to JSON and can be read back.
+struct Profile {
+  Provenance provenance;
+  ProfileLimits limits;
+  std::vector<ProfileResult> results;
+};
 
 /// The value of a counter of a result, a frame. Precondition: the name is in kCounterNames.
 double counted(const ProfileResult& result, std::string_view name);

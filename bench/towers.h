@@ -1,0 +1,46 @@
+#pragma once
+
+#include "core/scene.h"
+#include "solver/engine.h"
+#include "solver/simulation.h"
+
+#include <cmath>
+#include <cstdint>
+#include <numeric>
+#include <vector>
+
+namespace springtower {
+
+/// Towers of 18 rows on a square grid, 0.3 m apart, that never sleep, stepped by a method.
+inline Scene towersScene(int towers, Method method) {
+  constexpr double kSpacing_m = 0.3;
+  Scene scene = towerScene(18);
+  const std::vector<BlockSpec> tower = scene.blocks;
+  scene.blocks.clear();
+  const int side = static_cast<int>(std::ceil(std::sqrt(static_cast<double>(towers))));
+  for (int i = 0; i < towers; ++i) {
+    for (BlockSpec block : tower) {
+      block.centre += kSpacing_m * Vec3(i % side, i / side, 0.0);
+      scene.blocks.push_back(block);
+    }
+  }
+  scene.settings.method = method;
+  scene.settings.sleep = Sleep::off;
+  return scene;
+}
+
+/// Towers under way: `frames` frames after their start. The explicit method, whose kernels are timed one by one.
+inline Simulation startedTowers(int towers, int frames) {
+  Simulation simulation(towersScene(towers, Method::semiImplicitEuler));
+  for (int frame = 0; frame < frames; ++frame) stepFrame(simulation);
+  return simulation;
+}
+
+/// The numbers of all blocks.
+inline std::vector<std::int32_t> allBlocks(std::size_t blocks) {
+  std::vector<std::int32_t> all(blocks);
+  std::iota(all.begin(), all.end(), 0);
+  return all;
+}
+
+}  // namespace springtower
