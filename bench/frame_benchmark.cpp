@@ -28,13 +28,12 @@ struct FrameScene {
   Sleep sleep = Sleep::off;
 };
 
-void wholeFrames(benchmark::State& run, const FrameScene& what, Method method) {
+void wholeFrames(benchmark::State& run, const std::string& name, const FrameScene& what, Method method) {
   const tbb::global_control oneThread(tbb::global_control::max_allowed_parallelism, 1);
   Scene scene = towersScene(what.towers, method);
   scene.gravity.tilt_deg = what.tilt_deg;
   scene.settings.sleep = what.sleep;
-  Simulation simulation(scene);
-  for (int frame = 0; frame < what.before; ++frame) stepFrame(simulation);
+  Simulation simulation = startedScene(name, scene, what.before);
   const auto snapshot = takeSnapshot(simulation);
   double steps = 0.0;
   double bytes = 0.0;
@@ -59,9 +58,8 @@ void wholeFrames(benchmark::State& run, const FrameScene& what, Method method) {
 
 // One line for each scene and method, by name.
 void add(const std::string& name, const FrameScene& what, Method method) {
-  benchmark::RegisterBenchmark(("wholeFrames/" + name + "/" + std::string(nameOf(method))).c_str(), wholeFrames, what, method)
-      ->UseManualTime()
-      ->Unit(benchmark::kMillisecond);
+  const std::string full = "wholeFrames/" + name + "/" + std::string(nameOf(method));
+  benchmark::RegisterBenchmark(full.c_str(), wholeFrames, full, what, method)->UseManualTime()->Unit(benchmark::kMillisecond);
 }
 
 bool registered() {

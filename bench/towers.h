@@ -6,7 +6,10 @@
 
 #include <cmath>
 #include <cstdint>
+#include <map>
+#include <memory>
 #include <numeric>
+#include <string>
 #include <vector>
 
 namespace springtower {
@@ -29,11 +32,24 @@ inline Scene towersScene(int towers, Method method) {
   return scene;
 }
 
-/// Towers under way: `frames` frames after their start. The explicit method, whose kernels are timed one by one.
-inline Simulation startedTowers(int towers, int frames) {
-  Simulation simulation(towersScene(towers, Method::semiImplicitEuler));
-  for (int frame = 0; frame < frames; ++frame) stepFrame(simulation);
+/// A scene `frames` frames after its start. Google Benchmark calls a benchmark several times: a name is prepared once.
+inline Simulation startedScene(const std::string& name, const Scene& scene, int frames) {
+  static std::map<std::string, std::shared_ptr<const Snapshot>> kept;
+  Simulation simulation(scene);
+  std::shared_ptr<const Snapshot>& snapshot = kept[name];
+  if (snapshot) {
+    restoreSnapshot(simulation, *snapshot);
+  } else {
+    for (int frame = 0; frame < frames; ++frame) stepFrame(simulation);
+    snapshot = takeSnapshot(simulation);
+  }
   return simulation;
+}
+
+/// Towers under way, stepped by the explicit method, whose kernels are timed one by one.
+inline Simulation startedTowers(int towers, int frames) {
+  return startedScene(std::to_string(towers) + " towers after " + std::to_string(frames) + " frames",
+                      towersScene(towers, Method::semiImplicitEuler), frames);
 }
 
 /// The numbers of all blocks.
