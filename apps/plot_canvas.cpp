@@ -1,6 +1,7 @@
 #include "apps/plot_canvas.h"
 
 #include <cmath>
+#include <fmt/format.h>
 #include <numbers>
 #include <sstream>
 
@@ -52,7 +53,7 @@ std::vector<std::string> Canvas::wrapped(const std::string& text, double size, d
   std::string line;
   std::istringstream words(text);
   for (std::string word; words >> word;) {
-    const std::string longer = line.empty() ? word : line + " " + word;
+    const std::string longer = line.empty() ? word : fmt::format("{} {}", line, word);
     if (!line.empty() && textWidth(longer, size) > width) {
       lines.push_back(line);
       line = word;

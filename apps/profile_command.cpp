@@ -194,9 +194,9 @@ void writeFolder(const std::string& folder, const Profile& profile, bool measure
   writeFile(folder, "profile.csv", [&](std::ostream& stream) { writeProfileCsv(stream, profile); });
   writeFile(folder, "culling.csv", [&](std::ostream& stream) { writeCulling(stream, profile); });
   const std::vector<NamedPlot> charts = profileCharts(profile);
-  for (const auto& [name, plot] : charts) {
-    writeFile(folder, name + ".svg", [&](std::ostream& stream) { writeSvg(stream, plot); });
-    writeFile(folder, name + ".png", [&](std::ostream& stream) { writePng(stream, plot); });
+  for (const NamedPlot& chart : charts) {
+    writeFile(folder, chart.first + ".svg", [&](std::ostream& stream) { writeSvg(stream, chart.second); });
+    writeFile(folder, chart.first + ".png", [&](std::ostream& stream) { writePng(stream, chart.second); });
   }
   fmt::print("\n{} charts (SVG and PNG), profile.csv, culling.csv{} in {}\n", charts.size(), measured ? ", profile.json" : "",
              onOneLine(folder));

@@ -106,8 +106,9 @@ Scene sceneOf(const ProfileCase& what) {
     const int side = static_cast<int>(std::ceil(std::sqrt(static_cast<double>(what.towers))));
     scene.blocks.clear();
     for (int i = 0; i < what.towers; ++i) {
+      const int line = i / side;
       for (BlockSpec block : tower.blocks) {
-        block.centre += kTowerSpacing_m * Vec3(i % side, i / side, 0.0);
+        block.centre += kTowerSpacing_m * Vec3(i - line * side, line, 0.0);
         scene.blocks.push_back(block);
       }
     }

@@ -22,8 +22,9 @@ inline Scene towersScene(int towers, Method method) {
   scene.blocks.clear();
   const int side = static_cast<int>(std::ceil(std::sqrt(static_cast<double>(towers))));
   for (int i = 0; i < towers; ++i) {
+    const int line = i / side;
     for (BlockSpec block : tower) {
-      block.centre += kSpacing_m * Vec3(i % side, i / side, 0.0);
+      block.centre += kSpacing_m * Vec3(i - line * side, line, 0.0);
       scene.blocks.push_back(block);
     }
   }

@@ -71,7 +71,7 @@ TEST_P(AllocationTest, NoneWhenFramesRunAgain) {
 INSTANTIATE_TEST_SUITE_P(Frames, AllocationTest,
                          ::testing::Values(Case{.name = "Rest"}, Case{.name = "UnevenHeights", .heightsSigma_m = 0.0002},
                                            Case{.name = "Pull", .pull_n = 2.0},
-                                           Case{.name = "Collapse", .tilt_deg = 14.5, .frames = 90},
+                                           Case{.name = "Collapse", .tilt_deg = 14.5, .frames = 60},
                                            Case{.name = "FallingAsleep", .rows = 3, .sleep = Sleep::on, .frames = 300},
                                            Case{.name = "Explicit", .tilt_deg = 14.5, .method = Method::semiImplicitEuler},
                                            Case{.name = "Midpoint", .rows = 3, .method = Method::midpoint, .frames = 5},
