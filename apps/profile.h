@@ -49,8 +49,8 @@ struct ProfileLimits {
   int samples = 5;          ///< restored to the same state and run by turns with those of the other cases
   int frames = 120;         ///< timed in a sample; the first one after the state is restored is left out
   double settle_s = 5.0;    ///< simulated before the state is kept
-  double prepare_s = 20.0;  ///< s of wall time after which preparing ends, settled or not
-  double sample_s = 2.0;    ///< s of wall time after which a sample ends early
+  double prepare_s = 10.0;  ///< s of wall time after which preparing ends, settled or not
+  double sample_s = 1.0;    ///< s of wall time after which a sample ends early
 };
 
 /// Median, 99th percentile and largest of the frames, ms.

@@ -85,9 +85,13 @@ std::vector<ProfileScene> scenesOf(const ProfileCommand& command) {
   return scenes;
 }
 
-std::vector<Method> methodsOf(const ProfileCommand& command) {
-  const Method usual = Settings{}.method;
-  if (command.methods.empty()) return usual == Method::report ? std::vector{usual} : std::vector{usual, Method::report};
+// As given, or the usual method, beside which a tower at rest also shows the report's for comparison.
+std::vector<Method> methodsOf(const ProfileCommand& command, ProfileScene scene) {
+  if (command.methods.empty()) {
+    std::vector<Method> methods = {Settings{}.method};
+    if (scene == ProfileScene::rest) methods.push_back(Method::report);
+    return methods;
+  }
   std::vector<Method> methods;
   for (const std::string& name : command.methods) {
     const Method method = methodFromName(name, "--methods");
@@ -116,11 +120,11 @@ std::vector<ProfileCase> casesOf(const ProfileCommand& command) {
   const std::vector<double> tolerances =
       numbers(command.tolerances_m, kToleranceRange, "--tolerances", false, {Settings{}.tolerance_m});
   const std::vector<double> threads = numbers(command.threads, kThreadsRange, "--threads", true, {1});
-  const std::vector<Method> methods = methodsOf(command);
   const Inertia inertia = command.inertia ? inertiaFromName(*command.inertia, "--inertia") : Settings{}.inertia;
   std::vector<ProfileCase> cases;
   for (const ProfileScene scene : scenesOf(command)) {
     const bool many = scene == ProfileScene::towers;
+    const std::vector<Method> methods = methodsOf(command, scene);
     for (const double size : many ? towers : rows) {
       for (const Method method : methods) {
         for (const double tolerance : tolerances) {
@@ -212,7 +216,7 @@ CLI::App* defineProfile(CLI::App& program, ProfileCommand& command) {
   };
   list("--rows", command.rows, "N,N,...", "rows of the tower (default 3,6,9,12,18,24,36,54,72)");
   list("--scenes", command.scenes, "NAME,...", "what the blocks do (default rest,pull,collapse,asleep,towers; see below)");
-  list("--methods", command.methods, "NAME,...", "as in `run` (default: its default, and report for comparison)");
+  list("--methods", command.methods, "NAME,...", "as in `run` (default: its default; at rest also report, for comparison)");
   list("--tolerances", command.tolerances_m, "METRES,...", "as in `run` (default 5e-05)");
   list("--threads", command.threads, "N,N,...", "threads to use (default 1)");
   list("--towers", command.towers, "N,N,...", "how many towers scene `towers` has (default 1,4,16,64)");
@@ -221,9 +225,9 @@ CLI::App* defineProfile(CLI::App& program, ProfileCommand& command) {
   addWholeNumber(*profile, "--frames", command.frames, kFramesRange, "timed in a sample (default 120)");
   addNumber(*profile, "--settle", command.settle_s, kLimitRange, "S", "simulated before timing (default 5)");
   addNumber(*profile, "--prepare-limit", command.prepare_s, kLimitRange, "S",
-            "wall time after which a scene has settled enough (default 20)");
+            "wall time after which a scene has settled enough, and as much again for a pull to begin (default 10)");
   addNumber(*profile, "--sample-limit", command.sample_s, kLimitRange, "S",
-            "wall time after which a sample ends, with fewer frames (default 2)");
+            "wall time after which a sample ends, with fewer frames (default 1)");
   profile->add_flag("--quick", command.quick, "fewer cases, shorter samples: seconds instead of minutes");
   profile->add_option("--out", command.out, "writes CSV, JSON and the charts into this folder")->type_name("DIR");
   profile->add_option("--trace", command.trace, "writes the frames of the last samples for Perfetto or chrome://tracing")

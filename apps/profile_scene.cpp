@@ -75,7 +75,8 @@ void startPulling(PreparedScene& scene, int rows, const Deadline& deadline) {
   const double begin_s = simulation.time_s;
   while ((centre(simulation.state.position, block) - start).dot(scene.hand.direction) < kPullStart_m) {
     if (deadline.passed() || simulation.time_s > begin_s + kPullLongest_s) {
-      scene.failure = fmt::format("the pulled block sticks ({:.2f} N)", scene.hand.held_n);
+      scene.failure = fmt::format("the block does not slide yet after {:.2f} s of pulling, now with {:.2f} N",
+                                  simulation.time_s - begin_s, scene.hand.held_n);
       return;
     }
     scene.step();
@@ -138,7 +139,7 @@ std::unique_ptr<PreparedScene> prepareScene(const ProfileCase& what, const Profi
     } else if (what.scene != ProfileScene::collapse) {
       settle(*scene, limits.settle_s, deadline);
     }
-    if (isPull(what.scene)) startPulling(*scene, what.rows, deadline);
+    if (isPull(what.scene)) startPulling(*scene, what.rows, Deadline(limits.prepare_s));
   } catch (const DivergenceError& error) {
     scene->failure = error.what();
   }
