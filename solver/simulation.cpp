@@ -154,6 +154,15 @@ const CornerArray& carriedVelocities(const Simulation& simulation) {
   return multiStage ? simulation.engine->carried : simulation.state.velocity;
 }
 
+void kick(Simulation& simulation, std::size_t block, const Vec3& velocity) {
+  for (std::size_t c = 0; c < kCorners; ++c) simulation.state.velocity.add(block, c, velocity);
+  simulation.engine->clock[block].history_s = 0.0;
+  simulation.restTime_s[block] = 0.0;
+  if (simulation.asleep[block] == 0) return;
+  simulation.asleep[block] = 0;
+  ++simulation.engine->awakeCount;
+}
+
 struct Snapshot {
   MotionState state;
   double time_s;
