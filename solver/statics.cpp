@@ -13,12 +13,12 @@
 namespace springtower {
 namespace {
 
-constexpr double kReach = 0.5;         // gaps looked at, in heights of the lowest block
-constexpr double kSettledGap = 1e-6;   // gaps below this are closed, in mean heights
+constexpr double kReach = 0.5;        // gaps looked at, in heights of the lowest block
+constexpr double kSettledGap = 1e-6;  // gaps below this are closed, in mean heights
 constexpr double kMostTurn = 5.0 * std::numbers::pi / 180.0;
-constexpr double kMostSinking = 0.5;   // in mean heights
-constexpr double kMostPull = 1e6;      // in mean block weights; what exceeds it is unlimited
-constexpr double kNoLoad = 1e-6;       // in mean block weights
+constexpr double kMostSinking = 0.5;  // in mean heights
+constexpr double kMostPull = 1e6;     // in mean block weights; what exceeds it is unlimited
+constexpr double kNoLoad = 1e-6;      // in mean block weights
 
 std::vector<std::size_t> allPoints(const StaticsModel& model) {
   std::vector<std::size_t> points(model.points.size());
@@ -149,7 +149,8 @@ ContactLoads contactLoads(const StaticScene& scene) {
       contact.frictionUsed = std::max(contact.frictionUsed, std::min(1.0, force.tail<2>().norm() / bound));
     }
   }
-  for (std::size_t p = 0; p < model.points.size(); ++p) loads.contacts[model.points[p].facing].pointForces.push_back(pointForces[p]);
+  for (std::size_t p = 0; p < model.points.size(); ++p)
+    loads.contacts[model.points[p].facing].pointForces.push_back(pointForces[p]);
   for (std::size_t c = 0; c < loads.contacts.size(); ++c) {
     ContactLoad& contact = loads.contacts[c];
     if (contact.normal_n > kNoLoad * model.forceUnit_n) contact.place = pressure[c] / contact.normal_n;
@@ -218,7 +219,8 @@ Removal removalOf(const Scene& scene, BlockId block, double tolerance_deg) {
 
 std::vector<Removal> removals(const Scene& scene, double tolerance_deg) {
   std::vector<Removal> result(scene.blocks.size());
-  tbb::parallel_for(std::size_t{0}, result.size(), [&](std::size_t b) { result[b] = removalOf(scene, blockId(b), tolerance_deg); });
+  tbb::parallel_for(std::size_t{0}, result.size(),
+                    [&](std::size_t b) { result[b] = removalOf(scene, blockId(b), tolerance_deg); });
   return result;
 }
 

@@ -88,8 +88,8 @@ Face faceAlong(const Box& box, const Vec3& direction) {
   return {across, box.centre + normal * box.half[across], normal};
 }
 
-// Keeps what of a polygon lies below `limit` along a direction (Sutherland & Hodgman 1974). Give the limit a little slack: an edge
-// that lies on it but for rounding would else be cut somewhere along its length.
+// Keeps what of a polygon lies below `limit` along a direction (Sutherland & Hodgman 1974). Give the limit a little slack: an
+// edge that lies on it but for rounding would else be cut somewhere along its length.
 std::vector<Vec3> clipped(const std::vector<Vec3>& polygon, const Vec3& direction, double limit) {
   std::vector<Vec3> kept;
   for (std::size_t i = 0; i < polygon.size(); ++i) {

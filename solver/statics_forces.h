@@ -9,8 +9,8 @@
 namespace springtower {
 
 /// Of all forces at the points `usable` that balance `load` inside the friction cones (the round ones) the one with the least sum
-/// of squares: unique, and what springs of one stiffness at every point, normal and tangential, would take of a load that comes at
-/// once. Forces on the upper block in each point's frame, in the model's units, one for each usable point.
+/// of squares: unique, and what springs of one stiffness at every point, normal and tangential, would take of a load that comes
+/// at once. Forces on the upper block in each point's frame, in the model's units, one for each usable point.
 ///
 /// Its dual is the maximum of a smooth concave function of the blocks' displacements, found by Newton's method with the
 /// generalised derivative of the projection onto a cone and a line search (Qi & Sun 1993). Nothing when that does not balance

@@ -3,6 +3,7 @@
 #include "solver/statics_program.h"
 
 #include <optional>
+#include <vector>
 
 namespace springtower {
 
@@ -17,10 +18,11 @@ struct TiltMargin {
 /// side. Nothing where no turn of less than 89 degrees can be borne.
 ///
 /// The gravities that can be borne are a convex cone; in the plane a unit of gravity away from the blocks they are a convex set,
-/// whose extreme point towards any side is one linear programme. The hull of those found is inside the set, their supporting lines
-/// outside; the next programme asks along the normal of the hull's edge nearest to the origin, until hull and lines agree within
-/// `tolerance_deg` (for an origin outside: the distance algorithm of Gilbert, Johnson & Keerthi 1988). Precondition: `gravity` is
-/// unit.
+/// whose extreme point towards any side is one linear programme. The hull of those found is inside the set, their supporting
+/// lines outside; the next programme asks along the normal of the hull's edge nearest to the origin, until hull and lines agree
+/// within `tolerance_deg` (for an origin outside: the distance algorithm of Gilbert, Johnson & Keerthi 1988). For gravity
+/// straight down gravityLimits comes first: a polygon inside those limits and around the circle that the nearest of them touches;
+/// where forces parallel to gravity balance at its corners no programme has to be solved. Precondition: `gravity` is unit.
 std::optional<TiltMargin> tiltMargin(const StaticsModel& model, const std::vector<std::size_t>& usable, const Vec3& gravity,
                                      double tolerance_deg = 0.005);
 

@@ -28,8 +28,8 @@ struct ForcePoint {
 /// Equilibrium is A f + w = 0: f holds three components for each point in its frame (normal, two tangents: the force on the upper
 /// block), A maps it to force and torque about its centre of every block, and w are the loads; all with six rows for each block.
 struct StaticsModel {
-  std::vector<Vec3> centre;      ///< m
-  std::vector<double> weight;    ///< in mean block weights
+  std::vector<Vec3> centre;    ///< m
+  std::vector<double> weight;  ///< in mean block weights
   std::vector<ForcePoint> points;
   double friction = 0.0;
   double forceUnit_n = 1.0;   ///< mean block weight

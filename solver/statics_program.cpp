@@ -12,7 +12,7 @@
 namespace springtower {
 namespace {
 
-constexpr int kFirstSides = 8;  // edges of every pyramid that are there from the start
+constexpr int kFirstSides = 4;  // edges of every pyramid that are there from the start
 constexpr double kTolerance = 1e-9;
 constexpr double kPriceTolerance = 1e-8;
 constexpr double kMostImbalance = 1e-7;

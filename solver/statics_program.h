@@ -51,7 +51,8 @@ class EquilibriumProgram {
 };
 
 /// Whether forces that are all parallel to `gravity` balance it, at those of the points `usable` whose friction cone holds that
-/// direction. A yes is a yes for the programme above; a no says nothing. One unknown for each point makes it some ten times cheaper.
+/// direction. A yes is a yes for the programme above; a no says nothing. One unknown for each point makes it some ten times
+/// cheaper.
 bool parallelForcesBalance(const StaticsModel& model, std::span<const std::size_t> usable, const Vec3& gravity);
 
 }  // namespace springtower
