@@ -1,6 +1,7 @@
-// The command line program. Exit codes: 0 done, 1 a verdict differs (--check), 2 bad input or arguments, 3 diverged, 70 an error
+// The command line program. Exit codes: 0 done, 1 an answer differs (--check), 2 bad input or arguments, 3 diverged, 70 an error
 // of the program itself.
 #include "apps/run_command.h"
+#include "apps/statics_command.h"
 #include "apps/verdict.h"
 #include "core/error.h"
 #include "core/version.h"
@@ -22,8 +23,9 @@ constexpr std::string_view kFooter = R"help(examples:
   springtower run tower:18                          the full tower for 10 simulated seconds
   springtower run "(010)-(010)-(011)" --seconds 5 --picture tower.png
   springtower verdict towers.jsonl                  which towers of a list stand
+  springtower statics tower:18                      whether it can stand at all, and by what margin
   springtower run --help                            all options of a command
-exit codes: 0 done, 1 a verdict differs (verdict --check), 2 bad input, 3 the simulation diverged)help";
+exit codes: 0 done, 1 an answer differs (--check), 2 bad input, 3 the simulation diverged)help";
 
 int complain(const std::string& message, int code) {
   fmt::print(stderr, "springtower: {}\n", onOneLine(message));
@@ -35,7 +37,7 @@ int complainAboutArguments(const CLI::App& program, const CLI::ParseError& error
   std::string hint = "springtower --help";
   for (const CLI::App* command : program.get_subcommands()) hint = fmt::format("springtower {} --help", command->get_name());
   const bool noCommand = program.get_subcommands().empty() && error.get_name() == "RequiredError";
-  complain(noCommand ? "found no command, allowed are run and verdict" : error.what(), kBadInput);
+  complain(noCommand ? "found no command, allowed are run, verdict and statics" : error.what(), kBadInput);
   fmt::print(stderr, "Try '{}'.\n", hint);
   return kBadInput;
 }
@@ -51,14 +53,17 @@ int run(int argc, char** argv) {
   program.get_formatter()->column_width(34);
   RunCommand runCommand;
   VerdictCommand verdictCommand;
+  StaticsCommand staticsCommand;
   const CLI::App* runApp = defineRun(program, runCommand);
   defineVerdict(program, verdictCommand);
+  const CLI::App* staticsApp = defineStatics(program, staticsCommand);
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return program.exit(error);
     return complainAboutArguments(program, error);
   }
+  if (staticsApp->parsed()) return executeStatics(staticsCommand);
   return runApp->parsed() ? executeRun(runCommand) : executeVerdict(verdictCommand);
 }
 

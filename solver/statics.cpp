@@ -116,6 +116,10 @@ std::optional<TiltMargin> tiltMargin(const StaticScene& scene, double tolerance_
   return tiltMargin(scene.model, scene.usable, scene.gravity, tolerance_deg);
 }
 
+std::optional<double> tiltTowards(const StaticScene& scene, double direction_deg) {
+  return tiltTowards(scene.model, scene.usable, direction_deg);
+}
+
 ContactLoads contactLoads(const StaticScene& scene) {
   const StaticsModel& model = scene.model;
   const Eigen::VectorXd load = model.gravityLoad(scene.gravity);

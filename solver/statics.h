@@ -35,6 +35,9 @@ StaticScene staticScene(const Scene& scene);
 /// all gaps are taken as closed).
 std::optional<TiltMargin> tiltMargin(const StaticScene& scene, double tolerance_deg = 0.005);
 
+/// The largest tilt from straight down towards one side, degrees (see tiltTowards); nothing where straight down is not borne.
+std::optional<double> tiltTowards(const StaticScene& scene, double direction_deg);
+
 /// The force of one contact: what `lower` does to `upper`.
 struct ContactLoad {
   BlockId upper = kFloor;
