@@ -38,9 +38,18 @@ examples:
   springtower statics tower:18
   springtower statics "(111)-(1L1)-(010)" --contacts      loose blocks carry nothing
   springtower statics tower:18 --remove 3:1 --remove 3:2  without these; rows count from 0, positions from 1
-  springtower statics tower:9 --pull 4:2 +x               how hard the block may be pulled before it has to slip
+  springtower statics tower:9 --pull 4:2,+x               how hard the block may be pulled before it has to slip
   springtower statics tower:18 --heights-sigma 0.0002 --seed 3 --report statics.json
   springtower statics towers.jsonl --check                a list, as for verdict; lines may hold remove and stands_after)help";
+
+// A pair of a block and an axis with one comma between them; a space would make an axis that starts with - an option.
+std::pair<std::string, std::string> splitPull(const std::string& text) {
+  const std::size_t comma = text.find(',');
+  if (comma == std::string::npos) {
+    throw InputError(fmt::format("--pull: found {}, allowed is BLOCK,AXIS, such as 4:2,+x", inQuotes(text)));
+  }
+  return {text.substr(0, comma), text.substr(comma + 1)};
+}
 
 Vec3 axisNamed(const std::string& text) {
   constexpr std::string_view kNames = "xyz";
@@ -84,9 +93,10 @@ StaticsAnswer answerOf(const Scene& scene, const StaticsCommand& command) {
   const auto start = std::chrono::steady_clock::now();
   std::vector<Vec3> directions;
   StaticsAnswer answer;
-  for (std::size_t i = 0; i + 1 < command.pull.size(); i += 2) {
-    answer.pulls.push_back({blockNamed(scene, command.pull[i], "--pull"), command.pull[i + 1], {}});
-    directions.push_back(axisNamed(command.pull[i + 1]));
+  for (const std::string& pull : command.pull) {
+    const auto [block, axis] = splitPull(pull);
+    answer.pulls.push_back({blockNamed(scene, block, "--pull"), axis, {}});
+    directions.push_back(axisNamed(axis));
   }
   answer.statics = staticScene(scene);
   answer.margin = tiltMargin(answer.statics);
@@ -147,9 +157,8 @@ CLI::App* defineStatics(CLI::App& program, StaticsCommand& command) {
       ->allow_extra_args(false);
   statics
       ->add_option("--pull", command.pull, "finds the greatest force along an axis (+x, -y, ...) that statics allows on a block")
-      ->type_name("BLOCK AXIS")
-      ->expected(2)
-      ->take_all();
+      ->type_name("BLOCK,AXIS")
+      ->allow_extra_args(false);
   statics->add_flag("--contacts", command.contacts, "prints a table of the contacts, too");
   statics->add_flag("--no-removals", command.noRemovals, "leaves out what taking each block out would do, the longest part");
   statics->add_option("--report", command.report, "writes all figures as JSON")->type_name("FILE.json");

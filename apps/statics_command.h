@@ -21,7 +21,7 @@ struct StaticsCommand {
   std::optional<double> tilt_deg;
   std::optional<double> direction_deg;
   std::vector<std::string> remove;  ///< ROW:POSITION or a block's number
-  std::vector<std::string> pull;    ///< pairs of a block, as above, and an axis
+  std::vector<std::string> pull;    ///< BLOCK,AXIS: a block, as above, and +x, -x, ...
   bool noRemovals = false;
   bool contacts = false;
   bool check = false;

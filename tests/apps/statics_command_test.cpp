@@ -27,7 +27,7 @@ Json reportOf(std::vector<std::string> arguments) {
 }
 
 TEST(StaticsCommand, PrintsVerdictMarginAndATableOfTheBlocks) {
-  const ProgramResult result = statics({"(111)-(1L1)-(010)", "--contacts", "--pull", "1:2", "+x"});
+  const ProgramResult result = statics({"(111)-(1L1)-(010)", "--contacts", "--pull", "1:2,+x"});
   ASSERT_EQ(result.exitCode, 0) << result.error;
   EXPECT_EQ(result.error, "");
   EXPECT_THAT(result.output, HasSubstr("verdict     stands\n"));
@@ -39,7 +39,7 @@ TEST(StaticsCommand, PrintsVerdictMarginAndATableOfTheBlocks) {
 }
 
 TEST(StaticsCommand, ReportsAllFiguresAsJson) {
-  const Json report = reportOf({"(111)-(1L1)-(010)", "--pull", "1:2", "-x", "--pull", "0", "-z"});
+  const Json report = reportOf({"(111)-(1L1)-(010)", "--pull", "1:2,-x", "--pull", "0,-z"});
   EXPECT_EQ(report.at("stands"), true);
   EXPECT_EQ(report.at("leans"), false);
   EXPECT_EQ(report.at("friction"), 0.4);
@@ -61,11 +61,17 @@ TEST(StaticsCommand, ReportsAllFiguresAsJson) {
 }
 
 TEST(StaticsCommand, SaysWhenASceneFallsOrLeans) {
+  // Two blocks meet at a corner: no gravity that friction bears brings the upper one's weight there.
   const Json falls = reportOf({"(001)-(100)"});
   EXPECT_EQ(falls.at("stands"), false);
-  EXPECT_LT(falls.at("tilt_deg").get<double>(), 0.0);
+  EXPECT_TRUE(falls.at("tilt_deg").is_null());
   EXPECT_TRUE(falls.at("forces_are").is_null());
   EXPECT_THAT(statics({"(001)-(100)"}).output, HasSubstr("verdict     falls"));
+  // Four blocks on one beside them: their centre is 36.4 mm above its edge and 13.8 mm beside it.
+  const Json nearly = reportOf({"(001)-(010)-(010)-(010)-(010)"});
+  EXPECT_EQ(nearly.at("stands"), false);
+  EXPECT_NEAR(nearly.at("tilt_deg").get<double>(), -std::atan(13.8 / 36.4) * 57.29578, 0.01);
+  EXPECT_NEAR(nearly.at("tilt_direction_deg").get<double>(), 90.0, 0.01);
   const Json leans = reportOf({"(1L1)-(010)-(010)", "--remove", "0:1"});
   EXPECT_EQ(leans.at("stands"), true);
   EXPECT_EQ(leans.at("leans"), true);
@@ -107,8 +113,9 @@ INSTANTIATE_TEST_SUITE_P(
                       BadArguments{"RemoveAbsent", {"(010)", "--remove", "0:1"}, "--remove: found '0:1'"},
                       BadArguments{"RemoveTwice", {"(111)", "--remove", "0:1", "--remove", "0"}, "found '0' twice"},
                       BadArguments{"RemoveAll", {"(010)", "--remove", "0"}, "found 0 blocks"},
-                      BadArguments{"PullAxis", {"(010)", "--pull", "0", "up"}, "found the axis 'up'"},
-                      BadArguments{"PullBlock", {"(010)", "--pull", "7", "x"}, "--pull: found '7'"},
+                      BadArguments{"PullWithoutAxis", {"(010)", "--pull", "0"}, "--pull: found '0', allowed is BLOCK,AXIS"},
+                      BadArguments{"PullAxis", {"(010)", "--pull", "0,up"}, "found the axis 'up'"},
+                      BadArguments{"PullBlock", {"(010)", "--pull", "7,x"}, "--pull: found '7'"},
                       BadArguments{"TooMany", {"tower:400"}, "found 1200 blocks"},
                       BadArguments{"CheckOfAScene", {"(010)", "--check"}, "--check: found the scene"},
                       BadArguments{"OptionOfAList", {"-", "--mu", "0.3"}, "--mu: found it with a list"},
