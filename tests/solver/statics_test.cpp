@@ -148,13 +148,13 @@ TEST(Statics, SizeAndDensityChangeNothing) {
 TEST(Statics, NoDirectionIsWorseThanTheWorst) {
   const Scene scene = bitCodeScene(
       "(110)-(011)-(111)-(101)-(010)",
-      {.offsets = {{.row = 1, .position = 2, .dx = 0.004, .dy = 0.006}, {.row = 4, .position = 2, .dx = 0.003, .dy = -0.005}}});
+      {.offsets = {{.row = 1, .position = 2, .dx = -0.004, .dy = 0.006}, {.row = 4, .position = 2, .dx = 0.003, .dy = -0.005}}});
   const StaticScene statics = staticScene(scene);
   const std::optional<TiltMargin> margin = tiltMargin(statics);
   ASSERT_TRUE(margin);
   ASSERT_EQ(statics.rest, Rest::stands);
   double least = 90.0;
-  for (int direction = 0; direction < 360; direction += 3) {
+  for (int direction = 0; direction < 360; direction += 6) {
     least = std::min(least, tiltTowards(statics, direction).value_or(-90.0));
   }
   EXPECT_GE(least, margin->tilt_deg - kTilt_deg);
