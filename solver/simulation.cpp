@@ -5,6 +5,7 @@
 #include "solver/implicit.h"
 #include "solver/inertia.h"
 #include "solver/near_pairs.h"
+#include "solver/rest.h"
 #include "solver/spring_force.h"
 #include "solver/stability.h"
 #include "solver/stiffness.h"
@@ -158,9 +159,7 @@ void kick(Simulation& simulation, std::size_t block, const Vec3& velocity) {
   for (std::size_t c = 0; c < kCorners; ++c) simulation.state.velocity.add(block, c, velocity);
   simulation.engine->clock[block].history_s = 0.0;
   simulation.restTime_s[block] = 0.0;
-  if (simulation.asleep[block] == 0) return;
-  simulation.asleep[block] = 0;
-  ++simulation.engine->awakeCount;
+  wake(simulation, block);
 }
 
 struct Snapshot {
