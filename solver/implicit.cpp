@@ -13,8 +13,6 @@ constexpr int kImplicitSteps = 4;
 constexpr double kMostTurn = 0.01;
 // Distance that blocks may close in an implicit step that makes them meet, in tolerances.
 constexpr double kMostClosing = 0.5;
-// Frames that an island is stepped explicitly after an implicit step did not converge.
-constexpr int kExplicitFrames = 6;
 
 int implicitSteps(const Simulation& simulation) {
   const int asked = simulation.scene.settings.substeps;

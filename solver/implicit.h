@@ -7,6 +7,9 @@ namespace springtower {
 /// Step that the two-step formula puts the end's forces into, in steps.
 inline constexpr double kBdf2 = 2.0 / 3.0;
 
+/// Frames that an island is stepped explicitly after an implicit step did not converge, or after a blow.
+inline constexpr int kExplicitFrames = 6;
+
 /// Sizes what method `implicit` needs: histories, factors, and each block's own matrix.
 void prepareImplicit(Simulation& simulation);
 

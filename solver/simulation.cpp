@@ -158,6 +158,7 @@ const CornerArray& carriedVelocities(const Simulation& simulation) {
 void kick(Simulation& simulation, std::size_t block, const Vec3& velocity) {
   for (std::size_t c = 0; c < kCorners; ++c) simulation.state.velocity.add(block, c, velocity);
   simulation.engine->clock[block].history_s = 0.0;
+  simulation.engine->clock[block].explicitFrames = kExplicitFrames;
   simulation.restTime_s[block] = 0.0;
   wake(simulation, block);
 }

@@ -97,7 +97,8 @@ TEST(MemoryUse, OfABlockOfTheTower) {
   EXPECT_EQ(each(use.model), 3 * 8 + 8 + 7 * 3 * 8);
   EXPECT_GT(each(use.contacts), 500.0);
   EXPECT_LT(each(use.contacts), 3000.0);
-  EXPECT_LT(each(use.working), 5500.0);
+  EXPECT_LT(each(use.factor), 3200.0);
+  EXPECT_LT(each(use.working), 11200.0);
   EXPECT_EQ(use.total(), use.state + use.model + use.contacts + use.factor + use.working);
 }
 
