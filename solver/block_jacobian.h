@@ -18,15 +18,6 @@ inline constexpr std::size_t kAffineFreedoms = 12;
 /// The eight vectors of a block, [vector][component].
 using ModeVectors = std::array<std::array<double, 3>, kCorners>;
 
-/// Generalised forces of the eight vectors for forces on the corners (N): sums weighted by each corner's pattern.
-void modeForces(const CornerArray& force, std::size_t block, ModeVectors& modes);
-
-/// The eight vectors of the difference of two fields on the corners, `to` less `from`.
-void modeDifferences(const CornerArray& to, const CornerArray& from, std::size_t block, ModeVectors& modes);
-
-/// Adds a change of the eight vectors to the corners.
-void addModes(const ModeVectors& modes, CornerArray& values, std::size_t block);
-
 /// A block's inertia over step^2 plus the stiffness of its springs at rest, N/m, in its own frame, with the warps eliminated: the
 /// matrix S of the affine part (Schur complement), and what the elimination needs. A cuboid is symmetric under reflection, so the
 /// warps fall into small groups: W_xyz couples to shear, all others only among themselves.
@@ -43,12 +34,5 @@ struct BlockJacobian {
 /// Computes it. `massFactor` (1/s2) multiplies the mass matrix, `springFactor` the springs' stiffness (1 + damping time over
 /// step).
 BlockJacobian blockJacobian(const BlockModel& model, Inertia inertia, std::size_t block, double massFactor, double springFactor);
-
-/// The warps of a residual r (N, in the block's frame) eliminated: changes the affine part of `residual` to what S dz = r asks
-/// for.
-void eliminateWarps(const BlockJacobian& jacobian, ModeVectors& residual);
-
-/// The warps' changes (m) once the affine part of `change` is known; `residual` is what eliminateWarps was given.
-void recoverWarps(const BlockJacobian& jacobian, const ModeVectors& residual, ModeVectors& change);
 
 }  // namespace springtower

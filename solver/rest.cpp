@@ -22,16 +22,37 @@ double speedScale(const Simulation& s) {
   return std::sqrt(s.lengths.blockHeight_m * s.scene.gravity.magnitude);
 }
 
+// A bound from above of the speed of a block's fastest corner in its rigid motion, m/s: that motion has no more kinetic energy
+// than the corners, and the least moment of inertia is that about the longest axis.
+double fastestRigidCorner(const Simulation& simulation, std::size_t b) {
+  double squared = 0.0;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const double* v = simulation.state.velocity.values(a, b);
+    for (std::size_t c = 0; c < kCorners; ++c) squared += v[c] * v[c];
+  }
+  const Vec3& size = simulation.model.dimensions[b];
+  const double diagonal = size.squaredNorm();
+  const double inertia = (diagonal - size.maxCoeff() * size.maxCoeff()) / 12.0;
+  return std::sqrt(squared / static_cast<double>(kCorners)) * (1.0 + std::sqrt(0.25 * diagonal / inertia));
+}
+
 // A block is at rest while its rigid motion is slow: compressing and ringing keep no block awake. It also has to be in balance:
 // over each window the mean force and torque, seen as what they do to the speed of its corners, stay below a small share of
 // gravity. A block that starts to tip is slow but out of balance.
 void judge(Simulation& simulation, std::size_t b) {
   const Settings& settings = simulation.scene.settings;
   RestWindow& window = simulation.engine->rest[b];
+  const double slow = settings.restSpeed * speedScale(simulation);
+  const bool ends = window.age_s + settings.frame_s >= settings.restTime * timeScale(simulation);
+  if (!ends && fastestRigidCorner(simulation, b) < slow) {  // the usual case, without the rigid motion itself
+    simulation.restTime_s[b] += settings.frame_s;
+    window.age_s += settings.frame_s;
+    return;
+  }
   const RigidMotion motion = rigidMotion(simulation.state, b);
   const double arm = 0.5 * simulation.model.dimensions[b].norm();
   const auto begin = [&] { window = {motion.centre, motion.velocity, motion.spin, 0.0}; };
-  if (!(motion.cornerSpeed < settings.restSpeed * speedScale(simulation))) {
+  if (!(motion.cornerSpeed < slow)) {
     simulation.restTime_s[b] = 0.0;
     begin();
     return;

@@ -1,3 +1,5 @@
+#include "core/lanes.h"
+#include "solver/block_modes.h"
 #include "solver/implicit.h"
 #include "solver/inertia.h"
 #include "solver/stage_clock.h"
@@ -24,6 +26,7 @@ ImplicitIsland& islandOf(IslandStep& step) {
 // Where each block ends without forces, and what of it is history: x = (4 x_n - x_(n-1)) / 3 + 2/3 h v at the end, and alike for
 // v (Gear 1971). A block without a history gets that of the uniform acceleration it has now, or of none where a contact has just
 // kicked it.
+SPRINGTOWER_KERNEL
 void foretell(IslandStep& step, double effective_s) {
   Engine& engine = step.engine;
   MotionState& state = step.simulation.state;
@@ -117,6 +120,7 @@ void turn(const std::array<std::array<double, 3>, 3>& axes, bool back, ModeVecto
 
 // The residual of all blocks, in the world's frame; returns the largest in units of what is allowed,
 // infinity where one is not finite.
+SPRINGTOWER_KERNEL
 double findResidual(IslandStep& step, ImplicitIsland& island, double effective_s) {
   const Engine& engine = step.engine;
   const double gravity = std::max(step.simulation.scene.gravity.magnitude, 1.0);
@@ -142,6 +146,7 @@ double findResidual(IslandStep& step, ImplicitIsland& island, double effective_s
 }
 
 // One solution with the factors at hand; moves the positions.
+SPRINGTOWER_KERNEL
 void correct(IslandStep& step, ImplicitIsland& island) {
   Engine& engine = step.engine;
   const std::size_t count = step.blocks.size();
@@ -166,6 +171,7 @@ void correct(IslandStep& step, ImplicitIsland& island) {
 }
 
 // Velocities at the step's end, and those that carried the blocks through it.
+SPRINGTOWER_KERNEL
 void updateVelocities(IslandStep& step, double effective_s) {
   Engine& engine = step.engine;
   MotionState& state = step.simulation.state;

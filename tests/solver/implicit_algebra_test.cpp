@@ -1,5 +1,5 @@
 #include "solver/block_cholesky.h"
-#include "solver/block_jacobian.h"
+#include "solver/block_modes.h"
 #include "solver/inertia.h"
 #include "solver/spring_force.h"
 #include "tests/support/block_scenes.h"
