@@ -74,15 +74,30 @@ SPRINGTOWER_INLINE void modeForces(const CornerArray& force, std::size_t block, 
   }
 }
 
-/// The eight vectors of the difference of two fields on the corners, `to` less `from`.
-SPRINGTOWER_INLINE void modeDifferences(const CornerArray& to, const CornerArray& from, std::size_t block, ModeVectors& modes) {
+/// What is missing to Newton's law at an implicit step's end, N, as generalised forces of the eight vectors: the forces less the
+/// mass times rate (1/s2) times how far the corners are from where they end without forces. Of the eight masses that of the
+/// centre alone differs once the vectors' own lengths are taken out, so one transform does.
+SPRINGTOWER_INLINE void missingForces(const BlockJacobian& jacobian, double rate, const CornerArray& force,
+                                      const CornerArray& target, const CornerArray& position, std::size_t block,
+                                      ModeVectors& modes) {
   using namespace block_modes;
+  const double corner = rate * jacobian.mass[kXYZ] / static_cast<double>(kCorners);
+  const double mean = rate * jacobian.mass[0] / static_cast<double>(kCorners);
   for (std::size_t a = 0; a < 3; ++a) {
-    double difference[kCorners];
-    for (std::size_t c = 0; c < kCorners; ++c) difference[c] = to.values(a, block)[c] - from.values(a, block)[c];
+    const double* f = force.values(a, block);
+    const double* to = target.values(a, block);
+    const double* x = position.values(a, block);
+    double sum[kCorners];
+    double apart = 0.0;
+    for (std::size_t c = 0; c < kCorners; ++c) {
+      const double d = to[c] - x[c];
+      apart += d;
+      sum[c] = f[c] + corner * d;
+    }
     double t[kCorners];
-    transform(difference, t);
-    for (std::size_t m = 0; m < kCorners; ++m) modes[m][a] = (m >= 1 && m < kAffine ? 0.25 : 0.125) * t[kPattern[m]];
+    transform(sum, t);
+    modes[0][a] = t[0] + (mean - corner) * apart;
+    for (std::size_t m = 1; m < kCorners; ++m) modes[m][a] = (m < kAffine ? 0.5 : 1.0) * t[kPattern[m]];
   }
 }
 

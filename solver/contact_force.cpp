@@ -62,6 +62,10 @@ SPRINGTOWER_INLINE LawStep lawStep(const Manifold& m, const ContactLaw& law, con
           step.advance_s / (law.relaxingTime_s + step.advance_s)};
 }
 
+SPRINGTOWER_INLINE bool any(const LaneMask& mask) {
+  return (mask[0] | mask[1] | mask[2] | mask[3]) != 0;
+}
+
 // The contact law on four points. `relative` is the velocity of upper against lower, `carried` the one that moved them since the
 // memory was last brought up to date; `inUse` is 1 for lanes that hold a point.
 SPRINGTOWER_INLINE void pointLaw(const LawStep& s, const Lanes& depth, const Lanes* relative, const Lanes* carried,
@@ -110,14 +114,20 @@ SPRINGTOWER_INLINE void pointLaw(const LawStep& s, const Lanes& depth, const Lan
     friction[a] = -tangential * (stretch[a] + law.dampingTime_s * slip[a]);
   }
   const Lanes squared = friction[0] * friction[0] + friction[1] * friction[1] + friction[2] * friction[2];
-  Lanes size;
-  squareRoot(squared, size);
   const Lanes coefficient = p.sliding > zero ? zero + law.kineticFriction : zero + law.staticFriction;
   const Lanes sticking = coefficient * push;
-  const LaneMask slides = size > sticking;
-  const Lanes bound = slides ? law.kineticFriction * push : sticking;
-  const Lanes keep = slides ? bound / size : one;
+  const LaneMask slides = squared > sticking * sticking;
   p.sliding = slides & touching ? one : zero;
+  if (!any(slides)) {
+    for (int a = 0; a < 3; ++a) {
+      p.stretch[a] = touching ? stretch[a] : zero;
+      p.force[a] = push * normal[a] + friction[a];
+    }
+    return;
+  }
+  Lanes size;
+  squareRoot(squared, size);
+  const Lanes keep = slides ? law.kineticFriction * push / size : one;
   // What slips frees a little of the offset; friction's own loss pays for the work.
   const Lanes stretchSquared = stretch[0] * stretch[0] + stretch[1] * stretch[1] + stretch[2] * stretch[2];
   Lanes stretchSize;

@@ -23,6 +23,8 @@ ImplicitIsland& islandOf(IslandStep& step) {
   return step.engine.implicitIslands[static_cast<std::size_t>(step.blocks.front())];
 }
 
+constexpr double kThird = 1.0 / 3.0;
+
 // Where each block ends without forces, and what of it is history: x = (4 x_n - x_(n-1)) / 3 + 2/3 h v at the end, and alike for
 // v (Gear 1971). A block without a history gets that of the uniform acceleration it has now, or of none where a contact has just
 // kicked it.
@@ -55,8 +57,8 @@ void foretell(IslandStep& step, double effective_s) {
       for (std::size_t c = 0; c < kCorners; ++c) {
         const double dx = known ? x[c] - xBefore[c] : h * v[c] - 0.5 * h * h * start[a][c];
         const double dv = known ? v[c] - vBefore[c] : h * start[a][c];
-        history[c] = x[c] + dx / 3.0;
-        target[c] = history[c] + effective_s * (v[c] + dv / 3.0) + pull;
+        history[c] = x[c] + kThird * dx;
+        target[c] = history[c] + effective_s * (v[c] + kThird * dv) + pull;
         xBefore[c] = x[c];
         vBefore[c] = v[c];
       }
@@ -107,13 +109,13 @@ bool updateMasks(IslandStep& step, ImplicitIsland& island, bool first) {
   return changed;
 }
 
-// Turns the eight vectors into the block's frame, or back.
-void turn(const std::array<std::array<double, 3>, 3>& axes, bool back, ModeVectors& modes) {
-  for (auto& vector : modes) {
-    const std::array<double, 3> from = vector;
+// Turns the first `count` vectors into the block's frame, or back.
+SPRINGTOWER_INLINE void turn(const std::array<std::array<double, 3>, 3>& axes, bool back, std::size_t count, ModeVectors& modes) {
+  for (std::size_t m = 0; m < count; ++m) {
+    const std::array<double, 3> from = modes[m];
     for (std::size_t i = 0; i < 3; ++i) {
-      vector[i] = back ? axes[0][i] * from[0] + axes[1][i] * from[1] + axes[2][i] * from[2]
-                       : axes[i][0] * from[0] + axes[i][1] * from[1] + axes[i][2] * from[2];
+      modes[m][i] = back ? axes[0][i] * from[0] + axes[1][i] * from[1] + axes[2][i] * from[2]
+                         : axes[i][0] * from[0] + axes[i][1] * from[1] + axes[i][2] * from[2];
     }
   }
 }
@@ -128,16 +130,13 @@ double findResidual(IslandStep& step, ImplicitIsland& island, double effective_s
   double worst = 0.0;
   for (std::size_t i = 0; i < step.blocks.size(); ++i) {
     const auto b = static_cast<std::size_t>(step.blocks[i]);
-    ModeVectors missing;
     ModeVectors& residual = island.residual[i];
-    modeForces(engine.force, b, residual);
-    modeDifferences(engine.target, step.simulation.state.position, b, missing);
+    missingForces(engine.jacobian[b], rate, engine.force, engine.target, step.simulation.state.position, b, residual);
     double largest = 0.0;
-    for (std::size_t m = 0; m < kCorners; ++m) {
-      for (std::size_t a = 0; a < 3; ++a) {
-        residual[m][a] += engine.jacobian[b].mass[m] * rate * missing[m][a];
-        if (!std::isfinite(residual[m][a])) return std::numeric_limits<double>::infinity();
-        largest = std::max(largest, std::abs(residual[m][a]));
+    for (const auto& vector : residual) {
+      for (const double r : vector) {
+        if (!std::isfinite(r)) return std::numeric_limits<double>::infinity();
+        largest = std::max(largest, std::abs(r));
       }
     }
     worst = std::max(worst, largest / (kResidual * step.simulation.model.mass[b] * gravity));
@@ -145,16 +144,35 @@ double findResidual(IslandStep& step, ImplicitIsland& island, double effective_s
   return worst;
 }
 
-// One solution with the factors at hand; moves the positions.
+// A block's velocities at the step's end, and those that carried it through the step.
+SPRINGTOWER_INLINE void updateVelocities(IslandStep& step, std::size_t b, double effective_s) {
+  Engine& engine = step.engine;
+  MotionState& state = step.simulation.state;
+  const double rate = 1.0 / effective_s;
+  const double stepRate = 1.0 / step.drift_s;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const double* x = state.position.values(a, b);
+    const double* before = engine.previous.values(a, b);
+    const double* history = engine.history.values(a, b);
+    double* v = state.velocity.values(a, b);
+    double* carried = engine.stepVelocity.values(a, b);
+    for (std::size_t c = 0; c < kCorners; ++c) {
+      v[c] = (x[c] - history[c]) * rate;
+      carried[c] = (x[c] - before[c]) * stepRate;
+    }
+  }
+}
+
+// One solution with the factors at hand; moves the blocks.
 SPRINGTOWER_KERNEL
-void correct(IslandStep& step, ImplicitIsland& island) {
+void correct(IslandStep& step, ImplicitIsland& island, double effective_s) {
   Engine& engine = step.engine;
   const std::size_t count = step.blocks.size();
   for (std::size_t i = 0; i < count; ++i) {
-    turn(island.axes[i], false, island.residual[i]);
+    turn(island.axes[i], false, kCorners, island.residual[i]);
     ModeVectors reduced = island.residual[i];
     eliminateWarps(engine.jacobian[static_cast<std::size_t>(step.blocks[i])], reduced);
-    turn(island.axes[i], true, reduced);
+    turn(island.axes[i], true, kAffine, reduced);
     for (std::size_t m = 0; m < kAffine; ++m)
       std::copy(reduced[m].begin(), reduced[m].end(), island.affine.data() + kNodeSize * i + 3 * m);
   }
@@ -163,38 +181,40 @@ void correct(IslandStep& step, ImplicitIsland& island) {
     const auto b = static_cast<std::size_t>(step.blocks[i]);
     ModeVectors change{};
     for (std::size_t m = 0; m < kAffine; ++m) std::copy_n(island.affine.data() + kNodeSize * i + 3 * m, 3, change[m].begin());
-    turn(island.axes[i], false, change);
+    turn(island.axes[i], false, kAffine, change);
     recoverWarps(engine.jacobian[b], island.residual[i], change);
-    turn(island.axes[i], true, change);
+    turn(island.axes[i], true, kCorners, change);
     addModes(change, step.simulation.state.position, b);
+    updateVelocities(step, b, effective_s);
   }
 }
 
-// Velocities at the step's end, and those that carried the blocks through it.
+SPRINGTOWER_INLINE void copyPoints(const PointMemory& from, std::int32_t count, PointMemory& to) {
+  if (count > 4) {
+    to = from;
+    return;
+  }
+  const auto copy = [](const auto& source, auto& target) {
+    Lanes lanes;
+    load(source.data(), lanes);
+    store(lanes, target.data());
+  };
+  copy(from.stretchX, to.stretchX);
+  copy(from.stretchY, to.stretchY);
+  copy(from.stretchZ, to.stretchZ);
+  copy(from.relaxed, to.relaxed);
+  copy(from.offset, to.offset);
+  copy(from.scale, to.scale);
+  copy(from.live, to.live);
+  copy(from.sliding, to.sliding);
+}
+
 SPRINGTOWER_KERNEL
-void updateVelocities(IslandStep& step, double effective_s) {
-  Engine& engine = step.engine;
-  MotionState& state = step.simulation.state;
-  for (const std::int32_t block : step.blocks) {
-    const auto b = static_cast<std::size_t>(block);
-    for (std::size_t a = 0; a < 3; ++a) {
-      const double* x = state.position.values(a, b);
-      const double* before = engine.previous.values(a, b);
-      const double* history = engine.history.values(a, b);
-      double* v = state.velocity.values(a, b);
-      double* carried = engine.stepVelocity.values(a, b);
-      for (std::size_t c = 0; c < kCorners; ++c) {
-        v[c] = (x[c] - history[c]) / effective_s;
-        carried[c] = (x[c] - before[c]) / step.drift_s;
-      }
-    }
-  }
-}
-
 void accept(IslandStep& step, ImplicitIsland& island) {
   Engine& engine = step.engine;
   for (const std::int32_t at : island.touching) {
-    static_cast<PointMemory&>(engine.pairs[static_cast<std::size_t>(at)].manifold) = engine.trial[static_cast<std::size_t>(at)];
+    Manifold& manifold = engine.pairs[static_cast<std::size_t>(at)].manifold;
+    copyPoints(engine.trial[static_cast<std::size_t>(at)], manifold.count, manifold);
   }
   for (const std::int32_t block : step.blocks) {
     BlockClock& clock = engine.clock[static_cast<std::size_t>(block)];
@@ -231,11 +251,10 @@ bool solveStep(IslandStep& step, double effective_s) {
     const bool changed = updateMasks(step, island, iteration == 0);
     if (changed) most = std::min(kMostContactIterations, iteration + kMostIterations);
     if ((changed || !island.factorised) && !assemble(step, island, effective_s)) break;
-    correct(step, island);
-    updateVelocities(step, effective_s);
+    correct(step, island, effective_s);
     clock.lap(Stage::integration);
     evaluateForces(step, state, step.engine.stepVelocity, step.drift_s, Memory::trial);
-    clock.lap(Stage::contacts);
+    clock.skip();  // it counts its own
     residual = findResidual(step, island, effective_s);
     ++step.counters.implicitIterations;
     converged = residual <= 1.0;
