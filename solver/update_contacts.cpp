@@ -1,5 +1,4 @@
 #include "core/error.h"
-#include "core/lanes.h"
 #include "solver/contact_births.h"
 #include "solver/island_step.h"
 #include "solver/stage_clock.h"
@@ -15,7 +14,6 @@ namespace springtower {
 // Adds up the path of each block's fastest corner. A block whose corners move apart by half its least side in one step has
 // diverged: free flight is as fast as it likes, but nothing sound deforms like that. NaN fails every comparison, so what is sound
 // is asked for.
-SPRINGTOWER_KERNEL
 bool addTravel(IslandStep& step) {
   Simulation& simulation = step.simulation;
   bool inside = true;
