@@ -1,0 +1,21 @@
+#pragma once
+
+#include "apps/viewer_state.h"
+
+namespace springtower {
+
+/// What the user asked for in the panels that needs the window: done by whoever owns it.
+struct PanelWishes {
+  bool screenshot = false;
+  bool film = false;       ///< starts a film, or ends the one that runs
+  bool recording = false;  ///< writes what was played so far
+};
+
+/// Draws panels, notices and the hand's force with Dear ImGui, and carries out what the user changes in them. Call between
+/// ImGui::NewFrame and ImGui::Render. `filming`: whether a film runs.
+PanelWishes drawPanels(Viewer& viewer, bool filming);
+
+/// The next slower rate of simulated time, or real time after the slowest.
+double nextRate(double rate);
+
+}  // namespace springtower
