@@ -164,6 +164,7 @@ void writeViewerReport(std::ostream& stream, const Viewer& viewer) {
   using Json = nlohmann::ordered_json;
   const Session& session = viewer.session;
   const Watch& watch = viewer.watch;
+  const Camera& camera = viewer.controls.camera;
   const CornerArray& position = session.simulation.state.position;
   bool finite = true;
   for (const auto& values : position.component) {
@@ -183,6 +184,12 @@ void writeViewerReport(std::ostream& stream, const Viewer& viewer) {
                {"game", describe(session.game)},
                {"held_block", static_cast<int>(viewer.controls.hand.block)},
                {"grip_n", session.gripForce.force.norm()},
+               {"camera",
+                {{"target_m", {camera.target.x(), camera.target.y(), camera.target.z()}},
+                 {"azimuth", camera.azimuth},
+                 {"elevation", camera.elevation},
+                 {"distance_m", camera.distance},
+                 {"field_of_view", camera.fieldOfView}}},
                {"state_hash", fmt::format("{:016x}", stateHash(session.simulation))}};
   json["replay_differs_in_frame"] = viewer.replay && viewer.replay->differs ? Json(*viewer.replay->differs) : Json(nullptr);
   stream << json.dump(2) << '\n';

@@ -74,7 +74,7 @@ Picture pictureOf(Viewer& viewer);
 /// What the viewer's user is to know at once: slow motion, the game, a replay that differs; one line each.
 std::vector<std::string> notices(const Viewer& viewer);
 
-/// Writes the report: frames, pictures, penetration, moves, game and hand, as JSON.
+/// Writes the report: frames, pictures, penetration, moves, game, hand and camera, as JSON.
 void writeViewerReport(std::ostream& stream, const Viewer& viewer);
 
 }  // namespace springtower
