@@ -50,14 +50,34 @@ std::string numbered(const Desk& desk, const char* name, int number, const char*
   return fmt::format("{}/{}-{:03}{}", desk.files.folder, name, number, ending);
 }
 
-void onCursor(GLFWwindow* window, double x, double y) {
-  Desk& desk = deskOf(window);
+// A place in the window as pixels of the picture, which has more of them on a fine screen.
+Eigen::Vector2d inPixels(const Desk& desk, double x, double y) {
   int width = 1;
   int height = 1;
-  glfwGetWindowSize(window, &width, &height);
+  glfwGetWindowSize(desk.window, &width, &height);
   const Viewport& viewport = desk.viewer.controls.viewport;
-  pointerMoved(desk.viewer.controls, desk.viewer.session, x * viewport.width / std::max(width, 1),
-               y * viewport.height / std::max(height, 1));
+  return {x * viewport.width / std::max(width, 1), y * viewport.height / std::max(height, 1)};
+}
+
+void onCursor(GLFWwindow* window, double x, double y) {
+  Desk& desk = deskOf(window);
+  const Eigen::Vector2d at = inPixels(desk, x, y);
+  pointerMoved(desk.viewer.controls, desk.viewer.session, at.x(), at.y());
+}
+
+// A pull along the view wants more room than the screen has below a block: while it lasts the pointer is hidden and has no
+// bounds. It comes back where it was.
+void boundPointer(Desk& desk) {
+  Controls& controls = desk.viewer.controls;
+  const int wanted = controls.right && controls.hand.block != kFloor ? GLFW_CURSOR_DISABLED : GLFW_CURSOR_NORMAL;
+  if (glfwGetInputMode(desk.window, GLFW_CURSOR) == wanted) return;
+  glfwSetInputMode(desk.window, GLFW_CURSOR, wanted);
+  double x = 0.0;
+  double y = 0.0;
+  glfwGetCursorPos(desk.window, &x, &y);
+  const Eigen::Vector2d at = inPixels(desk, x, y);
+  controls.x = at.x();  // the jump is none of the hand's
+  controls.y = at.y();
 }
 
 void onButton(GLFWwindow* window, int button, int action, int) {
@@ -69,6 +89,7 @@ void onButton(GLFWwindow* window, int button, int action, int) {
                        : button == GLFW_MOUSE_BUTTON_RIGHT ? Button::right
                                                            : Button::middle;
   buttonChanged(desk.viewer.controls, desk.viewer.session, which, pressed);
+  boundPointer(desk);
 }
 
 void onScroll(GLFWwindow* window, double, double steps) {
@@ -321,6 +342,7 @@ void runWindow(Viewer& viewer, const ViewerFiles& files, const Viewport& size, C
   Clock::time_point last = Clock::now();
   while (glfwWindowShouldClose(desk.window) == GLFW_FALSE) {
     glfwPollEvents();
+    boundPointer(desk);
     advance(viewer, std::chrono::duration<double>(Clock::now() - std::exchange(last, Clock::now())).count());
     drawWindow(desk);
     if (++viewer.watch.pictures > 1) continue;
