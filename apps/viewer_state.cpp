@@ -55,6 +55,7 @@ void stepOnce(Viewer& viewer) {
     viewer.paused = true;
     return;
   }
+  ++viewer.watch.frames;
   keepBar(viewer, before);
   if (viewer.replay) compare(*viewer.replay, session);
   if (!session.failure.empty()) {
@@ -173,6 +174,7 @@ void writeViewerReport(std::ostream& stream, const Viewer& viewer) {
   Json json = {{"version", kVersion},
                {"scene", viewer.choice.name},
                {"frames", session.frame},
+               {"frames_stepped", watch.frames},
                {"pictures", watch.pictures},
                {"first_picture_s", watch.firstPicture_s},
                {"finite", finite},

@@ -25,7 +25,8 @@ struct Watch {
   bool measures = false;  ///< penetration, every sixth frame
   Penetration deepest;
   double deepestTime_s = 0.0;
-  double mostMove_m = 0.0;  ///< largest move of any corner from the scene's start
+  double mostMove_m = 0.0;   ///< largest move of any corner from the scene's start
+  std::uint64_t frames = 0;  ///< stepped, over all resets and ways back
   std::uint64_t pictures = 0;
   double firstPicture_s = 0.0;  ///< from the program's start
   int failures = 0;             ///< divergences
