@@ -40,3 +40,8 @@ fi
 
 step "tests"
 ctest --preset "$preset" -j "$(nproc)"
+
+if [[ $preset == ci ]]; then
+  step "instruction counts and hashes of fixed scenes: callgrind"
+  bench/callgrind.py "build/$preset"
+fi

@@ -68,7 +68,8 @@ CLI::Option* addWholeNumber(CLI::App& app, const std::string& name, std::optiona
 
 void addPhysicsOptions(CLI::App& app, PhysicsOptions& options) {
   app.add_option("--method", options.method,
-                 "how a frame is stepped: semi-implicit-euler (default), midpoint, runge-kutta-4, or report (the impulses of the "
+                 "how a frame is stepped: semi-implicit-euler (default), implicit, midpoint, runge-kutta-4, or report (the "
+                 "impulses of the "
                  "2003 report, for comparison)")
       ->type_name("NAME");
   app.add_option("--inertia", options.inertia,

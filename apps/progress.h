@@ -2,21 +2,22 @@
 
 #include <chrono>
 #include <string>
+#include <string_view>
 
 namespace springtower {
 
-/// One line about how far a long job is, rewritten in place on standard error; silent unless that is a terminal and the job takes
-/// more than two seconds. For one thread.
+/// A bar that shows how far a long job is, rewritten in place on standard error; silent unless that is a terminal and the job
+/// takes more than two seconds. For one thread.
 class Progress {
  public:
-  /// `unit` follows "DONE of TOTAL ".
+  /// `unit` follows "[####      ] DONE of TOTAL ".
   Progress(double total, std::string unit);
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
   ~Progress() { clear(); }
 
-  /// Says how much is done; cheap enough to call every frame.
-  void update(double done);
+  /// Says how much is done, and perhaps at what; cheap enough to call every frame.
+  void update(double done, std::string_view at = {});
   /// Removes the line.
   void clear();
 

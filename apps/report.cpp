@@ -44,6 +44,10 @@ Json countersJson(const Counters& counters) {
           {"contacts_born_penetrating", counters.contactsBornPenetrating},
           {"manifold_refreshes", counters.manifoldRefreshes},
           {"spring_evaluations", counters.springEvaluations},
+          {"implicit_steps", counters.implicitSteps},
+          {"implicit_iterations", counters.implicitIterations},
+          {"factorisations", counters.factorisations},
+          {"handed_over", counters.handedOver},
           {"response_iterations", counters.responseIterations}};
 }
 

@@ -1,5 +1,6 @@
 // The command line program. Exit codes: 0 done, 1 a verdict differs (--check), 2 bad input or arguments, 3 diverged, 70 an error
 // of the program itself.
+#include "apps/profile_command.h"
 #include "apps/run_command.h"
 #include "apps/verdict.h"
 #include "core/error.h"
@@ -22,6 +23,7 @@ constexpr std::string_view kFooter = R"help(examples:
   springtower run tower:18                          the full tower for 10 simulated seconds
   springtower run "(010)-(010)-(011)" --seconds 5 --picture tower.png
   springtower verdict towers.jsonl                  which towers of a list stand
+  springtower profile --quick                       how long a frame takes
   springtower run --help                            all options of a command
 exit codes: 0 done, 1 a verdict differs (verdict --check), 2 bad input, 3 the simulation diverged)help";
 
@@ -35,7 +37,7 @@ int complainAboutArguments(const CLI::App& program, const CLI::ParseError& error
   std::string hint = "springtower --help";
   for (const CLI::App* command : program.get_subcommands()) hint = fmt::format("springtower {} --help", command->get_name());
   const bool noCommand = program.get_subcommands().empty() && error.get_name() == "RequiredError";
-  complain(noCommand ? "found no command, allowed are run and verdict" : error.what(), kBadInput);
+  complain(noCommand ? "found no command, allowed are run, verdict and profile" : error.what(), kBadInput);
   fmt::print(stderr, "Try '{}'.\n", hint);
   return kBadInput;
 }
@@ -53,12 +55,15 @@ int run(int argc, char** argv) {
   VerdictCommand verdictCommand;
   const CLI::App* runApp = defineRun(program, runCommand);
   defineVerdict(program, verdictCommand);
+  ProfileCommand profileCommand;
+  const CLI::App* profileApp = defineProfile(program, profileCommand);
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return program.exit(error);
     return complainAboutArguments(program, error);
   }
+  if (profileApp->parsed()) return executeProfile(profileCommand);
   return runApp->parsed() ? executeRun(runCommand) : executeVerdict(verdictCommand);
 }
 

@@ -18,6 +18,10 @@ Counters& Counters::operator+=(const Counters& other) {
   manifoldRefreshes += other.manifoldRefreshes;
   contactEvaluations += other.contactEvaluations;
   springEvaluations += other.springEvaluations;
+  implicitSteps += other.implicitSteps;
+  implicitIterations += other.implicitIterations;
+  factorisations += other.factorisations;
+  handedOver += other.handedOver;
   responseIterations += other.responseIterations;
   return *this;
 }

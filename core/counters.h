@@ -31,6 +31,10 @@ struct Counters {
   std::uint64_t manifoldRefreshes = 0;
   std::uint64_t contactEvaluations = 0;  ///< contact points times substeps
   std::uint64_t springEvaluations = 0;   ///< springs times force evaluations
+  std::uint64_t implicitSteps = 0;       ///< steps taken by the implicit method, over all islands
+  std::uint64_t implicitIterations = 0;  ///< solutions with a factorised matrix in these
+  std::uint64_t factorisations = 0;
+  std::uint64_t handedOver = 0;          ///< implicit steps that did not converge: their islands were stepped explicitly
   std::uint64_t responseIterations = 0;  ///< passes of the report's collision loop
 
   Counters& operator+=(const Counters& other);

@@ -49,7 +49,8 @@ constexpr auto kSettingTable = std::to_array<SettingRow>({
 template <class T>
 using Names = std::span<const std::pair<std::string_view, T>>;
 
-constexpr std::array<std::pair<std::string_view, Method>, 4> kMethodNames = {{{"semi-implicit-euler", Method::semiImplicitEuler},
+constexpr std::array<std::pair<std::string_view, Method>, 5> kMethodNames = {{{"implicit", Method::implicit},
+                                                                              {"semi-implicit-euler", Method::semiImplicitEuler},
                                                                               {"midpoint", Method::midpoint},
                                                                               {"runge-kutta-4", Method::rungeKutta4},
                                                                               {"report", Method::report}}};

@@ -9,7 +9,7 @@
 namespace springtower {
 
 /// How a frame is stepped. Each is one file solve_*.cpp of solver/.
-enum class Method { semiImplicitEuler, midpoint, rungeKutta4, report };
+enum class Method { implicit, semiImplicitEuler, midpoint, rungeKutta4, report };
 /// How the corner particles carry a block's mass: `cuboid` has exactly the mass and inertia of a uniform cuboid, `lumped` is the
 /// report's eight equal masses (three times the central moments).
 enum class Inertia { cuboid, lumped };

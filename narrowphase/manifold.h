@@ -13,16 +13,9 @@ inline constexpr std::size_t kManifoldPoints = 8;  // two rectangles overlap in 
 /// What a pair of blocks (or a block and the floor) is to one another.
 enum class Touch : std::uint8_t { apart, face, edge };
 
-/// The contact manifold of a pair: where `upper` rests on `lower` (names only: up is along the normal), and the memory of each
-/// point. A face manifold holds points of upper's incident face against the plane of lower's reference face (or the floor); its
-/// points are corners of the overlap of the two faces: corners of one block over the other's face, and crossings of their edges.
-/// An edge manifold is one point where two edges cross. Structure of arrays over the points, so that four points fill one SIMD
-/// register.
-struct Manifold {
-  alignas(32) std::array<double, kManifoldPoints> u{};  ///< place on the incident face along its first side, -1/2..1/2
-  alignas(32) std::array<double, kManifoldPoints> v{};  ///< and along its second side
-  alignas(
-      32) std::array<double, kManifoldPoints> stretchX{};  ///< the friction anchor: elastic tangential displacement of upper, m
+/// What the points of a manifold remember from step to step, structure of arrays, so that four points fill one SIMD register.
+struct PointMemory {
+  alignas(32) std::array<double, kManifoldPoints> stretchX{};  ///< friction anchor: elastic tangential displacement of upper, m
   alignas(32) std::array<double, kManifoldPoints> stretchY{};
   alignas(32) std::array<double, kManifoldPoints> stretchZ{};
   alignas(32) std::array<double, kManifoldPoints> relaxed{};  ///< depth that the viscoelastic branch has forgotten, m
@@ -30,6 +23,15 @@ struct Manifold {
   alignas(32) std::array<double, kManifoldPoints> scale{};    ///< its stiffness over the resting one, >= 1 after an impact
   alignas(32) std::array<double, kManifoldPoints> live{};     ///< 1 where it touches, 0 where not (a double, to serve as a lane)
   alignas(32) std::array<double, kManifoldPoints> sliding{};  ///< 1 where it slides
+};
+
+/// The contact manifold of a pair: where `upper` rests on `lower` (names only: up is along the normal), and the memory of each
+/// point. A face manifold holds points of upper's incident face against the plane of lower's reference face (or the floor); its
+/// points are corners of the overlap of the two faces: corners of one block over the other's face, and crossings of their edges.
+/// An edge manifold is one point where two edges cross.
+struct Manifold : PointMemory {
+  alignas(32) std::array<double, kManifoldPoints> u{};  ///< place on the incident face along its first side, -1/2..1/2
+  alignas(32) std::array<double, kManifoldPoints> v{};  ///< and along its second side
   std::int32_t upper = -1;
   std::int32_t lower = -1;  ///< -1: the floor
   std::int32_t count = 0;

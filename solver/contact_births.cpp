@@ -1,10 +1,12 @@
 #include "solver/contact_births.h"
 
 #include "narrowphase/crossing.h"
+#include "solver/contact_memory.h"
 #include "solver/lengths.h"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace springtower {
 
@@ -19,6 +21,10 @@ ManifoldLimits limitsOf(const Simulation& simulation) {
   return {kMergeRadius * h, kManifoldReach * h};
 }
 
+double edgeSlackOf(const Simulation& simulation) {
+  return kEdgeSlack * simulation.lengths.blockHeight_m;
+}
+
 // The overlap of the faces along the normal of one of them: b's if `referenceIsB`, else a's.
 void faceManifold(const Separation& separation, const CornerView& a, const CornerView& b, const ManifoldLimits& limits,
                   const NearPair& pair, bool referenceIsB, Manifold& fresh) {
@@ -28,6 +34,16 @@ void faceManifold(const Separation& separation, const CornerView& a, const Corne
   fresh.lower = referenceIsB ? pair.b : pair.a;
   buildFaceManifold(incidentBlock, referenceIsB ? b : a, incidentFaceOf(incidentBlock, towardsIncident),
                     referenceIsB ? separation.faceOfB : separation.faceOfA, limits, fresh);
+}
+
+// Depth of the deepest point of a face manifold, m.
+double deepestPoint(const Manifold& manifold, const CornerView& upper, const CornerView& lower) {
+  const FaceFrame face = faceFrame(lower, manifold.referenceFace);
+  double depth = -std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < static_cast<std::size_t>(manifold.count); ++i) {
+    depth = std::max(depth, -face.normal.dot(pointOnIncidentFace(manifold, upper, i) - face.centre));
+  }
+  return depth;
 }
 
 void edgeManifold(const Separation& separation, const NearPair& pair, Manifold& fresh) {
@@ -42,15 +58,17 @@ void edgeManifold(const Separation& separation, const NearPair& pair, Manifold& 
 }
 
 // The faces or edges that touch, given what separates the blocks best. A face that was the reference stays so until the other is
-// clearly better, and faces are preferred to edges. Where the faces have no common outline the next best direction is taken.
+// clearly better. Faces are preferred to edges that separate better as long as they are nearly parallel, share more than a point,
+// and the outline they share is no deeper than the edges. Where they share nothing the next best direction is taken.
 void chooseManifold(const Separation& separation, const CornerView& a, const CornerView& b, const ManifoldLimits& limits,
-                    double slack, const NearPair& pair, Manifold& fresh) {
+                    double slack, double edgeSlack, const NearPair& pair, Manifold& fresh) {
   const bool wasA = pair.manifold.touch == Touch::face && pair.manifold.lower == pair.a;
   const bool wasB = pair.manifold.touch == Touch::face && pair.manifold.lower == pair.b;
   const bool referenceIsB = separation.faceB + (wasB ? slack : 0.0) >= separation.faceA + (wasA ? slack : 0.0);
   const Vec3& normal = referenceIsB ? separation.normalFaceB : separation.normalFaceA;
   const double face = referenceIsB ? separation.faceB : separation.faceA;
-  if (separation.edge > face + slack) {
+  const bool crossed = separation.edge > face + slack;
+  if (crossed) {
     const CornerView& incidentBlock = referenceIsB ? a : b;
     const int incident = incidentFaceOf(incidentBlock, referenceIsB ? normal : Vec3(-normal));
     if (std::abs(faceFrame(incidentBlock, incident).normal.dot(normal)) < kFaceCosine) {
@@ -59,6 +77,12 @@ void chooseManifold(const Separation& separation, const CornerView& a, const Cor
     }
   }
   faceManifold(separation, a, b, limits, pair, referenceIsB, fresh);
+  const bool upperIsA = fresh.upper == pair.a;
+  if (crossed && (fresh.count == 1 ||
+                  (fresh.count > 1 && deepestPoint(fresh, upperIsA ? a : b, upperIsA ? b : a) > edgeSlack - separation.edge))) {
+    edgeManifold(separation, pair, fresh);
+    return;
+  }
   if (fresh.count == 0) faceManifold(separation, a, b, limits, pair, !referenceIsB, fresh);
   if (fresh.count == 0 && std::isfinite(separation.edge)) edgeManifold(separation, pair, fresh);
 }
@@ -74,47 +98,8 @@ bool anyLive(const Manifold& manifold) {
   return std::any_of(manifold.live.begin(), manifold.live.begin() + manifold.count, [](double live) { return live != 0.0; });
 }
 
-// Depth of a face manifold's points below the reference face or the floor, m.
-double depthOf(const Manifold& m, const CornerArray& position, std::size_t point) {
-  const Vec3 place = pointOnIncidentFace(m, cornersOf(position, static_cast<std::size_t>(m.upper)), point);
-  if (m.lower < 0) return -place.z();
-  const FaceFrame face = faceFrame(cornersOf(position, static_cast<std::size_t>(m.lower)), m.referenceFace);
-  return -face.normal.dot(place - face.centre);
-}
-
-// Carries over what the old manifold knew. An edge contact that stays one keeps everything. Points that are new in a pair that
-// already touches start with as much energy as a resting point may store, k tolerance^2 / 2, and the stiffness of the others:
-// were each to start unloaded at the depth it is found at, a rolling pair that keeps changing its points would sink.
-void keepMemory(const Manifold& old, const CornerArray& position, double radius, double tolerance_m, Manifold& fresh) {
-  if (old.touch == Touch::edge && fresh.touch == Touch::edge) {
-    const std::int8_t incident = fresh.incidentFace;
-    const std::int8_t reference = fresh.referenceFace;
-    fresh = old;
-    fresh.incidentFace = incident;
-    fresh.referenceFace = reference;
-    return;
-  }
-  if (old.touch == Touch::face && fresh.touch == Touch::face) {
-    carryMemory(old, cornersOf(position, static_cast<std::size_t>(old.upper)), fresh,
-                cornersOf(position, static_cast<std::size_t>(fresh.upper)), radius);
-  }
-  if (!anyLive(old) || fresh.touch != Touch::face) return;
-  double surface = 0.0;
-  double scale = 1.0;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(old.count); ++i) {
-    surface = std::max(surface, old.live[i] * old.offset[i]);
-    scale = std::max(scale, old.live[i] * old.scale[i]);
-  }
-  for (std::size_t i = 0; i < static_cast<std::size_t>(fresh.count); ++i) {
-    if (fresh.live[i] != 0.0) continue;
-    fresh.live[i] = 1.0;
-    fresh.offset[i] = std::max(surface, depthOf(fresh, position, i) - tolerance_m / std::sqrt(scale));
-    fresh.scale[i] = scale;
-  }
-}
-
-// How far a block's corners are from its affine part, m. The separating axes of two blocks are exact for that part, so an overlap
-// by them that is not larger than both warps is none of the faces.
+// How far a block's corners are from its affine part, m. The separating axes of two blocks are exact for those parts, from which
+// corners and faces both may differ by this: an overlap by them of up to twice both warps may be none of the faces.
 double warp(const CornerArray& position, std::size_t block) {
   const AffineField field = affineField(position, block);
   double largest = 0.0;
@@ -189,10 +174,11 @@ void watchApart(IslandStep& step, NearPair& pair, Counters& counters) {
     pair.margin = 0.0;
     return;
   }
-  const double unsure = step.simulation.lengths.contactError_m + warp(step.engine.previous, a) + warp(step.engine.previous, b);
+  const double unsure =
+      step.simulation.lengths.contactError_m + 2.0 * (warp(step.engine.previous, a) + warp(step.engine.previous, b));
   if (step.simulation.frame > 0 && before.best() < -unsure) ++counters.contactsBornPenetrating;
   Manifold fresh;
-  chooseManifold(before, movingA.end, movingB.end, limitsOf(step.simulation), 0.0, pair, fresh);
+  chooseManifold(before, movingA.end, movingB.end, limitsOf(step.simulation), 0.0, edgeSlackOf(step.simulation), pair, fresh);
   pair.margin = 0.0;
   if (fresh.count == 0) return;
   ++counters.contactsBorn;
@@ -224,13 +210,14 @@ void renewManifold(IslandStep& step, NearPair& pair, Counters& counters) {
       part(pair, separation.bestNormal(), separation.best());
       return;
     }
-    chooseManifold(separation, a, b, limits, kReferenceSlack * simulation.lengths.blockHeight_m, pair, fresh);
+    chooseManifold(separation, a, b, limits, kReferenceSlack * simulation.lengths.blockHeight_m, edgeSlackOf(simulation), pair,
+                   fresh);
     if (fresh.count == 0) {
       part(pair, separation.bestNormal(), std::max(0.0, separation.best()));
       return;
     }
   }
-  keepMemory(pair.manifold, position, radius, simulation.tolerance_m, fresh);
+  keepContactMemory(pair.manifold, position, step.law, radius, fresh);
   pair.manifold = fresh;
 }
 

@@ -20,7 +20,7 @@ struct PointLanes {
   Lanes normalForce;
 };
 
-SPRINGTOWER_INLINE void loadPoints(const Manifold& m, std::size_t first, PointLanes& p) {
+SPRINGTOWER_INLINE void loadPoints(const PointMemory& m, std::size_t first, PointLanes& p) {
   load(m.stretchX.data() + first, p.stretch[0]);
   load(m.stretchY.data() + first, p.stretch[1]);
   load(m.stretchZ.data() + first, p.stretch[2]);
@@ -31,7 +31,7 @@ SPRINGTOWER_INLINE void loadPoints(const Manifold& m, std::size_t first, PointLa
   load(m.sliding.data() + first, p.sliding);
 }
 
-SPRINGTOWER_INLINE void storePoints(const PointLanes& p, std::size_t first, Manifold& m) {
+SPRINGTOWER_INLINE void storePoints(const PointLanes& p, std::size_t first, PointMemory& m) {
   store(p.stretch[0], m.stretchX.data() + first);
   store(p.stretch[1], m.stretchY.data() + first);
   store(p.stretch[2], m.stretchZ.data() + first);
@@ -71,9 +71,9 @@ SPRINGTOWER_INLINE void pointLaw(const LawStep& s, const Lanes& depth, const Lan
   const ContactLaw& law = s.law;
   const Lanes closing = -(relative[0] * normal[0] + relative[1] * normal[1] + relative[2] * normal[2]);
 
-  // A point that is reached in this step starts with no force: its offset is the depth it is found at, so it adds no energy. It
-  // is stiffened so that its impact stops within the depth aimed at. The offset shrinks as the point lifts, where it stores
-  // nothing.
+  // A point that is reached in this step starts with no force: its offset is the depth it is found at (or, seen from a step's
+  // end, the surface), so it adds no energy. It is stiffened so that its impact stops within the depth aimed at. The offset
+  // shrinks as the point lifts, where it stores nothing.
   const LaneMask touching = (depth > zero) & (inUse > zero);
   const LaneMask known = touching & (p.live > zero);
   Lanes impact = s.impactFactor * closing * closing;
@@ -81,7 +81,7 @@ SPRINGTOWER_INLINE void pointLaw(const LawStep& s, const Lanes& depth, const Lan
   impact = impact < s.step.scaleMost ? impact : zero + s.step.scaleMost;
   p.scale = known ? 1.0 + (p.scale - 1.0) * s.scaleKeep : impact;
   const Lanes lower = p.offset < depth ? p.offset : depth;
-  p.offset = known ? lower : depth;
+  p.offset = known ? lower : depth * s.step.bornOffset;
   p.live = touching ? one : zero;
 
   const Lanes elastic = depth - p.offset;
@@ -173,8 +173,8 @@ SPRINGTOWER_INLINE void place(const Lanes& total, double sign, const FaceAxes& f
 }
 
 template <bool Floor, bool SameMotion>
-SPRINGTOWER_INLINE void faceForces(Manifold& m, const ContactSide& upper, const ContactSide& lower, const LawStep& law,
-                                   bool commit, PairForce& result, PointForces* report) {
+SPRINGTOWER_INLINE void faceForces(const Manifold& m, const ContactSide& upper, const ContactSide& lower, const LawStep& law,
+                                   PointMemory* keep, PairForce& result, PointForces* report) {
   const FaceAxes& upperFace = kFaceAxes[static_cast<std::size_t>(m.incidentFace)];
   const FaceAxes& lowerFace = kFaceAxes[static_cast<std::size_t>(m.referenceFace)];
   FaceField placeUpper, motionUpper, carriedUpper, placeLower, motionLower, carriedLower;
@@ -230,7 +230,7 @@ SPRINGTOWER_INLINE void faceForces(Manifold& m, const ContactSide& upper, const 
     PointLanes points;
     loadPoints(m, first, points);
     pointLaw(law, depth, relative, SameMotion ? relative : carried, normal, inUse, points);
-    if (commit) storePoints(points, first, m);
+    if (keep != nullptr) storePoints(points, first, *keep);
     for (int k = 0; k < 3; ++k) {
       const Lanes& f = points.force[k];
       Lanes total;
@@ -285,8 +285,8 @@ SPRINGTOWER_INLINE double dot(const double* p, const double* q) {
 }
 
 // Edges that cross: one point, whose normal is the edges' common normal and whose places are where they come closest.
-SPRINGTOWER_INLINE void edgeForces(Manifold& m, const ContactSide& upper, const ContactSide& lower, const LawStep& law,
-                                   bool commit, PairForce& result, PointForces* report) {
+SPRINGTOWER_INLINE void edgeForces(const Manifold& m, const ContactSide& upper, const ContactSide& lower, const LawStep& law,
+                                   PointMemory* keep, PairForce& result, PointForces* report) {
   const EdgeAxes edgeUpper = edgeAxes(m.incidentFace);
   const EdgeAxes edgeLower = edgeAxes(m.referenceFace);
   const double* d1 = upper.frame->place.side[edgeUpper.along].data();
@@ -317,7 +317,7 @@ SPRINGTOWER_INLINE void edgeForces(Manifold& m, const ContactSide& upper, const 
   PointLanes points;
   loadPoints(m, 0, points);
   pointLaw(law, zero + depth, relative, carried, normal, Lanes{1.0, 0.0, 0.0, 0.0}, points);
-  if (commit) storePoints(points, 0, m);
+  if (keep != nullptr) storePoints(points, 0, *keep);
   const auto apply = [](const EdgeAxes& edge, double t, double f, std::size_t k, AffineField& force) {
     force.centre[k] = f;
     force.side[edge.along][k] = t * f;
@@ -340,34 +340,34 @@ SPRINGTOWER_INLINE void edgeForces(Manifold& m, const ContactSide& upper, const 
   }
 }
 
-SPRINGTOWER_INLINE void evaluate(Manifold& m, const ContactSide& upper, const ContactSide& lower, const LawStep& law, bool commit,
-                                 PairForce& result, PointForces* report) {
+SPRINGTOWER_INLINE void evaluate(const Manifold& m, const ContactSide& upper, const ContactSide& lower, const LawStep& law,
+                                 PointMemory* keep, PairForce& result, PointForces* report) {
   const bool same = upper.carried == upper.motion;
   if (m.touch == Touch::edge) {
-    edgeForces(m, upper, lower, law, commit, result, report);
+    edgeForces(m, upper, lower, law, keep, result, report);
   } else if (m.lower < 0) {
-    same ? faceForces<true, true>(m, upper, lower, law, commit, result, report)
-         : faceForces<true, false>(m, upper, lower, law, commit, result, report);
+    same ? faceForces<true, true>(m, upper, lower, law, keep, result, report)
+         : faceForces<true, false>(m, upper, lower, law, keep, result, report);
   } else {
-    same ? faceForces<false, true>(m, upper, lower, law, commit, result, report)
-         : faceForces<false, false>(m, upper, lower, law, commit, result, report);
+    same ? faceForces<false, true>(m, upper, lower, law, keep, result, report)
+         : faceForces<false, false>(m, upper, lower, law, keep, result, report);
   }
 }
 
 }  // namespace
 
 SPRINGTOWER_KERNEL
-void manifoldForces(Manifold& manifold, const ContactSide& upper, const ContactSide& lower, const ContactLaw& law,
-                    const ContactStep& step, double reducedMass_kg, bool commit, PairForce& result) {
+void manifoldForces(const Manifold& manifold, const ContactSide& upper, const ContactSide& lower, const ContactLaw& law,
+                    const ContactStep& step, double reducedMass_kg, PointMemory* keep, PairForce& result) {
   const LawStep constants = lawStep(manifold, law, step, reducedMass_kg);
-  evaluate(manifold, upper, lower, constants, commit, result, nullptr);
+  evaluate(manifold, upper, lower, constants, keep, result, nullptr);
 }
 
 PointForces pointForces(const Manifold& manifold, const ContactSide& upper, const ContactSide& lower, const ContactLaw& law) {
-  Manifold copy = manifold;
   PairForce unused;
   PointForces report;
-  evaluate(copy, upper, lower, lawStep(manifold, law, ContactStep{}, 0.0), false, unused, &report);
+  const ContactStep now;
+  evaluate(manifold, upper, lower, lawStep(manifold, law, now, 0.0), nullptr, unused, &report);
   return report;
 }
 

@@ -28,6 +28,9 @@ struct ContactLaw {
 struct ContactStep {
   double advance_s = 0.0;  ///< s by which the contact memory is behind the positions
   double scaleMost = 1.0;  ///< most a contact that is born now may be stiffened
+  /// Where a point that is reached now starts to push: at 1 from the depth it is found at, which adds no energy; at 0 from the
+  /// surface, which an implicit step needs, as it looks at the step's end alone.
+  double bornOffset = 1.0;
 };
 
 /// Forces of one manifold on its two blocks, as sums over their affine coordinates (solver/block_frames.h), N.
@@ -54,10 +57,11 @@ struct PointForces {
   Vec3 direction = Vec3::UnitZ();                ///< unit normal from lower to upper
 };
 
-/// Evaluates a manifold: advances a copy of its memory by `step.advance_s` and returns the forces. With `commit` the advanced
-/// memory is kept. `reducedMass_kg` is that of the two blocks. Precondition: the manifold is not apart.
-void manifoldForces(Manifold& manifold, const ContactSide& upper, const ContactSide& lower, const ContactLaw& law,
-                    const ContactStep& step, double reducedMass_kg, bool commit, PairForce& result);
+/// Evaluates a manifold: advances a copy of its memory by `step.advance_s` and returns the forces. The advanced memory goes to
+/// `keep`, which may be the manifold itself, or null where it is not wanted. `reducedMass_kg` is that of the two blocks.
+/// Precondition: the manifold is not apart.
+void manifoldForces(const Manifold& manifold, const ContactSide& upper, const ContactSide& lower, const ContactLaw& law,
+                    const ContactStep& step, double reducedMass_kg, PointMemory* keep, PairForce& result);
 
 /// The same for reports: evaluates without advancing or keeping anything.
 PointForces pointForces(const Manifold& manifold, const ContactSide& upper, const ContactSide& lower, const ContactLaw& law);

@@ -7,6 +7,7 @@
 #include "core/state.h"
 #include "narrowphase/manifold.h"
 #include "solver/contact_force.h"
+#include "solver/implicit_island.h"
 #include "solver/report_state.h"
 #include "solver/simulation.h"
 
@@ -30,9 +31,11 @@ struct NearPair {
 
 /// One island's private record, kept by the island's smallest block so that it survives other islands' coming and going.
 struct BlockClock {
-  double lastDrift_s = 0.0;            ///< s; the step in which the block's positions last moved
-  double travel = 0.0;                 ///< m; path length of the block's fastest corner, ever growing
-  double spectralRadius = 0.0;         ///< 1/s2; bound of the largest eigenvalue of M^-1 K of the block's island
+  double lastDrift_s = 0.0;         ///< s; the explicit step in which the block's positions last moved; 0 after an implicit one
+  double history_s = 0.0;           ///< s; the implicit step that led here from engine.previous, 0 where it was none
+  std::int32_t explicitFrames = 0;  ///< frames that the block's island is still to be stepped explicitly
+  double travel = 0.0;              ///< m; path length of the block's fastest corner, ever growing
+  double spectralRadius = 0.0;      ///< 1/s2; bound of the largest eigenvalue of M^-1 K of the block's island
   std::uint64_t contactSignature = 0;  ///< what that bound was computed for
 };
 
@@ -79,12 +82,20 @@ struct Engine {
   std::array<MotionState, 4> stage;              ///< states inside a step of the multi-stage methods; empty for the others
   std::array<CornerArray, 4> stageAcceleration;  ///< m/s2, of the stages
   CornerArray carried;                           ///< m/s, mean velocity of the last step of a multi-stage method
-  std::vector<PairForce> pairForce;              ///< N, by position in `pairs`; for islands that run on many threads
-  std::vector<BlockClock> clock;                 ///< [blocks]
-  std::vector<std::int32_t> lostPartner;         ///< sleeping blocks whose awake neighbour went out of reach in this frame
-  std::vector<std::int32_t> toWake;              ///< working space
-  std::vector<std::int32_t> restless;            ///< working space
-  std::vector<std::int32_t> parent;              ///< working space of connectedBlocks
+  std::vector<PointMemory> trial;  ///< by position in `pairs`: contact memory at the end of an implicit step not yet taken
+  CornerArray previousVelocity;    ///< m/s, at the start of the step; for implicit steps
+  std::vector<ImplicitIsland> implicitIslands;  ///< by the island's smallest block; empty for other methods
+  std::vector<BlockJacobian> jacobian;          ///< of each block alone, for implicit steps
+  CornerArray history;                          ///< m, what past steps give of the position at an implicit step's end
+  CornerArray stepVelocity;                     ///< m/s, mean over the implicit step
+  CornerArray target;                           ///< m, where the implicit step ends without forces
+  std::vector<std::int32_t> nodeOf;             ///< the place of each block in its island, for implicit steps
+  std::vector<PairForce> pairForce;             ///< N, by position in `pairs`; for islands that run on many threads
+  std::vector<BlockClock> clock;                ///< [blocks]
+  std::vector<std::int32_t> lostPartner;        ///< sleeping blocks whose awake neighbour went out of reach in this frame
+  std::vector<std::int32_t> toWake;             ///< working space
+  std::vector<std::int32_t> restless;           ///< working space
+  std::vector<std::int32_t> parent;             ///< working space of connectedBlocks
   std::vector<std::uint8_t> joined;  ///< working space: 1 where a block touches a restless one, directly or through others
   std::vector<RestWindow> rest;      ///< [blocks]
   Vec3 gravitySlept = Vec3::Zero();  ///< m/s2, gravity when the last block fell asleep
@@ -92,7 +103,9 @@ struct Engine {
   MotionState frameStart;            ///< what a frame that has to be run again starts from
   std::vector<BlockClock> frameStartClock;
   std::vector<NearPair> frameStartPairs;
-  std::vector<Counters> chunkCounters;  ///< of ranges of pairs inside a large island
+  CornerArray frameStartPrevious;          ///< m, and for implicit steps what they started from
+  CornerArray frameStartPreviousVelocity;  ///< m/s
+  std::vector<Counters> chunkCounters;     ///< of ranges of pairs inside a large island
   std::vector<Counters> islandCounters;
   std::vector<StageTimes> islandTimes;
   std::vector<int> islandOutcome;  ///< steps of each island, -1 where a block left its swept box

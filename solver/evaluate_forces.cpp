@@ -43,14 +43,18 @@ ContactSide sideOf(const Engine& engine, std::int32_t block, bool sameMotion) {
 struct Evaluation {
   ContactStep contactStep;
   bool sameMotion;
-  bool commit;
+  Memory memory;
 };
 
-void evaluatePair(IslandStep& step, const Evaluation& evaluation, Manifold& manifold, PairForce& force) {
+void evaluatePair(IslandStep& step, const Evaluation& evaluation, std::size_t at, PairForce& force) {
+  Manifold& manifold = step.engine.pairs[at].manifold;
+  PointMemory* keep = nullptr;
+  if (evaluation.memory == Memory::advance) keep = &manifold;
+  if (evaluation.memory == Memory::trial) keep = &step.engine.trial[at];
   const ContactSide upper = sideOf(step.engine, manifold.upper, evaluation.sameMotion);
   const ContactSide lower = sideOf(step.engine, manifold.lower, evaluation.sameMotion);
-  manifoldForces(manifold, upper, lower, step.law, evaluation.contactStep, reducedMass(step.simulation.model, manifold),
-                 evaluation.commit, force);
+  manifoldForces(manifold, upper, lower, step.law, evaluation.contactStep, reducedMass(step.simulation.model, manifold), keep,
+                 force);
 }
 
 void contactsInOrder(IslandStep& step, const Evaluation& evaluation) {
@@ -58,10 +62,10 @@ void contactsInOrder(IslandStep& step, const Evaluation& evaluation) {
   const std::vector<std::uint8_t>& asleep = step.simulation.asleep;
   for (const std::int32_t block : step.blocks) engine.contactForce[static_cast<std::size_t>(block)] = AffineField{};
   for (const std::int32_t at : step.pairs) {
-    Manifold& manifold = engine.pairs[static_cast<std::size_t>(at)].manifold;
+    const Manifold& manifold = engine.pairs[static_cast<std::size_t>(at)].manifold;
     if (manifold.touch == Touch::apart) continue;
     PairForce force;
-    evaluatePair(step, evaluation, manifold, force);
+    evaluatePair(step, evaluation, static_cast<std::size_t>(at), force);
     const auto upper = static_cast<std::size_t>(manifold.upper);
     if (asleep[upper] == 0) addForce(force.upper, engine.contactForce[upper]);
     if (manifold.lower < 0) continue;
@@ -76,8 +80,7 @@ void contactsInParallel(IslandStep& step, const Evaluation& evaluation) {
   tbb::parallel_for(Range(0, step.pairs.size(), kPairGrain), [&](const Range& range) {
     for (std::size_t i = range.begin(); i < range.end(); ++i) {
       const auto at = static_cast<std::size_t>(step.pairs[i]);
-      Manifold& manifold = engine.pairs[at].manifold;
-      if (manifold.touch != Touch::apart) evaluatePair(step, evaluation, manifold, engine.pairForce[at]);
+      if (engine.pairs[at].manifold.touch != Touch::apart) evaluatePair(step, evaluation, at, engine.pairForce[at]);
     }
   });
   tbb::parallel_for(Range(0, step.blocks.size(), kBlockGrain), [&](const Range& range) {
@@ -119,11 +122,12 @@ std::uint64_t pointsOf(const IslandStep& step) {
 
 }  // namespace
 
-void evaluateForces(IslandStep& step, const MotionState& state, const CornerArray& carried, double advance_s, bool commit) {
+void evaluateForces(IslandStep& step, const MotionState& state, const CornerArray& carried, double advance_s, Memory memory) {
   StageClock clock(step.times);
   Engine& engine = step.engine;
   const bool parallel = step.blocks.size() >= kParallelBlocks;
-  const Evaluation evaluation{{advance_s, step.scaleMost}, &carried == &state.velocity, commit};
+  const Evaluation evaluation{
+      {advance_s, step.scaleMost, memory == Memory::trial ? 0.0 : 1.0}, &carried == &state.velocity, memory};
   using Blocks = std::span<const std::int32_t>;
   overBlocks(step, parallel, [&](Blocks blocks) {
     computeFrames(state.position, blocks, engine.frames);

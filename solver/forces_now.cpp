@@ -27,7 +27,7 @@ struct ManifoldNow {
     const ContactSide low{&frames[1], &motion[1], &carriedBy[1]};
     const ContactLaw law = contactLaw(simulation);
     const double behind = simulation.engine->clock[upper].lastDrift_s;
-    manifoldForces(manifold, up, low, law, {behind, 1.0}, 0.0, true, force);
+    manifoldForces(manifold, up, low, law, {behind, 1.0, 1.0}, 0.0, &manifold, force);
     points = pointForces(manifold, up, low, law);
   }
 };
@@ -110,7 +110,8 @@ Energy energy(const Simulation& simulation) {
   for (std::size_t b = 0; b < model.blockCount(); ++b) {
     energy.springs += springEnergy(model, state.position, b);
     energy.gravity -= model.mass[b] * gravity.dot(centre(state.position, b));
-    const bool leapfrog = settings.method == Method::semiImplicitEuler && simulation.asleep[b] == 0;
+    const bool leapfrog =
+        (settings.method == Method::semiImplicitEuler || settings.method == Method::implicit) && simulation.asleep[b] == 0;
     const double kick = leapfrog ? simulation.engine->clock[b].lastDrift_s : 0.0;
     for (std::size_t a = 0; a < 3; ++a) {
       const double* f = force.values(a, b);

@@ -1,5 +1,6 @@
 #include "core/error.h"
 #include "solver/forces_now.h"
+#include "solver/implicit.h"
 #include "solver/inertia.h"
 #include "solver/island_step.h"
 #include "solver/near_pairs.h"
@@ -113,6 +114,7 @@ int chooseSubsteps(IslandStep& step) {
 
 void stepIsland(Method method, IslandStep& step) {
   switch (method) {
+    case Method::implicit:  // what implicit steps do not fit
     case Method::semiImplicitEuler:
       stepSemiImplicitEuler(step);
       return;
@@ -128,22 +130,24 @@ void stepIsland(Method method, IslandStep& step) {
   }
 }
 
-struct IslandOutcome {
-  int substeps = 0;
-  bool inside = true;  // no block left its swept box
-};
-
 IslandOutcome runIsland(IslandStep& step) {
-  const Simulation& simulation = step.simulation;
+  Simulation& simulation = step.simulation;
   const Settings& settings = simulation.scene.settings;
   IslandOutcome outcome;
   if (simulation.frame == 0 && settings.method != Method::report) findTouching(step);
-  outcome.substeps = chooseSubsteps(step);
-  step.drift_s = settings.frame_s / outcome.substeps;
+  double begin_s = 0.0;
+  if (settings.method == Method::implicit) {
+    outcome = runImplicitSteps(step, begin_s);
+    if (!outcome.inside || begin_s >= settings.frame_s) return outcome;
+  }
+  const int implicitSteps = outcome.substeps;
+  const double rest_s = settings.frame_s - begin_s;
+  outcome.substeps = std::max(1, static_cast<int>(std::ceil(chooseSubsteps(step) * rest_s / settings.frame_s - 1e-9)));
+  step.drift_s = rest_s / outcome.substeps;
   BlockClock& record = step.engine.clock[static_cast<std::size_t>(step.blocks.front())];
   double last = record.lastDrift_s;
   for (int substep = 0; substep < outcome.substeps; ++substep) {
-    step.time_s = simulation.time_s + substep * step.drift_s;
+    step.time_s = simulation.time_s + begin_s + substep * step.drift_s;
     step.gravity = simulation.scene.gravity.at(step.time_s);
     step.kick_s = 0.5 * (last + step.drift_s);
     step.advance_s = last;
@@ -152,7 +156,11 @@ IslandOutcome runIsland(IslandStep& step) {
     outcome.inside = settings.method == Method::report ? acceptReportStep(step) : updateContacts(step);
     if (!outcome.inside) break;
   }
-  for (const std::int32_t block : step.blocks) step.engine.clock[static_cast<std::size_t>(block)].lastDrift_s = last;
+  for (const std::int32_t block : step.blocks) {
+    step.engine.clock[static_cast<std::size_t>(block)].lastDrift_s = last;
+    step.engine.clock[static_cast<std::size_t>(block)].history_s = 0.0;
+  }
+  outcome.substeps += implicitSteps;
   return outcome;
 }
 
@@ -180,6 +188,7 @@ bool runIslands(Simulation& simulation) {
   engine.islandOutcome.assign(islands, 0);
   const ContactLaw law = contactLaw(simulation);
   if (simulation.scene.settings.method == Method::report) prepareReportFrame(simulation);
+  if (simulation.scene.settings.method == Method::implicit) engine.trial.resize(engine.pairs.size());
   tbb::parallel_for(std::size_t{0}, islands, [&](std::size_t i) {
     const auto first = static_cast<std::size_t>(engine.pairStart[i]);
     IslandStep step{simulation,
@@ -216,6 +225,7 @@ void stepFrame(Simulation& simulation) {
     engine.frameStartClock = engine.clock;
     findNearPairs(simulation, margin);
     engine.frameStartPairs = engine.pairs;
+    rememberImplicit(simulation);
     while (!runIslands(simulation)) {
       // Something was hit and left its swept box: the frame is run again with a wider one, so that no meeting is missed.
       ++simulation.counters.replayedFrames;
@@ -224,6 +234,7 @@ void stepFrame(Simulation& simulation) {
       engine.clock = engine.frameStartClock;
       engine.pairs = engine.frameStartPairs;
       if (simulation.scene.settings.method == Method::report) rewindReportFrame(simulation);
+      rewindImplicit(simulation);
       findNearPairs(simulation, margin);
       engine.frameStartPairs = engine.pairs;
     }

@@ -16,6 +16,9 @@ inline constexpr double kCarryRadius = 0.05;
 /// How much better the other block's face must separate before it becomes the reference; also what a crossing of edges must win
 /// by.
 inline constexpr double kReferenceSlack = 0.005;
+/// Faces that are tilted a little against each other are a face contact as long as their common outline is not deeper by more
+/// than this than the edges that separate them better.
+inline constexpr double kEdgeSlack = 0.01;
 /// A pair is let go when it is farther apart than this and no point touches.
 inline constexpr double kPartingGap = 1e-3;
 /// A contact whose blocks overlapped by more than this before its step was born penetrating.

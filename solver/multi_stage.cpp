@@ -8,7 +8,7 @@ namespace springtower {
 
 void stageAcceleration(IslandStep& step, const MotionState& source, const CornerArray& carried, double advance_s, bool commit,
                        CornerArray& acceleration) {
-  evaluateForces(step, source, carried, advance_s, commit);
+  evaluateForces(step, source, carried, advance_s, commit ? Memory::advance : Memory::drop);
   StageClock clock(step.times);
   for (const std::int32_t block : step.blocks) {
     const auto b = static_cast<std::size_t>(block);

@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 #include "solver/engine.h"
+#include "solver/implicit.h"
 #include "solver/inertia.h"
 #include "solver/near_pairs.h"
 #include "solver/spring_force.h"
@@ -58,10 +59,11 @@ double foreseenSpectralRadius(const Simulation& simulation, const Stiffness& sti
 void chooseStiffness(Simulation& simulation) {
   const Settings& settings = simulation.scene.settings;
   LoadEstimate loads = estimateLoads(simulation.scene);
-  simulation.fixedSubsteps = settings.substeps;
+  const bool implicit = settings.method == Method::implicit;  // stable with any step
+  simulation.fixedSubsteps = implicit ? 0 : settings.substeps;
   simulation.tolerance_m = settings.tolerance_m;
   Stiffness stiffness = stiffnessForTolerance(loads, settings.tolerance_m);
-  if (settings.substeps > 0) {
+  if (simulation.fixedSubsteps > 0) {
     const double allowed =
         stableSpectralRadius(settings.method, settings.frame_s / settings.substeps, settings.dampingTime_s, settings.stepMargin);
     const double needed = foreseenSpectralRadius(simulation, stiffness);
@@ -131,6 +133,7 @@ Simulation::Simulation(const Scene& given) : scene(given), engine(std::make_uniq
     e.rest[b].centre = centre(state.position, b);
   }
   if (scene.settings.method == Method::report) e.report.resize(count);
+  if (scene.settings.method == Method::implicit) prepareImplicit(*this);
   if (scene.settings.method == Method::midpoint || scene.settings.method == Method::rungeKutta4) {
     e.carried.resize(count);
     e.carriedMotion.resize(count);

@@ -55,7 +55,7 @@ void addFriction(IslandStep& step) {
 // corrects them, and the next state is accepted whatever is left.
 void stepReport(IslandStep& step) {
   MotionState& state = step.simulation.state;
-  evaluateForces(step, state, state.velocity, 0.0, false);
+  evaluateForces(step, state, state.velocity, 0.0, Memory::drop);
   StageClock clock(step.times);
   addFriction(step);
   for (const std::int32_t block : step.blocks) step.engine.report.contacts[static_cast<std::size_t>(block)].clear();

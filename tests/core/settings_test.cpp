@@ -83,9 +83,9 @@ TEST(Settings, NamesReadBackAsTheyAreWritten) {
 }
 
 TEST(Settings, UnknownNamesListWhatIsAllowed) {
-  EXPECT_THAT(
-      [] { methodFromName("euler", "--method"); },
-      ThrowsMessage<InputError>("--method: found 'euler', allowed semi-implicit-euler, midpoint, runge-kutta-4 or report"));
+  EXPECT_THAT([] { methodFromName("euler", "--method"); },
+              ThrowsMessage<InputError>(
+                  "--method: found 'euler', allowed implicit, semi-implicit-euler, midpoint, runge-kutta-4 or report"));
   EXPECT_THAT([] { inertiaFromName("", "--inertia"); },
               ThrowsMessage<InputError>("--inertia: found '', allowed cuboid or lumped"));
   EXPECT_THAT([] { sleepFromName("o\nn", "s.toml"); },

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <iosfwd>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace springtower {
+
+/// How the points of a line are marked. Hollow ones are for figures that were not measured in the same run.
+enum class Marker { none, filled, hollow };
+
+/// One axis. Limits that are not given come from the data and are widened to whole ticks; a logarithmic axis leaves out what is
+/// not positive.
+struct PlotAxis {
+  std::string title;  ///< with its unit: "penetration, mm"
+  bool logarithmic = false;
+  std::optional<double> least = {};
+  std::optional<double> most = {};
+  std::vector<std::pair<double, std::string>> labels = {};  ///< ticks by hand, for bars that have names; else they are chosen
+};
+
+struct PlotPoint {
+  double x;
+  double y;
+};
+
+/// Points and the line through them. A point that is not finite (or not positive on a logarithmic axis) interrupts the line.
+struct PlotLine {
+  std::string name;  ///< in the legend; an empty one is left out of it
+  std::vector<PlotPoint> points;
+  Marker marker = Marker::filled;
+  bool joined = true;
+  bool dashed = false;
+  int style = -1;                        ///< colour and shape of the marker, 0 to 7 and round again; -1: the line's place
+  std::vector<std::string> labels = {};  ///< written beside the points, [points] or empty
+};
+
+/// A horizontal line at a value worth knowing, with its name on it.
+struct PlotReference {
+  double y;
+  std::string name;
+};
+
+/// Bars from left[i] to right[i] on the x axis, whose layers are stacked upwards from 0.
+struct PlotBars {
+  struct Layer {
+    std::string name;
+    std::vector<double> heights;  ///< [bars]
+  };
+  std::vector<double> left = {};
+  std::vector<double> right = {};
+  std::vector<Layer> layers = {};
+};
+
+/// A chart for print: one plane with lines, bars and reference lines, its legend at the right.
+struct Plot {
+  std::string title;
+  std::string subtitle;
+  std::string footnote;  ///< small, wrapped: where the figures come from
+  PlotAxis x;
+  PlotAxis y;
+  std::vector<PlotLine> lines = {};
+  std::vector<PlotReference> references = {};
+  PlotBars bars = {};
+};
+
+/// Bars, one layer, that count how many of the values fall into each of `bins` (at least 1) equally wide parts of their range.
+/// Values that are not finite are left out.
+PlotBars histogram(const std::string& name, const std::vector<double>& values, std::size_t bins);
+
+/// Writes a chart as SVG (letters as outlines, so that it looks the same everywhere) and as PNG (three pixels a point). The same
+/// chart gives the same bytes. Throws InputError when the stream takes no more.
+void writeSvg(std::ostream& stream, const Plot& plot);
+void writePng(std::ostream& stream, const Plot& plot);
+
+}  // namespace springtower

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace springtower {
+
+/// What `springtower profile` was asked for. Empty lists stand for the defaults, which the help names.
+struct ProfileCommand {
+  std::vector<std::string> rows;
+  std::vector<std::string> scenes;
+  std::vector<std::string> methods;
+  std::vector<std::string> tolerances_m;
+  std::vector<std::string> threads;
+  std::vector<std::string> towers;
+  std::optional<std::string> inertia;
+  std::optional<std::int64_t> samples;
+  std::optional<std::int64_t> frames;
+  std::optional<double> settle_s;
+  std::optional<double> prepare_s;
+  std::optional<double> sample_s;
+  std::optional<std::string> out;
+  std::optional<std::string> trace;
+  std::optional<std::string> from;
+  bool quick = false;
+};
+
+/// Adds the command to the program.
+CLI::App* defineProfile(CLI::App& program, ProfileCommand& command);
+
+/// Times every case and prints a table; writes profile.json, profile.csv, culling.csv and the charts into the folder of `--out`
+/// and the trace into the file of `--trace`. Returns the exit code 0. Throws InputError before anything is timed.
+int executeProfile(const ProfileCommand& command);
+
+}  // namespace springtower

@@ -1,0 +1,151 @@
+#include "apps/profile_scene.h"
+
+#include "core/error.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <fmt/format.h>
+
+namespace springtower {
+namespace {
+
+constexpr double kTowerSpacing_m = 0.3;
+constexpr double kCollapseTilt_deg = 14.5;  // a tower of 18 rows topples, but does not slide
+constexpr double kSway_deg = 0.1;
+constexpr double kSway_hz = 1.0;
+constexpr double kHeightsSigma_m = 0.0002;
+constexpr double kPullSpeed_m_s = 0.04;
+constexpr double kPullStart_m = 0.001;  // from here on the block slides
+constexpr double kPullLongest_s = 5.0;
+constexpr double kAsleepLongest_s = 60.0;
+constexpr double kStrongest_n = 100.0;
+
+// The middle block of the middle row.
+int pulledBlock(const Scene& scene, int rows) {
+  const auto found = std::find_if(scene.blocks.begin(), scene.blocks.end(),
+                                  [&](const BlockSpec& block) { return block.row == rows / 2 && block.position == 2; });
+  return static_cast<int>(found - scene.blocks.begin());
+}
+
+bool isPull(ProfileScene scene) {
+  return scene == ProfileScene::pull || scene == ProfileScene::pullSleep;
+}
+
+bool allAsleep(const Simulation& simulation) {
+  return std::all_of(simulation.asleep.begin(), simulation.asleep.end(), [](std::uint8_t flag) { return flag != 0; });
+}
+
+// Wall time that preparing may take.
+class Deadline {
+ public:
+  explicit Deadline(double seconds)
+      : end_(Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds))) {}
+  [[nodiscard]] bool passed() const { return Clock::now() >= end_; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point end_;
+};
+
+void settle(PreparedScene& scene, double seconds, const Deadline& deadline) {
+  while (scene.simulation.time_s < seconds && !deadline.passed()) scene.step();
+}
+
+void fallAsleep(PreparedScene& scene, const Deadline& deadline) {
+  while (!allAsleep(scene.simulation)) {
+    if (deadline.passed() || scene.simulation.time_s > kAsleepLongest_s) {
+      scene.failure = fmt::format("not asleep after {:.1f} s simulated", scene.simulation.time_s);
+      return;
+    }
+    scene.step();
+  }
+}
+
+// Pulls until the block slides, so that every timed frame has a moving block.
+void startPulling(PreparedScene& scene, int rows, const Deadline& deadline) {
+  Simulation& simulation = scene.simulation;
+  scene.hand.block = pulledBlock(simulation.scene, rows);
+  const auto block = static_cast<std::size_t>(scene.hand.block);
+  const BlockSpec& spec = simulation.scene.blocks[block];
+  scene.hand.direction = spec.orientation * Vec3::UnitX();
+  scene.leftOut.assign(simulation.scene.blocks.size(), 0);
+  scene.leftOut[block] = 1;
+  const Vec3 start = centre(simulation.state.position, block);
+  const double begin_s = simulation.time_s;
+  while ((centre(simulation.state.position, block) - start).dot(scene.hand.direction) < kPullStart_m) {
+    if (deadline.passed() || simulation.time_s > begin_s + kPullLongest_s) {
+      scene.failure = fmt::format("the block does not slide yet after {:.2f} s of pulling, now with {:.2f} N",
+                                  simulation.time_s - begin_s, scene.hand.held_n);
+      return;
+    }
+    scene.step();
+  }
+}
+
+}  // namespace
+
+void pull(Hand& hand, Simulation& simulation) {
+  // Gains per frame, as shares of what would give the block the missing speed within one frame.
+  constexpr double kProportional = 0.5;
+  constexpr double kIntegral = 0.2;
+  const auto block = static_cast<std::size_t>(hand.block);
+  const double missing = kPullSpeed_m_s - centre(simulation.state.velocity, block).dot(hand.direction);
+  const double unit = simulation.model.mass[block] / simulation.scene.settings.frame_s * missing;
+  hand.held_n = std::clamp(hand.held_n + kIntegral * unit, 0.0, kStrongest_n);
+  const double force_n = std::clamp(hand.held_n + kProportional * unit, 0.0, kStrongest_n);
+  const double now = simulation.time_s;
+  simulation.scene.forces = {{hand.block, -1, force_n * hand.direction, now, now + 1.5 * simulation.scene.settings.frame_s}};
+}
+
+Scene sceneOf(const ProfileCase& what) {
+  TowerOptions options;
+  if (what.scene == ProfileScene::heights) options.heightsSigma_m = kHeightsSigma_m;
+  Scene scene = towerScene(what.rows, options);
+  if (what.towers > 1) {
+    const Scene tower = scene;
+    const int side = static_cast<int>(std::ceil(std::sqrt(static_cast<double>(what.towers))));
+    scene.blocks.clear();
+    for (int i = 0; i < what.towers; ++i) {
+      const int line = i / side;
+      for (BlockSpec block : tower.blocks) {
+        block.centre += kTowerSpacing_m * Vec3(i - line * side, line, 0.0);
+        scene.blocks.push_back(block);
+      }
+    }
+    scene.name = fmt::format("{} towers of {} rows", what.towers, what.rows);
+  }
+  if (what.scene == ProfileScene::collapse) scene.gravity.tilt_deg = kCollapseTilt_deg;
+  if (what.scene == ProfileScene::sway) {
+    scene.gravity.sway_deg = kSway_deg;
+    scene.gravity.sway_hz = kSway_hz;
+  }
+  Settings& settings = scene.settings;
+  settings.method = what.method;
+  settings.inertia = what.inertia;
+  settings.tolerance_m = what.tolerance_m;
+  settings.toleranceGiven = true;
+  const bool sleeps = what.scene == ProfileScene::asleep || what.scene == ProfileScene::pullSleep;
+  settings.sleep = sleeps ? Sleep::on : Sleep::off;
+  return scene;
+}
+
+std::unique_ptr<PreparedScene> prepareScene(const ProfileCase& what, const ProfileLimits& limits) {
+  auto scene = std::make_unique<PreparedScene>(what);
+  const Deadline deadline(limits.prepare_s);
+  try {
+    if (what.scene == ProfileScene::asleep) {
+      fallAsleep(*scene, deadline);
+    } else if (what.scene != ProfileScene::collapse) {
+      settle(*scene, limits.settle_s, deadline);
+    }
+    if (isPull(what.scene)) startPulling(*scene, what.rows, Deadline(limits.prepare_s));
+  } catch (const DivergenceError& error) {
+    scene->failure = error.what();
+  }
+  scene->snapshot = takeSnapshot(scene->simulation);
+  scene->handKept = scene->hand;
+  return scene;
+}
+
+}  // namespace springtower

@@ -1,0 +1,55 @@
+#pragma once
+
+#include "apps/profile.h"
+#include "core/scene.h"
+#include "solver/simulation.h"
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace springtower {
+
+/// A hand that pulls one block at a steady speed: a force on its centre, set before each frame from how fast the block moves
+/// (proportional and integral control).
+struct Hand {
+  int block = -1;  ///< -1: nobody pulls
+  Vec3 direction = Vec3::UnitX();
+  double held_n = 0.0;  ///< what the last frames have shown to be needed, N
+};
+
+/// Sets the hand's force in the scene for the coming frame.
+void pull(Hand& hand, Simulation& simulation);
+
+/// The scene of a case. Throws InputError for a tower that is not allowed.
+Scene sceneOf(const ProfileCase& what);
+
+/// A simulation on the brink of what is to be timed, and the state to come back to before each sample.
+struct PreparedScene {
+  explicit PreparedScene(const ProfileCase& what) : simulation(sceneOf(what)) {}
+
+  Simulation simulation;
+  Hand hand;
+  std::shared_ptr<const Snapshot> snapshot;
+  Hand handKept;                      ///< the hand of the snapshot
+  std::vector<std::uint8_t> leftOut;  ///< 1 for the pulled block, [blocks] or empty
+  std::string failure;                ///< why the scene does not come to what is to be timed; empty when it does
+
+  /// Back to the kept state.
+  void restore() {
+    restoreSnapshot(simulation, *snapshot);
+    hand = handKept;
+  }
+  /// One frame, the hand included.
+  void step() {
+    if (hand.block >= 0) pull(hand, simulation);
+    stepFrame(simulation);
+  }
+};
+
+/// Runs a new scene up to what is to be timed and keeps its state: settles it, starts to pull, or lets it fall asleep. Divergence
+/// ends in `failure`.
+std::unique_ptr<PreparedScene> prepareScene(const ProfileCase& what, const ProfileLimits& limits);
+
+}  // namespace springtower

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace springtower {
+
+/// What a timing has to be quoted with.
+struct Provenance {
+  std::string version;
+  std::string commit;
+  std::string compiler;
+  std::string flags;
+  std::string buildType;
+  std::string processor;    ///< the processor's own name, "unknown" where the system does not tell
+  unsigned processors = 0;  ///< that this program may run on
+  std::string date;         ///< UTC, as 2003-05-01T12:00:00Z
+};
+
+/// That of this build, on this machine, now.
+Provenance provenanceNow();
+
+nlohmann::ordered_json provenanceJson(const Provenance& provenance);
+/// Back from JSON. Throws nlohmann::json::exception when a key is missing or has another type.
+Provenance provenanceFromJson(const nlohmann::ordered_json& json);
+
+/// One line for the foot of a chart.
+std::string footnote(const Provenance& provenance);
+
+}  // namespace springtower

@@ -1,0 +1,144 @@
+// Fixed scenes whose instructions are counted by callgrind (bench/callgrind.py): one thread, a few frames each, everything awake.
+//   gate_scenes            lists the scenes
+//   gate_scenes SCENE      runs one and prints a JSON object: accuracy and the hash of the state at the end. Only the last frames
+//                          are counted; what comes before brings the scene to where it is interesting.
+//   gate_scenes SCENE 300  runs it for 300 frames instead: what accuracy it settles to
+
+#include "core/error.h"
+#include "core/scene.h"
+#include "core/version.h"
+#include "solver/measures.h"
+#include "solver/penetration.h"
+#include "solver/simulation.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdio>
+#include <fmt/format.h>
+#include <oneapi/tbb/global_control.h>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#if __has_include(<valgrind/callgrind.h>)
+#include <valgrind/callgrind.h>
+#else  // without valgrind's header the program still runs, and nothing counts
+#define CALLGRIND_START_INSTRUMENTATION
+#define CALLGRIND_STOP_INSTRUMENTATION
+#endif
+
+namespace springtower {
+namespace {
+
+struct GateScene {
+  std::string_view name;
+  int rows;
+  double heightsSigma_m;
+  double tilt_deg;
+  double pull_m_s;  // speed at which the middle block of the middle row is pulled out, 0 for none
+  int before;       // frames
+  int counted;      // frames
+};
+
+constexpr GateScene kScenes[] = {{"rest", 18, 0.0, 0.0, 0.0, 20, 5},
+                                 {"uneven", 6, 0.0002, 0.0, 0.0, 20, 5},
+                                 {"pull", 18, 0.0, 0.0, 0.04, 20, 5},
+                                 {"collapse", 18, 0.0, 14.5, 0.0, 20, 5}};
+
+constexpr std::uint64_t kPullFrom = 12;  // frames; by then the block carries its load
+constexpr double kFirstPull_n = 0.8;     // about its friction
+
+// The default method, and the explicit one that others fall back on.
+std::vector<Method> methods() {
+  const Method usual = Settings{}.method;
+  if (usual == Method::semiImplicitEuler) return {usual};
+  return {usual, Method::semiImplicitEuler};
+}
+
+Scene sceneOf(const GateScene& gate, Method method) {
+  TowerOptions options;
+  options.heightsSigma_m = gate.heightsSigma_m;
+  Scene scene = towerScene(gate.rows, options);
+  scene.gravity.tilt_deg = gate.tilt_deg;
+  scene.settings.method = method;
+  scene.settings.sleep = Sleep::off;
+  return scene;
+}
+
+// The middle block of the middle row.
+std::size_t pulledBlock(const Scene& scene, int rows) {
+  const auto found = std::find_if(scene.blocks.begin(), scene.blocks.end(),
+                                  [&](const BlockSpec& block) { return block.row == rows / 2 && block.position == 2; });
+  return static_cast<std::size_t>(found - scene.blocks.begin());
+}
+
+// Pulls a block along its length: the force that brings it to the speed in one frame, on top of what friction took so far.
+void pull(Simulation& simulation, std::size_t block, double speed_m_s, double& friction_n) {
+  const Vec3 along = simulation.scene.blocks[block].orientation * Vec3::UnitX();
+  const double missing = speed_m_s - centre(simulation.state.velocity, block).dot(along);
+  const double unit_n = simulation.model.mass[block] / simulation.scene.settings.frame_s * missing;
+  friction_n = std::max(0.0, friction_n + 0.2 * unit_n);
+  const double end_s = simulation.time_s + 1.5 * simulation.scene.settings.frame_s;
+  simulation.scene.forces = {{static_cast<int>(block), -1, (friction_n + 0.5 * unit_n) * along, simulation.time_s, end_s}};
+}
+
+void runGate(const GateScene& gate, Method method, int frames) {
+  Simulation simulation(sceneOf(gate, method));
+  const CornerArray start = simulation.state.position;
+  const std::size_t pulled = pulledBlock(simulation.scene, gate.rows);
+  double friction_n = kFirstPull_n;
+  const auto step = [&] {
+    if (gate.pull_m_s > 0.0 && simulation.frame >= kPullFrom) pull(simulation, pulled, gate.pull_m_s, friction_n);
+    stepFrame(simulation);
+  };
+  const int before = std::max(0, frames - gate.counted);
+  for (int frame = 0; frame < before; ++frame) step();
+  CALLGRIND_START_INSTRUMENTATION;
+  for (int frame = 0; frame < gate.counted; ++frame) step();
+  CALLGRIND_STOP_INSTRUMENTATION;
+
+  PenetrationWorkspace workspace;
+  const CornerArray& position = simulation.state.position;
+  std::vector<int> row;
+  for (const BlockSpec& block : simulation.scene.blocks) row.push_back(block.row);
+  fmt::print(
+      "{{\"scene\": \"{} {}\", \"max_penetration_mm\": {}, \"bottom_row_compression_mm\": {}, \"max_strain\": {}, "
+      "\"speed_mm_s\": {}, \"energy_j\": {}, \"pulled_mm\": {}, \"steps\": {}, \"contact_evaluations\": {}, \"state_hash\": "
+      "\"{:016x}\", \"compiler\": \"{}\", \"flags\": \"{}\"}}\n",
+      gate.name, nameOf(method), 1e3 * maxPenetration(position, simulation.scene.floor, workspace).depth,
+      1e3 * meanRowCompression(simulation.model, start, position, bottomRow(simulation.model, start, row)),
+      maxStrain(simulation.model, position), 1e3 * rootMeanSquareCornerSpeed(simulation.state.velocity),
+      energy(simulation).total(), 1e3 * (centre(position, pulled) - centre(start, pulled)).norm(), simulation.counters.steps,
+      simulation.counters.contactEvaluations, stateHash(simulation), kCompiler, kCompilerFlags);
+}
+
+int gate(const std::vector<std::string_view>& arguments) {
+  const tbb::global_control oneThread(tbb::global_control::max_allowed_parallelism, 1);
+  bool found = arguments.empty();
+  for (const Method method : methods()) {
+    for (const GateScene& gate : kScenes) {
+      const std::string name = fmt::format("{} {}", gate.name, nameOf(method));
+      if (arguments.empty()) {
+        fmt::print("{}\n", name);
+      } else if (arguments[0] == name) {
+        found = true;
+        runGate(gate, method, arguments.size() > 1 ? std::stoi(std::string(arguments[1])) : gate.before + gate.counted);
+      }
+    }
+  }
+  if (found) return 0;
+  fmt::print(stderr, "gate_scenes: found '{}', allowed is a scene as the program lists them without arguments\n", arguments[0]);
+  return 2;
+}
+
+}  // namespace
+}  // namespace springtower
+
+int main(int argc, char** argv) {
+  try {
+    return springtower::gate({argv + 1, argv + argc});
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "gate_scenes: %s\n", error.what());
+    return 3;
+  }
+}

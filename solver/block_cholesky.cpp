@@ -1,0 +1,272 @@
+#include "solver/block_cholesky.h"
+
+#include "core/lanes.h"
+
+#include <algorithm>
+
+namespace springtower {
+
+namespace {
+
+using Quad = float __attribute__((vector_size(16)));
+using Octet = float __attribute__((vector_size(32)));
+
+// One row of a block: twelve floats.
+struct Row {
+  Octet low;
+  Quad high;
+};
+
+SPRINGTOWER_INLINE void load(const float* from, Row& to) {
+  __builtin_memcpy(&to.low, from, sizeof to.low);
+  __builtin_memcpy(&to.high, from + 8, sizeof to.high);
+}
+SPRINGTOWER_INLINE void store(const Row& from, float* to) {
+  __builtin_memcpy(to, &from.low, sizeof from.low);
+  __builtin_memcpy(to + 8, &from.high, sizeof from.high);
+}
+SPRINGTOWER_INLINE void subtract(float factor, const Row& row, Row& from) {
+  from.low -= factor * row.low;
+  from.high -= factor * row.high;
+}
+SPRINGTOWER_INLINE void add(float factor, const Row& row, Row& to) {
+  to.low += factor * row.low;
+  to.high += factor * row.high;
+}
+
+// c -= w t, all 12 x 12 row by row.
+SPRINGTOWER_INLINE void subtractProduct(const float* w, const float* t, float* c) {
+  for (std::size_t i = 0; i < kNodeSize; i += 2) {
+    Row first, second;
+    load(c + kNodeSize * i, first);
+    load(c + kNodeSize * (i + 1), second);
+    for (std::size_t k = 0; k < kNodeSize; ++k) {
+      Row row;
+      load(t + kNodeSize * k, row);
+      subtract(w[kNodeSize * i + k], row, first);
+      subtract(w[kNodeSize * (i + 1) + k], row, second);
+    }
+    store(first, c + kNodeSize * i);
+    store(second, c + kNodeSize * (i + 1));
+  }
+}
+
+// c = s t for symmetric s.
+SPRINGTOWER_INLINE void product(const float* s, const float* t, float* c) {
+  for (std::size_t i = 0; i < kNodeSize; ++i) {
+    Row sum{};
+    for (std::size_t k = 0; k < kNodeSize; ++k) {
+      Row row;
+      load(t + kNodeSize * k, row);
+      add(s[kNodeSize * i + k], row, sum);
+    }
+    store(sum, c + kNodeSize * i);
+  }
+}
+
+SPRINGTOWER_INLINE void transpose(const float* from, float* to) {
+  for (std::size_t i = 0; i < kNodeSize; ++i) {
+    for (std::size_t k = 0; k < kNodeSize; ++k) to[kNodeSize * k + i] = from[kNodeSize * i + k];
+  }
+}
+
+// Gauss-Jordan without pivoting, in place; for positive definite blocks every pivot is positive.
+SPRINGTOWER_INLINE bool invert(float* m) {
+  bool positive = true;
+  for (std::size_t p = 0; p < kNodeSize; ++p) {
+    const float pivot = m[kNodeSize * p + p];
+    positive = positive && pivot > 0.0F;
+    const float inverse = 1.0F / pivot;
+    m[kNodeSize * p + p] = 1.0F;
+    Row row;
+    load(m + kNodeSize * p, row);
+    row.low *= inverse;
+    row.high *= inverse;
+    store(row, m + kNodeSize * p);
+    for (std::size_t i = 0; i < kNodeSize; ++i) {
+      if (i == p) continue;
+      const float factor = m[kNodeSize * i + p];
+      m[kNodeSize * i + p] = 0.0F;
+      Row other;
+      load(m + kNodeSize * i, other);
+      subtract(factor, row, other);
+      store(other, m + kNodeSize * i);
+    }
+  }
+  return positive;
+}
+
+// y -= t^T x
+SPRINGTOWER_INLINE void subtractTransposed(const float* t, const float* x, float* y) {
+  Row sum;
+  load(y, sum);
+  for (std::size_t k = 0; k < kNodeSize; ++k) {
+    Row row;
+    load(t + kNodeSize * k, row);
+    subtract(x[k], row, sum);
+  }
+  store(sum, y);
+}
+
+// The sum of each of four quads' lanes.
+SPRINGTOWER_INLINE void laneSums(const Quad& a, const Quad& b, const Quad& c, const Quad& d, Quad& result) {
+  const Quad ab = __builtin_shufflevector(a, b, 0, 4, 2, 6) + __builtin_shufflevector(a, b, 1, 5, 3, 7);
+  const Quad cd = __builtin_shufflevector(c, d, 0, 4, 2, 6) + __builtin_shufflevector(c, d, 1, 5, 3, 7);
+  result = __builtin_shufflevector(ab, cd, 0, 1, 4, 5) + __builtin_shufflevector(ab, cd, 2, 3, 6, 7);
+}
+
+SPRINGTOWER_INLINE void rowTimes(const float* t, const Quad& x0, const Quad& x1, const Quad& x2, Quad& result) {
+  Quad a, b, c;
+  __builtin_memcpy(&a, t, sizeof a);
+  __builtin_memcpy(&b, t + 4, sizeof b);
+  __builtin_memcpy(&c, t + 8, sizeof c);
+  result = a * x0 + b * x1 + c * x2;
+}
+
+// y -= t x
+SPRINGTOWER_INLINE void subtractTimes(const float* t, const float* x, float* y) {
+  Quad x0, x1, x2;
+  __builtin_memcpy(&x0, x, sizeof x0);
+  __builtin_memcpy(&x1, x + 4, sizeof x1);
+  __builtin_memcpy(&x2, x + 8, sizeof x2);
+  for (std::size_t r = 0; r < kNodeSize; r += 4) {
+    Quad a, b, c, d, total, old;
+    rowTimes(t + kNodeSize * r, x0, x1, x2, a);
+    rowTimes(t + kNodeSize * (r + 1), x0, x1, x2, b);
+    rowTimes(t + kNodeSize * (r + 2), x0, x1, x2, c);
+    rowTimes(t + kNodeSize * (r + 3), x0, x1, x2, d);
+    laneSums(a, b, c, d, total);
+    __builtin_memcpy(&old, y + r, sizeof old);
+    old -= total;
+    __builtin_memcpy(y + r, &old, sizeof old);
+  }
+}
+
+float* blockOf(AlignedVector<float>& values, std::size_t block) {
+  return values.data() + kNodeMatrix * block;
+}
+
+std::int32_t find(const BlockCholesky& matrix, std::int32_t column, std::int32_t row) {
+  const auto first = matrix.row.begin() + matrix.columnStart[static_cast<std::size_t>(column)];
+  const auto last = matrix.row.begin() + matrix.columnStart[static_cast<std::size_t>(column) + 1];
+  return static_cast<std::int32_t>(std::lower_bound(first, last, row) - matrix.row.begin());
+}
+
+}  // namespace
+
+void analyse(std::span<const std::int32_t> order, std::span<const BlockPair> edges, BlockCholesky& matrix) {
+  const std::size_t count = order.size();
+  matrix.node.assign(order.begin(), order.end());
+  matrix.position.resize(count);
+  for (std::size_t k = 0; k < count; ++k) matrix.position[static_cast<std::size_t>(order[k])] = static_cast<std::int32_t>(k);
+
+  // The pattern of A by columns, then that of L: column j is its own part of A and what the columns leave that have j as their
+  // first row below the diagonal (their parent in the elimination tree).
+  std::vector<std::vector<std::int32_t>> column(count);
+  for (const BlockPair& edge : edges) {
+    const std::int32_t p = matrix.position[static_cast<std::size_t>(edge.a)];
+    const std::int32_t q = matrix.position[static_cast<std::size_t>(edge.b)];
+    column[static_cast<std::size_t>(std::min(p, q))].push_back(std::max(p, q));
+  }
+  for (std::size_t j = 0; j < count; ++j) {
+    std::vector<std::int32_t>& rows = column[j];
+    std::sort(rows.begin(), rows.end());
+    rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
+    if (rows.empty()) continue;
+    std::vector<std::int32_t>& parent = column[static_cast<std::size_t>(rows.front())];
+    parent.insert(parent.end(), rows.begin() + 1, rows.end());
+  }
+  matrix.columnStart.assign(1, 0);
+  matrix.row.clear();
+  for (const std::vector<std::int32_t>& rows : column) {
+    matrix.row.insert(matrix.row.end(), rows.begin(), rows.end());
+    matrix.columnStart.push_back(static_cast<std::int32_t>(matrix.row.size()));
+  }
+  matrix.target.clear();
+  matrix.targetStart.clear();
+  for (std::size_t j = 0; j < count; ++j) {
+    const auto first = static_cast<std::size_t>(matrix.columnStart[j]);
+    const auto last = static_cast<std::size_t>(matrix.columnStart[j + 1]);
+    for (std::size_t i = first; i < last; ++i) {
+      matrix.targetStart.push_back(static_cast<std::int32_t>(matrix.target.size()));
+      for (std::size_t k = first; k < i; ++k) matrix.target.push_back(find(matrix, matrix.row[k], matrix.row[i]));
+      matrix.target.push_back(-1 - matrix.row[i]);
+    }
+  }
+  matrix.diagonal.resize(kNodeMatrix * count);
+  matrix.lower.resize(kNodeMatrix * matrix.row.size());
+  matrix.work.resize(kNodeSize * count);
+}
+
+BlockSlot slotOf(const BlockCholesky& matrix, std::int32_t first, std::int32_t second) {
+  const std::int32_t p = matrix.position[static_cast<std::size_t>(first)];
+  const std::int32_t q = matrix.position[static_cast<std::size_t>(second)];
+  return {find(matrix, std::min(p, q), std::max(p, q)), p > q};
+}
+
+void clear(BlockCholesky& matrix) {
+  std::fill(matrix.diagonal.begin(), matrix.diagonal.end(), 0.0F);
+  std::fill(matrix.lower.begin(), matrix.lower.end(), 0.0F);
+}
+
+SPRINGTOWER_KERNEL
+bool factorise(BlockCholesky& matrix) {
+  bool positive = true;
+  for (std::size_t j = 0; j < matrix.nodeCount(); ++j) {
+    float* inverse = blockOf(matrix.diagonal, j);
+    positive = invert(inverse) && positive;
+    const auto first = static_cast<std::size_t>(matrix.columnStart[j]);
+    const auto last = static_cast<std::size_t>(matrix.columnStart[j + 1]);
+    for (std::size_t i = first; i < last; ++i) {
+      alignas(32) float w[kNodeMatrix];
+      alignas(32) float turned[kNodeMatrix];
+      float* block = blockOf(matrix.lower, i);
+      for (std::size_t e = 0; e < kNodeMatrix; ++e) w[e] = block[e];
+      transpose(w, turned);
+      product(inverse, turned, block);
+      const std::int32_t* target = matrix.target.data() + matrix.targetStart[i];
+      for (std::size_t k = first; k < i; ++k) {
+        subtractProduct(w, blockOf(matrix.lower, k), blockOf(matrix.lower, static_cast<std::size_t>(target[k - first])));
+      }
+      subtractProduct(w, block, blockOf(matrix.diagonal, static_cast<std::size_t>(-1 - target[i - first])));
+    }
+  }
+  return positive;
+}
+
+SPRINGTOWER_KERNEL
+void solve(BlockCholesky& matrix, std::span<double> values) {
+  float* y = matrix.work.data();
+  const std::size_t count = matrix.nodeCount();
+  for (std::size_t j = 0; j < count; ++j) {
+    const double* from = values.data() + kNodeSize * static_cast<std::size_t>(matrix.node[j]);
+    for (std::size_t c = 0; c < kNodeSize; ++c) y[kNodeSize * j + c] = static_cast<float>(from[c]);
+  }
+  for (std::size_t j = 0; j < count; ++j) {
+    const auto last = static_cast<std::size_t>(matrix.columnStart[j + 1]);
+    for (auto i = static_cast<std::size_t>(matrix.columnStart[j]); i < last; ++i) {
+      subtractTransposed(blockOf(matrix.lower, i), y + kNodeSize * j, y + kNodeSize * static_cast<std::size_t>(matrix.row[i]));
+    }
+  }
+  for (std::size_t j = count; j-- > 0;) {
+    float scaled[kNodeSize];
+    float* mine = y + kNodeSize * j;
+    Row sum{};
+    const float* inverse = blockOf(matrix.diagonal, j);
+    for (std::size_t k = 0; k < kNodeSize; ++k) {
+      Row row;
+      load(inverse + kNodeSize * k, row);
+      add(mine[k], row, sum);
+    }
+    store(sum, scaled);
+    const auto last = static_cast<std::size_t>(matrix.columnStart[j + 1]);
+    for (auto i = static_cast<std::size_t>(matrix.columnStart[j]); i < last; ++i) {
+      subtractTimes(blockOf(matrix.lower, i), y + kNodeSize * static_cast<std::size_t>(matrix.row[i]), scaled);
+    }
+    for (std::size_t c = 0; c < kNodeSize; ++c) mine[c] = scaled[c];
+    double* to = values.data() + kNodeSize * static_cast<std::size_t>(matrix.node[j]);
+    for (std::size_t c = 0; c < kNodeSize; ++c) to[c] = static_cast<double>(scaled[c]);
+  }
+}
+
+}  // namespace springtower

@@ -1,0 +1,56 @@
+#pragma once
+
+#include "core/ids.h"
+#include "core/vector.h"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace springtower {
+
+inline constexpr std::size_t kNodeSize = 12;                       // freedoms of a node
+inline constexpr std::size_t kNodeMatrix = kNodeSize * kNodeSize;  // floats of a block of the matrix, row by row
+
+/// Where a pair of nodes stands in the matrix: which stored block, and whether the pair's first node is that block's row.
+struct BlockSlot {
+  std::int32_t at = -1;
+  bool firstIsRow = true;
+};
+
+/// A symmetric positive definite matrix of 12 x 12 blocks, and its factors A = L D L^T in place (block elimination without
+/// pivoting; George & Liu 1981). In float: it is an approximate inverse whose errors the exact residual sees.
+struct BlockCholesky {
+  std::vector<std::int32_t> position;     ///< of each node in the order of elimination
+  std::vector<std::int32_t> node;         ///< and back
+  std::vector<std::int32_t> columnStart;  ///< blocks below the diagonal of column j are columnStart[j] .. columnStart[j + 1]
+  std::vector<std::int32_t> row;          ///< their rows, ascending
+  std::vector<std::int32_t> targetStart;  ///< per block: where its updates' targets are listed
+  std::vector<std::int32_t> target;       ///< blocks (>= 0) or diagonals (-1 - row) that elimination updates, in order
+  AlignedVector<float> diagonal;          ///< [nodes][144]; after factorisation the inverse of D
+  AlignedVector<float> lower;             ///< [blocks][144]; after factorisation the transposed blocks of L
+  std::vector<std::int32_t> mark;         ///< working space
+  AlignedVector<float> work;              ///< working space of solutions, [nodes][12]
+
+  [[nodiscard]] std::size_t nodeCount() const { return node.size(); }
+  [[nodiscard]] std::size_t blockCount() const { return row.size(); }
+};
+
+/// Lays out the matrix for nodes in this order of elimination (a permutation: order[k] is the k-th node) that are coupled by
+/// `edges`, and all blocks that fill in.
+void analyse(std::span<const std::int32_t> order, std::span<const BlockPair> edges, BlockCholesky& matrix);
+
+/// The slot of a coupled pair of nodes.
+BlockSlot slotOf(const BlockCholesky& matrix, std::int32_t first, std::int32_t second);
+
+/// Sets all entries to zero.
+void clear(BlockCholesky& matrix);
+
+/// Factorises what `diagonal` (full blocks) and `lower` hold. Precondition: positive definite. Returns false where a pivot is not
+/// positive.
+bool factorise(BlockCholesky& matrix);
+
+/// Solves A x = b in place; `values` holds 12 numbers a node, by node.
+void solve(BlockCholesky& matrix, std::span<double> values);
+
+}  // namespace springtower

@@ -1,0 +1,166 @@
+#include "solver/implicit.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace springtower {
+
+namespace {
+
+// Steps of a frame where the user names none.
+constexpr int kImplicitSteps = 4;
+// Angle by which a block may turn in an implicit step, rad: the two-step formula turns along chords.
+constexpr double kMostTurn = 0.01;
+// Distance that blocks may close in an implicit step that makes them meet, in tolerances.
+constexpr double kMostClosing = 0.5;
+// Frames that an island is stepped explicitly after an implicit step did not converge.
+constexpr int kExplicitFrames = 6;
+
+int implicitSteps(const Simulation& simulation) {
+  const int asked = simulation.scene.settings.substeps;
+  return asked > 0 ? asked : kImplicitSteps;
+}
+
+// The angular speed of a block is at most this, rad/s: how fast its mean edges change against their length.
+double turningSpeed(const AffineField& place, const AffineField& motion) {
+  double fastest = 0.0;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const auto& side = place.side[a];
+    const auto& rate = motion.side[a];
+    const double length = side[0] * side[0] + side[1] * side[1] + side[2] * side[2];
+    fastest = std::max(fastest, (rate[0] * rate[0] + rate[1] * rate[1] + rate[2] * rate[2]) / length);
+  }
+  return std::sqrt(fastest);
+}
+
+// How fast the gap of a pair that is apart closes along what separates it, m/s; and the gap.
+struct Closing {
+  double gap;
+  double speed;
+};
+
+Closing closingOf(const Simulation& simulation, const NearPair& pair) {
+  const auto a = static_cast<std::size_t>(pair.a);
+  const CornerArray& x = simulation.state.position;
+  const CornerArray& v = simulation.state.velocity;
+  double least = 1e300;
+  double leastSoon = 1e300;
+  const double soon = simulation.scene.settings.frame_s;
+  for (std::size_t c = 0; c < kCorners; ++c) {
+    const double along = pair.witness.dot(x.at(a, c));
+    least = std::min(least, along);
+    leastSoon = std::min(leastSoon, along + soon * pair.witness.dot(v.at(a, c)));
+  }
+  double most = 0.0;
+  double mostSoon = 0.0;
+  if (pair.b >= 0) {
+    const auto b = static_cast<std::size_t>(pair.b);
+    most = mostSoon = -1e300;
+    for (std::size_t c = 0; c < kCorners; ++c) {
+      const double along = pair.witness.dot(x.at(b, c));
+      most = std::max(most, along);
+      mostSoon = std::max(mostSoon, along + soon * pair.witness.dot(v.at(b, c)));
+    }
+  }
+  const double gap = least - most;
+  const double gapSoon = leastSoon - mostSoon;
+  return {gap, (gap - gapSoon) / soon};
+}
+
+}  // namespace
+
+void prepareImplicit(Simulation& simulation) {
+  Engine& engine = *simulation.engine;
+  const std::size_t count = simulation.model.blockCount();
+  const double step_s = 2.0 / 3.0 * simulation.scene.settings.frame_s / implicitSteps(simulation);
+  engine.previousVelocity.resize(count);
+  engine.history.resize(count);
+  engine.target.resize(count);
+  engine.stepVelocity.resize(count);
+  engine.carriedMotion.resize(count);
+  engine.implicitIslands.resize(count);
+  engine.nodeOf.assign(count, 0);
+  engine.jacobian.resize(count);
+  const BlockModel& model = simulation.model;
+  for (std::size_t b = 0; b < count; ++b) {
+    const bool asBefore = b > 0 && model.dimensions[b] == model.dimensions[b - 1] && model.mass[b] == model.mass[b - 1];
+    engine.jacobian[b] = asBefore ? engine.jacobian[b - 1]
+                                  : blockJacobian(model, simulation.scene.settings.inertia, b, 1.0 / (step_s * step_s),
+                                                  1.0 + simulation.scene.settings.dampingTime_s / step_s);
+  }
+}
+
+void rememberImplicit(Simulation& simulation) {
+  if (simulation.scene.settings.method != Method::implicit) return;
+  Engine& engine = *simulation.engine;
+  engine.frameStartPrevious = engine.previous;
+  engine.frameStartPreviousVelocity = engine.previousVelocity;
+}
+
+void rewindImplicit(Simulation& simulation) {
+  if (simulation.scene.settings.method != Method::implicit) return;
+  Engine& engine = *simulation.engine;
+  engine.previous = engine.frameStartPrevious;
+  engine.previousVelocity = engine.frameStartPreviousVelocity;
+}
+
+bool implicitStepsFit(const IslandStep& step) {
+  const Simulation& simulation = step.simulation;
+  const double frame_s = simulation.scene.settings.frame_s;
+  const double step_s = frame_s / implicitSteps(simulation);
+  bool touches = false;
+  for (const std::int32_t at : step.pairs) {
+    const NearPair& pair = step.engine.pairs[static_cast<std::size_t>(at)];
+    if (pair.manifold.touch != Touch::apart) {
+      touches = true;
+      continue;
+    }
+    const Closing closing = closingOf(simulation, pair);
+    const double reach = frame_s * (std::max(0.0, closing.speed) + 0.5 * frame_s * simulation.scene.gravity.magnitude);
+    if (closing.gap < reach && closing.speed * step_s > kMostClosing * simulation.tolerance_m) return false;
+  }
+  if (!touches) return false;
+  for (const std::int32_t block : step.blocks) {
+    const auto b = static_cast<std::size_t>(block);
+    if (step.engine.clock[b].explicitFrames > 0) return false;
+    const double turning = turningSpeed(affineField(simulation.state.position, b), affineField(simulation.state.velocity, b));
+    if (turning * step_s > kMostTurn) return false;
+  }
+  return true;
+}
+
+IslandOutcome runImplicitSteps(IslandStep& step, double& reached_s) {
+  Simulation& simulation = step.simulation;
+  Engine& engine = step.engine;
+  IslandOutcome outcome;
+  reached_s = 0.0;
+  const bool fits = implicitStepsFit(step);
+  for (const std::int32_t block : step.blocks) {
+    std::int32_t& frames = engine.clock[static_cast<std::size_t>(block)].explicitFrames;
+    frames = std::max(0, frames - 1);
+  }
+  if (!fits) return outcome;
+  const int steps = implicitSteps(simulation);
+  step.drift_s = simulation.scene.settings.frame_s / steps;
+  step.scaleMost = 1.0;
+  engine.implicitIslands[static_cast<std::size_t>(step.blocks.front())].forcesKnown = false;
+  for (int i = 0; i < steps; ++i) {
+    step.time_s = simulation.time_s + (i + 1) * step.drift_s;  // forces are those of the step's end
+    step.gravity = simulation.scene.gravity.at(step.time_s);
+    if (!stepImplicit(step)) {
+      for (const std::int32_t block : step.blocks) engine.clock[static_cast<std::size_t>(block)].explicitFrames = kExplicitFrames;
+      return outcome;
+    }
+    ++outcome.substeps;
+    reached_s = simulation.scene.settings.frame_s * (i + 1) / steps;
+    const std::uint64_t looked = step.counters.manifoldRefreshes + step.counters.contactsBorn;
+    outcome.inside = updateContacts(step);
+    if (!outcome.inside) return outcome;
+    if (looked != step.counters.manifoldRefreshes + step.counters.contactsBorn) {
+      engine.implicitIslands[static_cast<std::size_t>(step.blocks.front())].forcesKnown = false;
+    }
+  }
+  return outcome;
+}
+
+}  // namespace springtower

@@ -1,0 +1,30 @@
+#pragma once
+
+#include "solver/island_step.h"
+
+namespace springtower {
+
+/// Sizes what method `implicit` needs: histories, factors, and each block's own matrix.
+void prepareImplicit(Simulation& simulation);
+
+/// Keeps what implicit steps start the frame from, and brings it back when the frame is run again. Nothing for other methods.
+void rememberImplicit(Simulation& simulation);
+void rewindImplicit(Simulation& simulation);
+
+struct IslandOutcome {
+  int substeps = 0;
+  bool inside = true;  ///< no block left its swept box
+};
+
+/// Steps an island implicitly through the frame, as far as that fits and converges; `reached_s` is the time into the frame it
+/// came to. What is left is for explicit steps.
+IslandOutcome runImplicitSteps(IslandStep& step, double& reached_s);
+
+/// One implicit step of step.drift_s. Returns false when it does not converge; everything is then as before.
+bool stepImplicit(IslandStep& step);
+
+/// Whether implicit steps can follow what the island does in this frame: it touches something, nothing spins fast, and nothing is
+/// about to meet at speed.
+bool implicitStepsFit(const IslandStep& step);
+
+}  // namespace springtower

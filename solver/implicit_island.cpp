@@ -1,0 +1,208 @@
+#include "solver/implicit_island.h"
+
+#include "solver/island_step.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace springtower {
+
+namespace {
+
+using Axes = std::array<std::array<double, 3>, 3>;
+using Weights = std::array<double, kAffine>;
+using Coupling = std::array<std::array<double, kAffine>, kAffine>;
+
+// Orthonormal axes of a block: its mean edges, straightened (Gram & Schmidt).
+Axes axesOf(const AffineField& place) {
+  Vec3 x(place.side[0][0], place.side[0][1], place.side[0][2]);
+  Vec3 y(place.side[1][0], place.side[1][1], place.side[1][2]);
+  x.normalize();
+  y -= y.dot(x) * x;
+  y.normalize();
+  const Vec3 z = x.cross(y);
+  return {{{x[0], x[1], x[2]}, {y[0], y[1], y[2]}, {z[0], z[1], z[2]}}};
+}
+
+// Adds a block's own matrix, turned into the world's frame.
+void addOwn(const BlockJacobian& jacobian, const Axes& axes, float* diagonal) {
+  for (std::size_t p = 0; p < kAffine; ++p) {
+    for (std::size_t q = 0; q < kAffine; ++q) {
+      double half[3][3];
+      for (std::size_t i = 0; i < 3; ++i) {
+        for (std::size_t k = 0; k < 3; ++k) {
+          half[i][k] = 0.0;
+          for (std::size_t j = 0; j < 3; ++j) half[i][k] += jacobian.affine[3 * p + i][3 * q + j] * axes[j][k];
+        }
+      }
+      for (std::size_t i = 0; i < 3; ++i) {
+        for (std::size_t k = 0; k < 3; ++k) {
+          double sum = 0.0;
+          for (std::size_t j = 0; j < 3; ++j) sum += axes[j][i] * half[j][k];
+          diagonal[kNodeSize * (3 * p + i) + 3 * q + k] += static_cast<float>(sum);
+        }
+      }
+    }
+  }
+}
+
+// Adds sign * (normal[p][q] n n^T + tangential[p][q] (1 - n n^T)) for all pairs of vectors.
+void addContacts(const Coupling& normal, const Coupling& tangential, const Vec3& n, bool transposed, double sign, float* block) {
+  for (std::size_t p = 0; p < kAffine; ++p) {
+    for (std::size_t q = 0; q < kAffine; ++q) {
+      const double along = sign * (normal[p][q] - tangential[p][q]);
+      const double across = sign * tangential[p][q];
+      const std::size_t row = transposed ? q : p;
+      const std::size_t column = transposed ? p : q;
+      float* to = block + kNodeSize * 3 * row + 3 * column;
+      for (std::size_t i = 0; i < 3; ++i) {
+        const double scaled = along * n[static_cast<Eigen::Index>(i)];
+        for (std::size_t k = 0; k < 3; ++k) {
+          to[kNodeSize * i + k] += static_cast<float>(scaled * n[static_cast<Eigen::Index>(k)] + (i == k ? across : 0.0));
+        }
+      }
+    }
+  }
+}
+
+void addProduct(double factor, const Weights& p, const Weights& q, Coupling& sum) {
+  for (std::size_t i = 0; i < kAffine; ++i) {
+    for (std::size_t k = 0; k < kAffine; ++k) sum[i][k] += factor * p[i] * q[k];
+  }
+}
+
+// Weights of a block's affine vectors at a place in space.
+Weights weightsAt(const BlockFrame& frame, const Vec3& place) {
+  const Vec3 arm = place - Vec3(frame.place.centre[0], frame.place.centre[1], frame.place.centre[2]);
+  Weights weights{1.0, 0.0, 0.0, 0.0};
+  for (std::size_t a = 0; a < 3; ++a)
+    weights[1 + a] = frame.dual[a][0] * arm[0] + frame.dual[a][1] * arm[1] + frame.dual[a][2] * arm[2];
+  return weights;
+}
+
+void addManifold(const IslandStep& step, ImplicitIsland& island, std::size_t at, double step_s) {
+  const Engine& engine = step.engine;
+  const Manifold& m = engine.pairs[static_cast<std::size_t>(island.touching[at])].manifold;
+  const ContactMask mask = island.mask[at];
+  if ((mask & 0xFFU) == 0) return;
+  const auto upper = static_cast<std::size_t>(m.upper);
+  const BlockFrame& frameUpper = engine.frames[upper];
+  const BlockFrame* frameLower = m.lower < 0 ? nullptr : &engine.frames[static_cast<std::size_t>(m.lower)];
+  static const AffineField kStill{};
+  const PointForces points = pointForces(m, {&frameUpper, &kStill, &kStill}, {frameLower, &kStill, &kStill}, step.law);
+
+  const double stiffness = m.lower < 0 ? step.law.floorStiffness_n_m : step.law.stiffness_n_m;
+  const double damping = step.law.dampingTime_s / step_s;
+  const double relaxing = step.law.relaxingRatio * step.law.relaxingTime_s / (step.law.relaxingTime_s + step.drift_s);
+  const double normalFactor = 1.0 + relaxing + damping;
+  const double tangentialFactor = step.law.tangentialRatio * (1.0 + damping);
+  const PointMemory& memory = engine.trial[static_cast<std::size_t>(island.touching[at])];
+  Coupling upperNormal{}, upperTangential{}, lowerNormal{}, lowerTangential{}, crossNormal{}, crossTangential{};
+  for (std::size_t i = 0; i < static_cast<std::size_t>(m.count); ++i) {
+    if ((mask >> i & 1U) == 0) continue;
+    const double k = stiffness * std::max(1.0, memory.scale[i]);
+    const double normal = k * normalFactor;
+    const double tangential = (mask >> (8 + i) & 1U) != 0 ? 0.0 : k * tangentialFactor;
+    const Weights wu = weightsAt(frameUpper, points.place[i]);
+    addProduct(normal, wu, wu, upperNormal);
+    addProduct(tangential, wu, wu, upperTangential);
+    if (frameLower == nullptr) continue;
+    const Weights wl = weightsAt(*frameLower, points.lowerPlace[i]);
+    addProduct(normal, wl, wl, lowerNormal);
+    addProduct(tangential, wl, wl, lowerTangential);
+    addProduct(normal, wu, wl, crossNormal);
+    addProduct(tangential, wu, wl, crossTangential);
+  }
+  BlockCholesky& matrix = island.matrix;
+  const auto diagonalOf = [&](std::size_t block) {
+    return matrix.diagonal.data() +
+           kNodeMatrix * static_cast<std::size_t>(matrix.position[static_cast<std::size_t>(engine.nodeOf[block])]);
+  };
+  const std::vector<std::uint8_t>& asleep = step.simulation.asleep;
+  if (asleep[upper] == 0) addContacts(upperNormal, upperTangential, points.direction, false, 1.0, diagonalOf(upper));
+  if (m.lower < 0) return;
+  const auto lower = static_cast<std::size_t>(m.lower);
+  if (asleep[lower] == 0) addContacts(lowerNormal, lowerTangential, points.direction, false, 1.0, diagonalOf(lower));
+  const BlockSlot& slot = island.slot[at];
+  if (slot.at < 0) return;
+  addContacts(crossNormal, crossTangential, points.direction, !slot.firstIsRow, -1.0,
+              matrix.lower.data() + kNodeMatrix * static_cast<std::size_t>(slot.at));
+}
+
+void mix(std::uint64_t& hash, std::uint64_t value) {
+  hash = (hash ^ value) * 1099511628211ULL;
+}
+
+}  // namespace
+
+bool layOut(IslandStep& step, ImplicitIsland& island) {
+  Engine& engine = step.engine;
+  const std::vector<std::uint8_t>& asleep = step.simulation.asleep;
+  std::uint64_t pattern = 1469598103934665603ULL;
+  for (const std::int32_t block : step.blocks) mix(pattern, static_cast<std::uint64_t>(block));
+  for (const std::int32_t at : step.pairs) {
+    const Manifold& m = engine.pairs[static_cast<std::size_t>(at)].manifold;
+    if (m.touch == Touch::apart) continue;
+    mix(pattern, static_cast<std::uint64_t>(m.upper) << 32U | static_cast<std::uint32_t>(m.lower));
+    mix(pattern, static_cast<std::uint64_t>(at));
+    if (m.lower >= 0) {
+      mix(pattern, std::uint64_t{asleep[static_cast<std::size_t>(m.upper)]} << 1U | asleep[static_cast<std::size_t>(m.lower)]);
+    }
+  }
+  if (pattern == island.pattern) return false;
+  const std::size_t count = step.blocks.size();
+  for (std::size_t i = 0; i < count; ++i) engine.nodeOf[static_cast<std::size_t>(step.blocks[i])] = static_cast<std::int32_t>(i);
+
+  // From the bottom up: in a tower the matrix is then a band three blocks wide.
+  std::vector<std::int32_t> order(count);
+  for (std::size_t i = 0; i < count; ++i) order[i] = static_cast<std::int32_t>(i);
+  std::vector<double> height(count);
+  for (std::size_t i = 0; i < count; ++i)
+    height[i] = centre(step.simulation.state.position, static_cast<std::size_t>(step.blocks[i])).z();
+  std::sort(order.begin(), order.end(), [&](std::int32_t p, std::int32_t q) {
+    const double a = height[static_cast<std::size_t>(p)];
+    const double b = height[static_cast<std::size_t>(q)];
+    return a != b ? a < b : p < q;
+  });
+  std::vector<BlockPair> edges;
+  island.touching.clear();
+  for (const std::int32_t at : step.pairs) {
+    const Manifold& m = engine.pairs[static_cast<std::size_t>(at)].manifold;
+    if (m.touch == Touch::apart) continue;
+    island.touching.push_back(at);
+    if (m.lower < 0 || asleep[static_cast<std::size_t>(m.upper)] != 0 || asleep[static_cast<std::size_t>(m.lower)] != 0) continue;
+    edges.push_back({engine.nodeOf[static_cast<std::size_t>(m.upper)], engine.nodeOf[static_cast<std::size_t>(m.lower)]});
+  }
+  analyse(order, edges, island.matrix);
+  island.slot.clear();
+  for (const std::int32_t at : island.touching) {
+    const Manifold& m = engine.pairs[static_cast<std::size_t>(at)].manifold;
+    const bool coupled =
+        m.lower >= 0 && asleep[static_cast<std::size_t>(m.upper)] == 0 && asleep[static_cast<std::size_t>(m.lower)] == 0;
+    island.slot.push_back(coupled ? slotOf(island.matrix, engine.nodeOf[static_cast<std::size_t>(m.upper)],
+                                           engine.nodeOf[static_cast<std::size_t>(m.lower)])
+                                  : BlockSlot{});
+  }
+  island.mask.assign(island.touching.size(), 0);
+  island.axes.resize(count);
+  island.residual.resize(count);
+  island.affine.resize(kNodeSize * count);
+  island.pattern = pattern;
+  island.factorised = false;
+  return true;
+}
+
+bool assemble(IslandStep& step, ImplicitIsland& island, double step_s) {
+  clear(island.matrix);
+  for (std::size_t i = 0; i < step.blocks.size(); ++i) {
+    island.axes[i] = axesOf(step.engine.frames[static_cast<std::size_t>(step.blocks[i])].place);
+    addOwn(step.engine.jacobian[static_cast<std::size_t>(step.blocks[i])], island.axes[i],
+           island.matrix.diagonal.data() + kNodeMatrix * static_cast<std::size_t>(island.matrix.position[i]));
+  }
+  for (std::size_t at = 0; at < island.touching.size(); ++at) addManifold(step, island, at, step_s);
+  ++step.counters.factorisations;
+  island.factorised = factorise(island.matrix);
+  return island.factorised;
+}
+
+}  // namespace springtower

@@ -1,0 +1,39 @@
+#pragma once
+
+#include "solver/block_cholesky.h"
+#include "solver/block_jacobian.h"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace springtower {
+
+/// Which points of a pair's manifold push (low byte) and which of them slide (high byte).
+using ContactMask = std::uint16_t;
+
+/// What an island keeps from implicit step to implicit step: the factors of M / step^2 + K as the contacts stood when they were
+/// last assembled, and working space of the iteration.
+struct ImplicitIsland {
+  std::uint64_t pattern = 0;  ///< of which blocks touch which; what the matrix is laid out for
+  bool factorised = false;
+  bool forcesKnown = false;  ///< engine.force holds the forces at the island's present state
+  BlockCholesky matrix;
+  std::vector<std::int32_t> touching;                      ///< touching pairs, as positions in engine.pairs
+  std::vector<BlockSlot> slot;                             ///< of each of these; at = -1 where one side is the floor or asleep
+  std::vector<ContactMask> mask;                           ///< what each was assembled for
+  std::vector<std::array<std::array<double, 3>, 3>> axes;  ///< the frames the blocks were assembled in, [node][axis][component]
+  std::vector<ModeVectors> residual;                       ///< N, in the blocks' frames, by node
+  std::vector<double> affine;                              ///< right-hand sides and solutions, [nodes][12]
+};
+
+struct IslandStep;
+
+/// Lays out the matrix anew where blocks have begun or ceased to touch. Returns whether it did.
+bool layOut(IslandStep& step, ImplicitIsland& island);
+
+/// Assembles and factorises for contacts that stand as `mask` says. `step_s` is the step times the method's factor. Returns false
+/// where the matrix is not positive definite.
+bool assemble(IslandStep& step, ImplicitIsland& island, double step_s);
+
+}  // namespace springtower

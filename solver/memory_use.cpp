@@ -1,0 +1,67 @@
+#include "solver/memory_use.h"
+
+#include "solver/engine.h"
+
+namespace springtower {
+namespace {
+
+template <class Vector>
+std::size_t bytesOf(const Vector& values) {
+  return values.size() * sizeof(typename Vector::value_type);
+}
+
+std::size_t bytesOf(const CornerArray& values) {
+  std::size_t sum = 0;
+  for (const auto& component : values.component) sum += bytesOf(component);
+  return sum;
+}
+
+std::size_t bytesOf(const MotionState& state) {
+  return bytesOf(state.position) + bytesOf(state.velocity);
+}
+
+std::size_t bytesOf(const ReportState& report);
+
+template <class... Parts>
+std::size_t sumOf(const Parts&... parts) {
+  return (bytesOf(parts) + ...);
+}
+
+std::size_t bytesOf(const ReportState& report) {
+  std::size_t sum = sumOf(report.from, report.to, report.low, report.high, report.version, report.testedAt);
+  for (const auto& contacts : report.contacts) sum += bytesOf(contacts);
+  for (const auto& contacts : report.frameStartContacts) sum += bytesOf(contacts);
+  for (const auto& blocks : report.struck) sum += bytesOf(blocks);
+  return sum;
+}
+
+}  // namespace
+
+MemoryUse memoryUse(const Simulation& simulation) {
+  const Engine& engine = *simulation.engine;
+  const BlockModel& model = simulation.model;
+  MemoryUse use;
+  use.state = bytesOf(simulation.state) + sumOf(simulation.asleep, simulation.restTime_s);
+  use.model = sumOf(model.dimensions, model.mass);
+  for (std::size_t g = 0; g < kSpringGroups; ++g) {
+    use.model += sumOf(model.restLength[g], model.springStiffness[g], model.springDamping[g]);
+  }
+  use.contacts = bytesOf(engine.pairs);
+  use.working = sumOf(engine.reach, engine.travelAtSweep, engine.sweptPairs, engine.keys, engine.awakeBlocks, engine.pairsBefore,
+                      engine.pairStart, engine.islandPairs, engine.blockPairStart, engine.blockPairs, engine.cursor,
+                      engine.touchingEdges, engine.force, engine.frames, engine.motion, engine.carriedMotion, engine.contactForce,
+                      engine.springRadius, engine.contactMetric, engine.previous, engine.carried, engine.pairForce, engine.clock,
+                      engine.lostPartner, engine.toWake, engine.restless, engine.parent, engine.joined, engine.rest,
+                      engine.report, engine.frameStart, engine.frameStartClock, engine.frameStartPairs, engine.chunkCounters,
+                      engine.islandCounters, engine.islandTimes, engine.islandOutcome);
+  use.working += sumOf(engine.sweep.order, engine.sweep.place, engine.sweep.columns, engine.sweep.awake, engine.sweep.renewed,
+                       engine.sweep.ascending, engine.sweep.outOfOrder);
+  for (const MotionState& stage : engine.stage) use.working += bytesOf(stage);
+  for (const CornerArray& acceleration : engine.stageAcceleration) use.working += bytesOf(acceleration);
+  for (std::size_t a = 0; a < 3; ++a) use.working += sumOf(engine.boxes.lower[a], engine.boxes.upper[a]);
+  use.working += sumOf(engine.islands.blocks, engine.islands.start, engine.islands.islandOf, engine.islands.edges,
+                       engine.islands.asleep, engine.islands.parent);
+  return use;
+}
+
+}  // namespace springtower

@@ -1,0 +1,229 @@
+#include "solver/implicit.h"
+#include "solver/inertia.h"
+#include "solver/stage_clock.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace springtower {
+
+namespace {
+
+constexpr int kMostIterations = 12;
+// Residual force at which a step is taken, in weights of the block; in metres it is this share of the compression under its own
+// weight. Displacements are no measure: a sliding block hardly moves and is still wrong by a tenth of its friction.
+constexpr double kResidual = 1e-5;
+constexpr double kBdf2 = 2.0 / 3.0;  // step that the two-step formula puts the end's forces into, in steps
+
+ImplicitIsland& islandOf(IslandStep& step) {
+  return step.engine.implicitIslands[static_cast<std::size_t>(step.blocks.front())];
+}
+
+// Where each block ends without forces, and what of it is history: x = (4 x_n - x_(n-1)) / 3 + 2/3 h v at the end, and alike for
+// v (Gear 1971). A block without a history gets that of the uniform acceleration it has now, or of none where a contact has just
+// kicked it.
+void foretell(IslandStep& step, double effective_s) {
+  Engine& engine = step.engine;
+  MotionState& state = step.simulation.state;
+  const double h = step.drift_s;
+  const double calm = 2.0 * std::max(step.simulation.scene.gravity.magnitude, 1.0);
+  for (const std::int32_t block : step.blocks) {
+    const auto b = static_cast<std::size_t>(block);
+    const bool known = engine.clock[b].history_s == h;
+    double start[3][kCorners] = {};
+    if (!known) {
+      accelerate(step, b, start);
+      double most = 0.0;
+      for (const auto& row : start) {
+        for (const double a : row) most = std::max(most, std::abs(a));
+      }
+      if (!(most < calm)) std::fill_n(&start[0][0], 3 * kCorners, 0.0);
+    }
+    for (std::size_t a = 0; a < 3; ++a) {
+      const double pull = effective_s * effective_s * step.gravity[static_cast<Eigen::Index>(a)];
+      double* x = state.position.values(a, b);
+      double* v = state.velocity.values(a, b);
+      double* xBefore = engine.previous.values(a, b);
+      double* vBefore = engine.previousVelocity.values(a, b);
+      double* history = engine.history.values(a, b);
+      double* target = engine.target.values(a, b);
+      for (std::size_t c = 0; c < kCorners; ++c) {
+        const double dx = known ? x[c] - xBefore[c] : h * v[c] - 0.5 * h * h * start[a][c];
+        const double dv = known ? v[c] - vBefore[c] : h * start[a][c];
+        history[c] = x[c] + dx / 3.0;
+        target[c] = history[c] + effective_s * (v[c] + dv / 3.0) + pull;
+        xBefore[c] = x[c];
+        vBefore[c] = v[c];
+      }
+    }
+  }
+}
+
+ContactMask maskOf(const PointMemory& live, const PointMemory& sliding, std::int32_t count) {
+  unsigned mask = 0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+    if (live.live[i] == 0.0) continue;
+    mask |= 1U << i;
+    if (sliding.sliding[i] != 0.0) mask |= 0x100U << i;
+  }
+  return static_cast<ContactMask>(mask);
+}
+
+// Brings the masks up to date; returns whether any has changed. Before the first iteration nothing has moved yet, so what slides
+// is what slid before.
+bool updateMasks(IslandStep& step, ImplicitIsland& island, bool first) {
+  bool changed = false;
+  for (std::size_t i = 0; i < island.touching.size(); ++i) {
+    const auto at = static_cast<std::size_t>(island.touching[i]);
+    const Manifold& manifold = step.engine.pairs[at].manifold;
+    const PointMemory& trial = step.engine.trial[at];
+    const ContactMask mask = maskOf(trial, first ? static_cast<const PointMemory&>(manifold) : trial, manifold.count);
+    changed = changed || mask != island.mask[i];
+    island.mask[i] = mask;
+  }
+  return changed;
+}
+
+// Turns the eight vectors into the block's frame, or back.
+void turn(const std::array<std::array<double, 3>, 3>& axes, bool back, ModeVectors& modes) {
+  for (auto& vector : modes) {
+    const std::array<double, 3> from = vector;
+    for (std::size_t i = 0; i < 3; ++i) {
+      vector[i] = back ? axes[0][i] * from[0] + axes[1][i] * from[1] + axes[2][i] * from[2]
+                       : axes[i][0] * from[0] + axes[i][1] * from[1] + axes[i][2] * from[2];
+    }
+  }
+}
+
+// The residual of all blocks, in the world's frame; returns the largest in units of what is allowed.
+double findResidual(IslandStep& step, ImplicitIsland& island, double effective_s) {
+  const Engine& engine = step.engine;
+  const double gravity = std::max(step.simulation.scene.gravity.magnitude, 1.0);
+  const double rate = 1.0 / (effective_s * effective_s);
+  double worst = 0.0;
+  for (std::size_t i = 0; i < step.blocks.size(); ++i) {
+    const auto b = static_cast<std::size_t>(step.blocks[i]);
+    ModeVectors missing;
+    ModeVectors& residual = island.residual[i];
+    modeForces(engine.force, b, residual);
+    modeDifferences(engine.target, step.simulation.state.position, b, missing);
+    double largest = 0.0;
+    for (std::size_t m = 0; m < kCorners; ++m) {
+      for (std::size_t a = 0; a < 3; ++a) {
+        residual[m][a] += engine.jacobian[b].mass[m] * rate * missing[m][a];
+        largest = std::max(largest, std::abs(residual[m][a]));
+      }
+    }
+    const double scaled = largest / (kResidual * step.simulation.model.mass[b] * gravity);
+    if (!(scaled <= worst)) worst = scaled;  // NaN stays
+  }
+  return worst;
+}
+
+// One solution with the factors at hand; moves the positions.
+void correct(IslandStep& step, ImplicitIsland& island) {
+  Engine& engine = step.engine;
+  const std::size_t count = step.blocks.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    turn(island.axes[i], false, island.residual[i]);
+    ModeVectors reduced = island.residual[i];
+    eliminateWarps(engine.jacobian[static_cast<std::size_t>(step.blocks[i])], reduced);
+    turn(island.axes[i], true, reduced);
+    for (std::size_t m = 0; m < kAffine; ++m)
+      std::copy(reduced[m].begin(), reduced[m].end(), island.affine.data() + kNodeSize * i + 3 * m);
+  }
+  solve(island.matrix, island.affine);
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto b = static_cast<std::size_t>(step.blocks[i]);
+    ModeVectors change{};
+    for (std::size_t m = 0; m < kAffine; ++m) std::copy_n(island.affine.data() + kNodeSize * i + 3 * m, 3, change[m].begin());
+    turn(island.axes[i], false, change);
+    recoverWarps(engine.jacobian[b], island.residual[i], change);
+    turn(island.axes[i], true, change);
+    addModes(change, step.simulation.state.position, b);
+  }
+}
+
+// Velocities at the step's end, and those that carried the blocks through it.
+void updateVelocities(IslandStep& step, double effective_s) {
+  Engine& engine = step.engine;
+  MotionState& state = step.simulation.state;
+  for (const std::int32_t block : step.blocks) {
+    const auto b = static_cast<std::size_t>(block);
+    for (std::size_t a = 0; a < 3; ++a) {
+      const double* x = state.position.values(a, b);
+      const double* before = engine.previous.values(a, b);
+      const double* history = engine.history.values(a, b);
+      double* v = state.velocity.values(a, b);
+      double* carried = engine.stepVelocity.values(a, b);
+      for (std::size_t c = 0; c < kCorners; ++c) {
+        v[c] = (x[c] - history[c]) / effective_s;
+        carried[c] = (x[c] - before[c]) / step.drift_s;
+      }
+    }
+  }
+}
+
+void accept(IslandStep& step, ImplicitIsland& island) {
+  Engine& engine = step.engine;
+  for (const std::int32_t at : island.touching) {
+    static_cast<PointMemory&>(engine.pairs[static_cast<std::size_t>(at)].manifold) = engine.trial[static_cast<std::size_t>(at)];
+  }
+  for (const std::int32_t block : step.blocks) {
+    BlockClock& clock = engine.clock[static_cast<std::size_t>(block)];
+    clock.history_s = step.drift_s;
+    clock.lastDrift_s = 0.0;
+  }
+  ++step.counters.implicitSteps;
+}
+
+void reject(IslandStep& step) {
+  Engine& engine = step.engine;
+  for (const std::int32_t block : step.blocks) {
+    const auto b = static_cast<std::size_t>(block);
+    for (std::size_t a = 0; a < 3; ++a) {
+      std::copy_n(engine.previous.values(a, b), kCorners, step.simulation.state.position.values(a, b));
+      std::copy_n(engine.previousVelocity.values(a, b), kCorners, step.simulation.state.velocity.values(a, b));
+    }
+    engine.clock[b].history_s = 0.0;
+    engine.clock[b].lastDrift_s = 0.0;
+  }
+  ++step.counters.handedOver;
+}
+
+}  // namespace
+
+bool stepImplicit(IslandStep& step) {
+  ImplicitIsland& island = islandOf(step);
+  MotionState& state = step.simulation.state;
+  const double effective_s = kBdf2 * step.drift_s;
+  if (!island.forcesKnown) evaluateForces(step, state, state.velocity, 0.0, Memory::trial);
+  StageClock clock(step.times);
+  foretell(step, effective_s);
+  const bool fresh = layOut(step, island);
+  double residual = findResidual(step, island, effective_s);
+  bool converged = false;
+  for (int iteration = 0; iteration < kMostIterations; ++iteration) {
+    const bool changed = updateMasks(step, island, iteration == 0);
+    if ((changed || fresh || !island.factorised) && !assemble(step, island, effective_s)) break;
+    correct(step, island);
+    updateVelocities(step, effective_s);
+    clock.lap(Stage::integration);
+    evaluateForces(step, state, step.engine.stepVelocity, step.drift_s, Memory::trial);
+    clock.lap(Stage::contacts);
+    residual = findResidual(step, island, effective_s);
+    ++step.counters.implicitIterations;
+    converged = residual <= 1.0;
+    if (converged || !std::isfinite(residual)) break;
+  }
+  island.forcesKnown = converged;
+  if (converged) {
+    accept(step, island);
+  } else {
+    reject(step);
+  }
+  clock.lap(Stage::integration);
+  return converged;
+}
+
+}  // namespace springtower

@@ -1,0 +1,293 @@
+// springtower profile, run as a user would.
+#include "tests/apps/program.h"
+
+#include <algorithm>
+#include <cairo.h>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+namespace springtower {
+namespace {
+
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+using Json = nlohmann::json;
+
+ProgramResult profile(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), "profile");
+  return runProgram("springtower", arguments);
+}
+
+struct BadArguments {
+  std::string name;
+  std::vector<std::string> arguments;
+  std::string message;  // part of what must be said
+};
+
+class ProfileRefusesTest : public ::testing::TestWithParam<BadArguments> {};
+
+TEST_P(ProfileRefusesTest, WithExitCodeTwo) {
+  const ProgramResult result = profile(GetParam().arguments);
+  EXPECT_EQ(result.exitCode, 2);
+  EXPECT_EQ(result.output, "");
+  EXPECT_THAT(result.error, StartsWith("springtower: "));
+  EXPECT_THAT(result.error, HasSubstr(GetParam().message));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Profile, ProfileRefusesTest,
+    ::testing::Values(BadArguments{"UnknownScene", {"--scenes", "rest,flood"}, "'flood'"},
+                      BadArguments{"UnknownMethod", {"--methods", "magic"}, "'magic'"},
+                      BadArguments{"RowsThatAreNoNumbers", {"--rows", "3,six"}, "'six'"},
+                      BadArguments{"HalfARow", {"--rows", "3.5"}, "whole numbers"},
+                      BadArguments{"NoRows", {"--rows", "0"}, "1 to 2000"},
+                      BadArguments{"NegativeTolerance", {"--tolerances", "-1e-5"}, "--tolerances"},
+                      BadArguments{"NoThreads", {"--threads", "0"}, "--threads"},
+                      BadArguments{"TooFewFrames", {"--frames", "1"}, "--frames"},
+                      BadArguments{"OutIsAFile", {"--quick", "--out", "/dev/null"}, "--out"},
+                      BadArguments{"FromWithoutOut", {"--from", "x.json"}, "--out"},
+                      BadArguments{"FromNothing", {"--from", "no-such-file.json", "--out", "/tmp"}, "no-such-file.json"}),
+    [](const auto& bad) { return bad.param.name; });
+
+TEST(Profile, RefusesAnotherFileThanAProfile) {
+  const ScratchFolder scratch;
+  std::ofstream(scratch.file("other.json")) << R"({"version": "1"})";
+  const ProgramResult result = profile({"--from", scratch.file("other.json"), "--out", scratch.file("out")});
+  EXPECT_EQ(result.exitCode, 2);
+  EXPECT_THAT(result.error, HasSubstr("other.json"));
+}
+
+TEST(Profile, HelpTeaches) {
+  const ProgramResult result = profile({"--help"});
+  EXPECT_EQ(result.exitCode, 0);
+  for (const char* word : {"--trace", "pull-sleep", "examples", "ui.perfetto.dev", "processor time"}) {
+    EXPECT_THAT(result.output, HasSubstr(word));
+  }
+}
+
+// A small profile that all tests below read.
+class ProfileFiles : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = std::make_unique<ScratchFolder>();
+    result_ =
+        profile({"--rows", "3,6", "--scenes", "rest,pull,asleep", "--methods", "semi-implicit-euler", "--tolerances", "1e-3",
+                 "--samples", "2", "--frames", "5", "--settle", "0.5", "--out", path("out"), "--trace", path("trace.json")});
+  }
+  static void TearDownTestSuite() { folder_.reset(); }
+  void SetUp() override { ASSERT_EQ(result_.exitCode, 0) << result_.error; }
+
+  static std::string path(const std::string& name) { return folder_->file(name); }
+  static Json json() { return Json::parse(contentOf(path("out/profile.json"))); }
+
+  inline static std::unique_ptr<ScratchFolder> folder_;
+  inline static ProgramResult result_;
+};
+
+TEST_F(ProfileFiles, SayWhatWasMeasuredOnWhat) {
+  const Json file = json();
+  for (const char* key : {"version", "commit", "compiler", "flags", "cpu", "date"}) {
+    EXPECT_NE(file.at(key).get<std::string>(), "") << key;
+  }
+  EXPECT_EQ(file.at("cases").size(), 6U);
+  for (const Json& one : file.at("cases")) {
+    SCOPED_TRACE(one.dump());
+    ASSERT_TRUE(one.at("failure").is_null());
+    EXPECT_EQ(one.at("frames"), 5);
+    EXPECT_EQ(one.at("samples"), 2);
+    const Json& times = one.at("cpu_ms");
+    EXPECT_GT(times.at("median").get<double>(), 0.0);
+    EXPECT_LE(times.at("median").get<double>(), times.at("p99").get<double>());
+    EXPECT_LE(times.at("p99").get<double>(), times.at("max").get<double>());
+    EXPECT_NEAR(one.at("frames_per_second").get<double>() * times.at("median").get<double>(), 1000.0, 1e-6);
+    EXPECT_EQ(one.at("blocks"), 3 * one.at("rows").get<int>() * one.at("towers").get<int>());
+    EXPECT_EQ(one.at("counters_per_frame").at("frames"), 1.0);
+    EXPECT_LE(one.at("max_penetration_mm").get<double>(), 4.0);
+  }
+}
+
+TEST_F(ProfileFiles, MeasureTheSceneTheyName) {
+  int pulled = 0;
+  const Json file = json();
+  for (const Json& one : file.at("cases")) {
+    SCOPED_TRACE(one.dump());
+    const bool asleep = one.at("scene") == "asleep";
+    const double evaluations = one.at("counters_per_frame").at("contact_evaluations").get<double>();
+    EXPECT_EQ(evaluations == 0.0, asleep);
+    double stages = 0.0;
+    for (const Json& stage : one.at("stage_ms")) stages += stage.get<double>();
+    EXPECT_EQ(stages == 0.0, asleep);
+    if (one.at("scene") == "rest") {
+      EXPECT_EQ(one.at("prepared_s"), 0.5);
+      EXPECT_EQ(one.at("stands"), true);
+      // Springs are evaluated once a step in this method.
+      EXPECT_EQ(one.at("counters_per_frame").at("spring_evaluations").get<double>(),
+                28.0 * one.at("blocks").get<double>() * one.at("substeps").get<double>());
+    }
+    if (one.at("scene") == "pull") {
+      ++pulled;
+      EXPECT_GT(one.at("prepared_s").get<double>(), 0.5);
+      EXPECT_EQ(one.at("stands"), true);
+    }
+  }
+  EXPECT_EQ(pulled, 2);
+}
+
+TEST_F(ProfileFiles, CsvHasAllCasesAndColumns) {
+  const std::vector<std::string> lines = linesOf(contentOf(path("out/profile.csv")));
+  ASSERT_EQ(lines.size(), 7U);
+  // Commas outside quotes.
+  const auto columns = [](const std::string& line) {
+    bool inside = false;
+    return std::count_if(line.begin(), line.end(), [&](char c) {
+      if (c == '"') inside = !inside;
+      return c == ',' && !inside;
+    });
+  };
+  for (const std::string& line : lines) EXPECT_EQ(columns(line), columns(lines[0])) << line;
+  for (const char* name : {"commit", "compiler", "flags", "cpu", "islands_and_sleep_ms", "contact_bytes_per_block"}) {
+    EXPECT_THAT(lines[0], HasSubstr(name));
+  }
+}
+
+TEST_F(ProfileFiles, CullingStandsBesideTheReports) {
+  const std::vector<std::string> lines = linesOf(contentOf(path("out/culling.csv")));
+  // 153 pairs of 18 blocks, 336 pairs of features each; the report's 102816 counts them twice.
+  EXPECT_THAT(lines, Contains(::testing::ContainsRegex("^rest,6,18,.*,no tests,51408,51408,")));
+}
+
+TEST_F(ProfileFiles, TraceHasStagesInsideFrames) {
+  const Json trace = Json::parse(contentOf(path("trace.json")));
+  EXPECT_NE(trace.at("otherData").at("commit").get<std::string>(), "");
+  std::size_t frames = 0;
+  std::size_t stages = 0;
+  Json frame;
+  for (const Json& event : trace.at("traceEvents")) {
+    if (event.at("ph") != "X") continue;
+    if (event.at("name") == "frame") {
+      frame = event;
+      ++frames;
+      continue;
+    }
+    ++stages;
+    ASSERT_FALSE(frame.is_null());
+    EXPECT_EQ(event.at("tid"), frame.at("tid"));
+    const double start = event.at("ts").get<double>();
+    const double frameStart = frame.at("ts").get<double>();
+    EXPECT_GE(start, frameStart);
+    EXPECT_LE(start + event.at("dur").get<double>(), frameStart + frame.at("dur").get<double>() + 1e-3);
+  }
+  EXPECT_EQ(frames, 30U);
+  EXPECT_GE(stages, 5U * 20U);
+}
+
+TEST_F(ProfileFiles, ChartsAreDrawnAgainToTheByte) {
+  std::size_t charts = 0;
+  for (const char* again : {"again", "once_more"}) {
+    ASSERT_EQ(profile({"--from", path("out/profile.json"), "--out", path(again)}).exitCode, 0);
+    for (const auto& entry : std::filesystem::directory_iterator(path("out"))) {
+      const std::string name = entry.path().filename().string();
+      if (name == "profile.json") continue;
+      EXPECT_TRUE(contentOf(entry.path()) == contentOf(path(again) + "/" + name)) << name;
+      charts += name.ends_with(".svg") || name.ends_with(".png") ? 1U : 0U;
+    }
+  }
+  EXPECT_GE(charts, 2U * 2U * 7U);
+}
+
+// Width and height in a PNG's header, pixels.
+std::pair<std::uint32_t, std::uint32_t> sizeOfPng(const std::string& content) {
+  const auto number = [&](std::size_t at) {
+    std::uint32_t value = 0;
+    for (std::size_t i = 0; i < 4; ++i) value = (value << 8U) | static_cast<unsigned char>(content[at + i]);
+    return value;
+  };
+  return {number(16), number(20)};
+}
+
+TEST_F(ProfileFiles, ChartsAreWholeFiles) {
+  for (const auto& entry : std::filesystem::directory_iterator(path("out"))) {
+    if (entry.path().extension() != ".svg") continue;
+    SCOPED_TRACE(entry.path());
+    const std::string svg = contentOf(entry.path());
+    EXPECT_THAT(svg, StartsWith("<?xml"));
+    EXPECT_NE(svg.find("</svg>"), std::string::npos);
+    const std::string png = contentOf(std::filesystem::path(entry.path()).replace_extension(".png"));
+    ASSERT_GT(png.size(), 1000U);
+    EXPECT_EQ(png.substr(1, 3), "PNG");
+    EXPECT_EQ(png.substr(png.size() - 8, 4), "IEND");
+    const auto [width, height] = sizeOfPng(png);
+    EXPECT_NE(svg.find("width=\"" + std::to_string(width / 3) + "pt\" height=\"" + std::to_string(height / 3) + "pt\""),
+              std::string::npos);
+  }
+}
+
+// Colour of a pixel of a PNG, 0xRRGGBB.
+std::uint32_t pixelOf(const std::string& file, int x, int y) {
+  const std::unique_ptr<cairo_surface_t, decltype(&cairo_surface_destroy)> image(
+      cairo_image_surface_create_from_png(file.c_str()), cairo_surface_destroy);
+  EXPECT_EQ(cairo_surface_status(image.get()), CAIRO_STATUS_SUCCESS);
+  std::uint32_t pixel = 0;
+  const unsigned char* data = cairo_image_surface_get_data(image.get());
+  std::memcpy(&pixel, data + y * cairo_image_surface_get_stride(image.get()) + 4 * x, sizeof pixel);
+  return pixel & 0xffffffU;
+}
+
+TEST_F(ProfileFiles, PointsStandWhereTheyBelong) {
+  // 100 frames a second at 10 rows, 1000 at 20: axes from 0 to 20 and, logarithmic, from 10 to 1000.
+  Json file = json();
+  Json first = file.at("cases").at(0);
+  Json second = first;
+  first["rows"] = 10;
+  second["rows"] = 20;
+  first["cpu_ms"]["median"] = 10.0;
+  second["cpu_ms"]["median"] = 1.0;
+  file["cases"] = {first, second};
+  std::ofstream(path("made.json")) << file;
+  ASSERT_EQ(profile({"--from", path("made.json"), "--out", path("made")}).exitCode, 0);
+  // The plane begins at (64, 52) points and is 460 by 300 large; three pixels a point.
+  const auto at = [&](double x, double y) {
+    return pixelOf(path("made/rows_rest.png"), static_cast<int>(std::lround(3.0 * (64.0 + 460.0 * x))),
+                   static_cast<int>(std::lround(3.0 * (52.0 + 300.0 * (1.0 - y)))));
+  };
+  constexpr std::uint32_t kFirstColour = 0x0072b2;
+  constexpr std::uint32_t kWhite = 0xffffff;
+  EXPECT_EQ(at(0.5, 0.5), kFirstColour);
+  EXPECT_EQ(at(1.0, 1.0), kFirstColour);
+  EXPECT_EQ(at(0.75, 0.75), kFirstColour);  // the line between them
+  EXPECT_EQ(at(0.6, 0.92), kWhite);
+  EXPECT_EQ(at(0.3, 0.45), kWhite);
+}
+
+// Scenes of their own size, and one that falls.
+TEST(Profile, TowersAndACollapse) {
+  const ProgramResult result =
+      profile({"--rows", "9", "--scenes", "collapse,towers", "--towers", "1,2", "--methods", "semi-implicit-euler",
+               "--tolerances", "1e-3", "--samples", "1", "--frames", "30", "--settle", "0.1", "--threads", "1,2"});
+  ASSERT_EQ(result.exitCode, 0) << result.error;
+  const std::vector<std::string> lines = linesOf(result.output);
+  EXPECT_THAT(lines, Contains(::testing::ContainsRegex("^collapse +9 +27 .* 1 .*fallen")));
+  EXPECT_THAT(lines, Contains(::testing::ContainsRegex("^collapse +9 +27 .* 2 .*fallen")));
+  EXPECT_THAT(lines, Contains(::testing::ContainsRegex("^towers +1x18 +54 ")));
+  EXPECT_THAT(lines, Contains(::testing::ContainsRegex("^towers +2x18 +108 ")));
+}
+
+TEST_F(ProfileFiles, FailureIsAResult) {
+  Json file = json();
+  file["cases"][0]["failure"] = "block 3 diverged";
+  std::ofstream(path("failed.json")) << file;
+  const ProgramResult again = profile({"--from", path("failed.json"), "--out", path("failed")});
+  EXPECT_EQ(again.exitCode, 0);
+  EXPECT_THAT(again.output, HasSubstr("block 3 diverged"));
+}
+
+}  // namespace
+}  // namespace springtower
