@@ -68,7 +68,8 @@ void towerPanel(Viewer& viewer) {
 void physicsPanel(Viewer& viewer) {
   Tuning& tuning = viewer.tuning;
   const Simulation& simulation = viewer.session.simulation;
-  constexpr std::array kMethods = {Method::semiImplicitEuler, Method::midpoint, Method::rungeKutta4, Method::report};
+  constexpr std::array kMethods = {Method::semiImplicitEuler, Method::midpoint, Method::rungeKutta4, Method::implicit,
+                                   Method::report};
   constexpr std::array kSleeps = {Sleep::on, Sleep::off, Sleep::report};
   if (ImGui::BeginCombo("method", std::string(nameOf(tuning.method)).c_str())) {
     for (const Method method : kMethods) {

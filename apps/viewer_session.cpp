@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::uint64_t kKeyEvery = 30;    // frames between keyframes
 constexpr std::uint64_t kKeyDense = 1800;  // of the last frames that keep all of theirs
-constexpr std::uint64_t kKeySparse = 600;  // frames between keyframes before
+constexpr std::uint64_t kKeySparse = 180;  // frames between keyframes before
 constexpr double kPictureTime_s = 0.1;
 constexpr double kPaceMemory_s = 1.0;
 constexpr double kKept = 0.95;
@@ -44,8 +44,9 @@ void tune(Session& session, const Tuning& tuning) {
 }
 
 void keep(Session& session, bool turnStart) {
-  if (!session.keyframes.empty() && session.keyframes.back().frame == session.frame) {
-    session.keyframes.back().turnStart = session.keyframes.back().turnStart || turnStart;
+  // After going back, frames that have their keyframe already are stepped again.
+  if (!session.keyframes.empty() && session.keyframes.back().frame >= session.frame) {
+    if (session.keyframes.back().frame == session.frame && turnStart) session.keyframes.back().turnStart = true;
     return;
   }
   session.keyframes.push_back(
@@ -79,10 +80,14 @@ void advance(Session& session, const FrameInput& input) {
   if (turnEnded || session.frame % kKeyEvery == 0) keep(session, turnEnded);
 }
 
-// Goes back to the last keyframe at or before a frame.
-void restore(Session& session, std::uint64_t frame) {
-  while (session.keyframes.size() > 1 && session.keyframes.back().frame > frame) session.keyframes.pop_back();
-  const Keyframe key = session.keyframes.back();
+// The last keyframe at or before a frame; the first one is of frame 0.
+const Keyframe& keyBefore(const Session& session, std::uint64_t frame) {
+  const auto after = std::upper_bound(session.keyframes.begin(), session.keyframes.end(), frame,
+                                      [](std::uint64_t f, const Keyframe& key) { return f < key.frame; });
+  return *(after - 1);
+}
+
+void restore(Session& session, const Keyframe& key) {
   if (needsRebuild(key.tuning, session.tuning)) rebuild(session, key.tuning);
   session.tuning = key.tuning;
   const Scene tuned = withTuning(session.scene, key.tuning);
@@ -134,18 +139,21 @@ Scene withTuning(Scene scene, const Tuning& tuning) {
 
 void step(Session& session, const FrameInput& input) {
   if (!session.failure.empty()) return;
+  while (session.keyframes.back().frame > session.frame) session.keyframes.pop_back();
   try {
     advance(session, input);
   } catch (const DivergenceError& error) {
     session.failure = error.what();
     return;
   }
-  session.log.resize(session.frame);  // a future that was gone back from ends here
+  // A future that was gone back from ends here.
+  session.log.resize(session.frame);
   session.log.back() = {input, stateHash(session.simulation)};
 }
 
 void goTo(Session& session, std::uint64_t frame) {
-  if (frame < session.frame || !session.failure.empty()) restore(session, frame);
+  const Keyframe key = keyBefore(session, frame);
+  if (frame < session.frame || key.frame > session.frame || !session.failure.empty()) restore(session, key);
   session.failure.clear();
   while (session.frame < frame) advance(session, session.log[session.frame].input);
 }

@@ -105,17 +105,34 @@ TEST(ViewerSession, GoesBackAndForthToTheVeryStatesItHad) {
   EXPECT_NE(session.log.back().hash, log[50].hash);
 }
 
+// A long way costs what lies between keyframes, not all that was played, in either direction.
+TEST(ViewerSession, KeepsItsKeyframesUntilAnotherFutureBegins) {
+  Session session = playedSession(100);
+  const std::size_t keyframes = session.keyframes.size();
+  EXPECT_EQ(keyframes, 4U);  // of frames 0, 30, 60 and 90
+  goTo(session, 5);
+  EXPECT_EQ(session.keyframes.size(), keyframes);
+  const std::uint64_t steps = session.simulation.counters.steps;
+  goTo(session, 91);
+  EXPECT_EQ(session.keyframes.size(), keyframes);
+  EXPECT_GT(session.simulation.counters.steps, steps);
+  goTo(session, 45);
+  step(session, idle(session));
+  EXPECT_EQ(session.keyframes.size(), 2U);
+}
+
 TEST(ViewerSession, GoesBackOverAChangeOfMethodAndTolerance) {
   Session session(bitCodeScene(kLooseTower));
   Tuning tuning = session.tuning;
-  for (int i = 0; i < 40; ++i) {
+  for (int i = 0; i < 80; ++i) {
     if (i == 20) tuning.method = Method::midpoint;
     if (i == 30) tuning.tolerance_m = 1e-4;
+    if (i == 40) tuning.method = Method::implicit;
     step(session, {{}, tuning});
   }
   const std::vector<LoggedFrame> log = session.log;
-  EXPECT_EQ(session.simulation.scene.settings.method, Method::midpoint);
-  for (const std::uint64_t frame : {35U, 25U, 10U, 40U}) {
+  EXPECT_EQ(session.simulation.scene.settings.method, Method::implicit);
+  for (const std::uint64_t frame : {35U, 25U, 75U, 10U, 45U, 80U}) {
     goTo(session, frame);
     EXPECT_EQ(stateHash(session.simulation), log[frame - 1].hash) << frame;
   }

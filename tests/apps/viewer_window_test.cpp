@@ -1,125 +1,25 @@
 // Drives the real program with a mouse and keys on a display in memory.
-#include "apps/viewer_camera.h"
+#include "tests/apps/viewer_window.h"
+
 #include "core/random.h"
 #include "core/scene.h"
 #include "solver/simulation.h"
-#include "tests/apps/display.h"
 
-#include <array>
-#include <chrono>
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
 #include <fmt/format.h>
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 #include <numbers>
-#include <sstream>
 
 namespace springtower {
 namespace {
 
 using Json = nlohmann::json;
 
-constexpr int kWidth = 800;
-constexpr int kHeight = 600;
+constexpr int kWidth = kWindowWidth;
+constexpr int kHeight = kWindowHeight;
 constexpr const char* kLooseTower = "(111)-(1L1)-(111)-(111)";
 constexpr std::size_t kLooseBlock = 4;
 constexpr double kTop_m = 4 * kBlockHeight_m;
-
-/// What the key I writes: what is seen, where the blocks are, and the report.
-struct Inspection {
-  Json report;
-  CornerArray position;
-  std::vector<std::int32_t> seen;  // rows from the top, -1 none
-
-  [[nodiscard]] Vec3 centreOf(std::size_t block) const { return centre(position, block); }
-  [[nodiscard]] Camera camera() const {
-    const Json& json = report.at("camera");
-    Camera camera;
-    for (int a = 0; a < 3; ++a) camera.target[a] = json.at("target_m").at(static_cast<std::size_t>(a)).get<double>();
-    camera.azimuth = json.at("azimuth").get<double>();
-    camera.elevation = json.at("elevation").get<double>();
-    camera.distance = json.at("distance_m").get<double>();
-    camera.fieldOfView = json.at("field_of_view").get<double>();
-    return camera;
-  }
-};
-
-CornerArray readPoses(const std::string& path) {
-  std::vector<std::vector<double>> rows;
-  for (const std::string& line : linesOf(contentOf(path))) {
-    if (line.starts_with("time_s")) continue;
-    std::istringstream stream(line);
-    std::vector<double> values;
-    for (std::string cell; std::getline(stream, cell, ',');) values.push_back(std::stod(cell));
-    rows.push_back(values);
-  }
-  CornerArray position;
-  position.resize(rows.size());
-  for (std::size_t b = 0; b < rows.size(); ++b) {
-    for (std::size_t c = 0; c < kCorners; ++c) position.set(b, c, {rows[b][2 + 3 * c], rows[b][3 + 3 * c], rows[b][4 + 3 * c]});
-  }
-  return position;
-}
-
-std::vector<std::int32_t> readSeen(const std::string& path) {
-  const std::string content = contentOf(path);
-  const std::string head = fmt::format("P5\n{} {}\n65535\n", kWidth, kHeight);
-  if (!content.starts_with(head)) throw std::runtime_error("not as expected: " + path);
-  std::vector<std::int32_t> seen;
-  for (std::size_t i = head.size(); i + 1 < content.size(); i += 2) {
-    seen.push_back(256 * static_cast<unsigned char>(content[i]) + static_cast<unsigned char>(content[i + 1]) - 1);
-  }
-  return seen;
-}
-
-/// The program in its window.
-class Window {
- public:
-  explicit Window(const std::vector<std::string>& arguments) : display_(kWidth, kHeight) {
-    std::vector<std::string> all = {"--size",    fmt::format("{}x{}", kWidth, kHeight), "--out", scratch_.file("out"), "--report",
-                                    reportFile()};
-    all.insert(all.end(), arguments.begin(), arguments.end());
-    program_.emplace("springtower-viewer", all, std::vector<std::string>{display_.variable(), "LIBGL_ALWAYS_SOFTWARE=1"},
-                     scratch_.file("log"));
-    const auto drawn = [&] { return contentOf(scratch_.file("log")).starts_with("first picture after"); };
-    if (!waitUntil(60.0, [&] { return drawn() || !program_->runs(); }) || !drawn())
-      throw std::runtime_error("no picture: " + log());
-  }
-
-  void act(const std::string& script) { display_.act(script); }
-  [[nodiscard]] bool runs() { return program_->runs(); }
-  [[nodiscard]] std::string log() const { return contentOf(scratch_.file("log")); }
-  [[nodiscard]] std::string reportFile() const { return scratch_.file("report.json"); }
-  [[nodiscard]] double firstPicture_s() const { return std::stod(log().substr(std::string("first picture after ").size())); }
-
-  Inspection inspect() {
-    ++inspections_;
-    act("key i");
-    const auto path = [&](const char* name, const char* ending) {
-      return scratch_.file(fmt::format("out/{}-{:03}{}", name, inspections_, ending));
-    };
-    if (!waitUntil(60.0, [&] { return std::filesystem::exists(path("report", ".json")); })) {
-      throw std::runtime_error("no inspection: " + log());
-    }
-    return {Json::parse(contentOf(path("report", ".json"))), readPoses(path("poses", ".csv")), readSeen(path("seen", ".pgm"))};
-  }
-
-  // Ends the program as a user does; returns its exit code.
-  int close() {
-    act("key Escape");
-    return program_->wait(60.0);
-  }
-  Json report() { return Json::parse(contentOf(reportFile())); }
-
- private:
-  ScratchFolder scratch_;
-  Display display_;
-  std::optional<Background> program_;
-  int inspections_ = 0;
-};
 
 // The middle of a block's pixels; the block is seen there.
 Eigen::Vector2i middleOf(const Inspection& inspection, std::size_t block) {
@@ -310,97 +210,5 @@ TEST(ViewerWindow, LookingMovesNothing) {
   }
   EXPECT_EQ(window.close(), 0) << window.log();
 }
-
-// A script of random mouse and key events.
-std::string randomScript(RandomStream& random, int events) {
-  constexpr std::array kKeys = {"space",
-                                "n",
-                                "t",
-                                "o",
-                                "f",
-                                "q",
-                                "e",
-                                "w",
-                                "s",
-                                "a",
-                                "d",
-                                "Left",
-                                "Right",
-                                "Up",
-                                "Down",
-                                "equal",
-                                "minus",
-                                "bracketleft",
-                                "bracketright",
-                                "BackSpace",
-                                "r"};
-  const auto below = [&](double n) { return static_cast<int>(n * random.uniform()); };
-  std::string script;
-  for (int i = 0; i < events; ++i) {
-    const double what = random.uniform();
-    if (what < 0.70) {
-      // Mostly over the tower, where something happens.
-      script += fmt::format("mousemove {} {}\n", kWidth / 4 + below(kWidth / 2), below(kHeight));
-    } else if (what < 0.90) {
-      script += fmt::format("{} {}\n", random.uniform() < 0.6 ? "mousedown" : "mouseup", random.uniform() < 0.6 ? 1 : 3);
-    } else if (what < 0.95) {
-      script += fmt::format("click {}\n", 4 + below(2));
-    } else if (what < 0.97) {
-      script += fmt::format("{} shift\n", random.uniform() < 0.4 ? "keydown" : "keyup");
-    } else {
-      const std::string key = kKeys[static_cast<std::size_t>(below(kKeys.size()))];
-      script += "key " + key + "\n";
-      const bool pauses = key == "n" || key == "space" || key.starts_with("bracket");
-      if (pauses) script += "sleep 0.1\nkey space\n";
-    }
-    script += "sleep 0.02\n";
-  }
-  return script;
-}
-
-void playAtRandom(Window& window, double seconds, std::uint64_t seed) {
-  RandomStream random(seed, 1);
-  const auto start = std::chrono::steady_clock::now();
-  while (std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() < seconds) {
-    window.act(randomScript(random, 60));
-    ASSERT_TRUE(window.runs()) << window.log();
-  }
-  window.act("keyup shift\nmouseup 1\nmouseup 3\n");
-}
-
-// SPRINGTOWER_RANDOM_SECONDS: how long, 60 unless said otherwise (the target viewer_random plays for ten minutes).
-TEST(ViewerWindow, RandomInputBreaksNothing) {
-  const char* given = std::getenv("SPRINGTOWER_RANDOM_SECONDS");
-  const double seconds = given == nullptr ? 60.0 : std::atof(given);
-  Window window({"--scene", "tower:6", "--no-panels"});
-  playAtRandom(window, seconds, 1);
-  const Inspection end = window.inspect();
-  EXPECT_EQ(window.close(), 0) << window.log();
-  const Json report = window.report();
-  RecordProperty("max_penetration_mm", report.at("max_penetration_all_mm").dump());
-  RecordProperty("frames", report.at("frames_stepped").dump());
-  EXPECT_TRUE(report.at("finite").get<bool>());
-  EXPECT_EQ(report.at("divergences").get<int>(), 0);
-  EXPECT_LT(report.at("max_penetration_all_mm").get<double>(), 1.0) << report.dump(2);
-  EXPECT_GT(report.at("most_move_mm").get<double>(), 1.0);  // something did happen
-  EXPECT_GT(report.at("frames_stepped").get<double>(), 5.0 * seconds);
-}
-
-// Panels change the physics to anything they offer, so only the program is judged here, not what becomes of the tower.
-TEST(ViewerWindow, RandomInputOnThePanelsBreaksNothing) {
-  Window window({"--scene", "tower:3"});
-  RandomStream random(2, 1);
-  std::string script;
-  for (int i = 0; i < 300; ++i) {
-    script += fmt::format("mousemove {} {}\n{} 1\n", static_cast<int>(360 * random.uniform()),
-                          static_cast<int>(kHeight * random.uniform()), random.uniform() < 0.7 ? "click" : "mousedown");
-    if (i % 7 == 0) script += "mouseup 1\nclick 5\n";
-    script += "sleep 0.02\n";
-  }
-  window.act(script + "mouseup 1\n");
-  EXPECT_TRUE(window.runs()) << window.log();
-  EXPECT_EQ(window.close(), 0) << window.log();
-}
-
 }  // namespace
 }  // namespace springtower
