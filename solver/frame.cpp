@@ -7,6 +7,7 @@
 #include "solver/report_frame.h"
 #include "solver/rest.h"
 #include "solver/stability.h"
+#include "solver/static_start.h"
 #include "solver/stiffness.h"
 
 #include <algorithm>
@@ -134,7 +135,10 @@ IslandOutcome runIsland(IslandStep& step) {
   Simulation& simulation = step.simulation;
   const Settings& settings = simulation.scene.settings;
   IslandOutcome outcome;
-  if (simulation.frame == 0 && settings.method != Method::report) findTouching(step);
+  if (simulation.frame == 0 && settings.method != Method::report) {
+    findTouching(step);
+    startInEquilibrium(step);
+  }
   double begin_s = 0.0;
   if (settings.method == Method::implicit) {
     outcome = runImplicitSteps(step, begin_s);
@@ -188,7 +192,7 @@ bool runIslands(Simulation& simulation) {
   engine.islandOutcome.assign(islands, 0);
   const ContactLaw law = contactLaw(simulation);
   if (simulation.scene.settings.method == Method::report) prepareReportFrame(simulation);
-  if (simulation.scene.settings.method == Method::implicit) engine.trial.resize(engine.pairs.size());
+  if (simulation.scene.settings.method == Method::implicit || simulation.frame == 0) engine.trial.resize(engine.pairs.size());
   tbb::parallel_for(std::size_t{0}, islands, [&](std::size_t i) {
     const auto first = static_cast<std::size_t>(engine.pairStart[i]);
     IslandStep step{simulation,

@@ -72,7 +72,7 @@ Closing closingOf(const Simulation& simulation, const NearPair& pair) {
 void prepareImplicit(Simulation& simulation) {
   Engine& engine = *simulation.engine;
   const std::size_t count = simulation.model.blockCount();
-  const double step_s = 2.0 / 3.0 * simulation.scene.settings.frame_s / implicitSteps(simulation);
+  const double step_s = implicitEffectiveStep(simulation);
   engine.previousVelocity.resize(count);
   engine.history.resize(count);
   engine.target.resize(count);
@@ -88,6 +88,10 @@ void prepareImplicit(Simulation& simulation) {
                                   : blockJacobian(model, simulation.scene.settings.inertia, b, 1.0 / (step_s * step_s),
                                                   1.0 + simulation.scene.settings.dampingTime_s / step_s);
   }
+}
+
+double implicitEffectiveStep(const Simulation& simulation) {
+  return kBdf2 * simulation.scene.settings.frame_s / implicitSteps(simulation);
 }
 
 void rememberImplicit(Simulation& simulation) {

@@ -4,6 +4,9 @@
 
 namespace springtower {
 
+/// Step that the two-step formula puts the end's forces into, in steps.
+inline constexpr double kBdf2 = 2.0 / 3.0;
+
 /// Sizes what method `implicit` needs: histories, factors, and each block's own matrix.
 void prepareImplicit(Simulation& simulation);
 
@@ -22,6 +25,13 @@ IslandOutcome runImplicitSteps(IslandStep& step, double& reached_s);
 
 /// One implicit step of step.drift_s. Returns false when it does not converge; everything is then as before.
 bool stepImplicit(IslandStep& step);
+
+/// One step of implicit Euler from rest, of `effective_s`; a step towards static equilibrium. The contact memory ages by more
+/// than that, as in stepImplicit. Returns false when it does not converge; everything is then as before.
+bool stepFromRest(IslandStep& step, double effective_s);
+
+/// The step that an implicit step of this scene puts the end's forces into, s.
+double implicitEffectiveStep(const Simulation& simulation);
 
 /// Whether implicit steps can follow what the island does in this frame: it touches something, nothing spins fast, and nothing is
 /// about to meet at speed.

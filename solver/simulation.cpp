@@ -132,8 +132,11 @@ Simulation::Simulation(const Scene& given) : scene(given), engine(std::make_uniq
     e.springRadius[b] = asBefore ? e.springRadius[b - 1] : blockSpectralRadius(model, scene.settings.inertia, b);
     e.rest[b].centre = centre(state.position, b);
   }
-  if (scene.settings.method == Method::report) e.report.resize(count);
-  if (scene.settings.method == Method::implicit) prepareImplicit(*this);
+  if (scene.settings.method == Method::report) {
+    e.report.resize(count);
+  } else {
+    prepareImplicit(*this);  // explicit methods start in the equilibrium that implicit steps find
+  }
   if (scene.settings.method == Method::midpoint || scene.settings.method == Method::rungeKutta4) {
     e.carried.resize(count);
     e.carriedMotion.resize(count);

@@ -4,16 +4,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace springtower {
 
 namespace {
 
 constexpr int kMostIterations = 12;
+// While points begin or cease to push or slide: a front of load takes an iteration a row.
+constexpr int kMostContactIterations = 40;
 // Residual force at which a step is taken, in weights of the block; in metres it is this share of the compression under its own
 // weight. Displacements are no measure: a sliding block hardly moves and is still wrong by a tenth of its friction.
 constexpr double kResidual = 1e-5;
-constexpr double kBdf2 = 2.0 / 3.0;  // step that the two-step formula puts the end's forces into, in steps
 
 ImplicitIsland& islandOf(IslandStep& step) {
   return step.engine.implicitIslands[static_cast<std::size_t>(step.blocks.front())];
@@ -59,6 +61,24 @@ void foretell(IslandStep& step, double effective_s) {
   }
 }
 
+// The same for implicit Euler from rest.
+void foretellFromRest(IslandStep& step, double effective_s) {
+  Engine& engine = step.engine;
+  const MotionState& state = step.simulation.state;
+  for (const std::int32_t block : step.blocks) {
+    const auto b = static_cast<std::size_t>(block);
+    for (std::size_t a = 0; a < 3; ++a) {
+      const double pull = effective_s * effective_s * step.gravity[static_cast<Eigen::Index>(a)];
+      const double* x = state.position.values(a, b);
+      double* target = engine.target.values(a, b);
+      for (std::size_t c = 0; c < kCorners; ++c) target[c] = x[c] + pull;
+      std::copy_n(x, kCorners, engine.history.values(a, b));
+      std::copy_n(x, kCorners, engine.previous.values(a, b));
+      std::fill_n(engine.previousVelocity.values(a, b), kCorners, 0.0);
+    }
+  }
+}
+
 ContactMask maskOf(const PointMemory& live, const PointMemory& sliding, std::int32_t count) {
   unsigned mask = 0;
   for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
@@ -95,7 +115,8 @@ void turn(const std::array<std::array<double, 3>, 3>& axes, bool back, ModeVecto
   }
 }
 
-// The residual of all blocks, in the world's frame; returns the largest in units of what is allowed.
+// The residual of all blocks, in the world's frame; returns the largest in units of what is allowed,
+// infinity where one is not finite.
 double findResidual(IslandStep& step, ImplicitIsland& island, double effective_s) {
   const Engine& engine = step.engine;
   const double gravity = std::max(step.simulation.scene.gravity.magnitude, 1.0);
@@ -111,11 +132,11 @@ double findResidual(IslandStep& step, ImplicitIsland& island, double effective_s
     for (std::size_t m = 0; m < kCorners; ++m) {
       for (std::size_t a = 0; a < 3; ++a) {
         residual[m][a] += engine.jacobian[b].mass[m] * rate * missing[m][a];
+        if (!std::isfinite(residual[m][a])) return std::numeric_limits<double>::infinity();
         largest = std::max(largest, std::abs(residual[m][a]));
       }
     }
-    const double scaled = largest / (kResidual * step.simulation.model.mass[b] * gravity);
-    if (!(scaled <= worst)) worst = scaled;  // NaN stays
+    worst = std::max(worst, largest / (kResidual * step.simulation.model.mass[b] * gravity));
   }
   return worst;
 }
@@ -191,20 +212,18 @@ void reject(IslandStep& step) {
   ++step.counters.handedOver;
 }
 
-}  // namespace
-
-bool stepImplicit(IslandStep& step) {
+// Newton's iteration for the state at the step's end, from engine.target and engine.history.
+bool solveStep(IslandStep& step, double effective_s) {
   ImplicitIsland& island = islandOf(step);
   MotionState& state = step.simulation.state;
-  const double effective_s = kBdf2 * step.drift_s;
-  if (!island.forcesKnown) evaluateForces(step, state, state.velocity, 0.0, Memory::trial);
   StageClock clock(step.times);
-  foretell(step, effective_s);
   const bool fresh = layOut(step, island);
   double residual = findResidual(step, island, effective_s);
   bool converged = false;
-  for (int iteration = 0; iteration < kMostIterations; ++iteration) {
+  int most = kMostIterations;
+  for (int iteration = 0; iteration < most; ++iteration) {
     const bool changed = updateMasks(step, island, iteration == 0);
+    if (changed) most = std::min(kMostContactIterations, iteration + kMostIterations);
     if ((changed || fresh || !island.factorised) && !assemble(step, island, effective_s)) break;
     correct(step, island);
     updateVelocities(step, effective_s);
@@ -224,6 +243,24 @@ bool stepImplicit(IslandStep& step) {
   }
   clock.lap(Stage::integration);
   return converged;
+}
+
+}  // namespace
+
+bool stepImplicit(IslandStep& step) {
+  const double effective_s = kBdf2 * step.drift_s;
+  if (!islandOf(step).forcesKnown)
+    evaluateForces(step, step.simulation.state, step.simulation.state.velocity, 0.0, Memory::trial);
+  foretell(step, effective_s);
+  return solveStep(step, effective_s);
+}
+
+bool stepFromRest(IslandStep& step, double effective_s) {
+  step.drift_s = effective_s / kBdf2;
+  islandOf(step).factorised = false;  // for another step
+  evaluateForces(step, step.simulation.state, step.simulation.state.velocity, 0.0, Memory::trial);
+  foretellFromRest(step, effective_s);
+  return solveStep(step, effective_s);
 }
 
 }  // namespace springtower

@@ -1,0 +1,127 @@
+#include "solver/static_start.h"
+
+#include "solver/implicit.h"
+#include "solver/inertia.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+namespace springtower {
+
+namespace {
+
+constexpr double kFirstStep_s = 0.5e-3;
+constexpr double kLastStep_s = 0.2;  // in which a block without support falls by 20 times its height
+constexpr double kGrowth = 2.0;
+constexpr int kMostSteps = 60;
+constexpr int kMostRetries = 6;
+// Farthest that a corner may go in one of these steps, in tolerances; what goes farther is falling.
+constexpr double kFarthest = 20.0;
+// Farthest that a corner still goes in the last one, in tolerances.
+constexpr double kSettled = 1e-3;
+
+// Whether all blocks touch something and none moves.
+bool mayRest(const IslandStep& step) {
+  std::vector<std::uint8_t> touches(step.simulation.model.blockCount(), 0);
+  for (const std::int32_t at : step.pairs) {
+    const Manifold& manifold = step.engine.pairs[static_cast<std::size_t>(at)].manifold;
+    if (manifold.touch == Touch::apart) continue;
+    touches[static_cast<std::size_t>(manifold.upper)] = 1;
+    if (manifold.lower >= 0) touches[static_cast<std::size_t>(manifold.lower)] = 1;
+  }
+  const CornerArray& velocity = step.simulation.state.velocity;
+  return std::all_of(step.blocks.begin(), step.blocks.end(), [&](std::int32_t block) {
+    const auto b = static_cast<std::size_t>(block);
+    bool still = touches[b] != 0;
+    for (std::size_t c = 0; c < kCorners; ++c) still = still && velocity.at(b, c) == Vec3::Zero();
+    return still;
+  });
+}
+
+void setJacobians(IslandStep& step, double effective_s) {
+  const Settings& settings = step.simulation.scene.settings;
+  const BlockModel& model = step.simulation.model;
+  std::size_t last = model.blockCount();
+  for (const std::int32_t block : step.blocks) {
+    const auto b = static_cast<std::size_t>(block);
+    const bool asLast =
+        last < model.blockCount() && model.dimensions[b] == model.dimensions[last] && model.mass[b] == model.mass[last];
+    step.engine.jacobian[b] = asLast ? step.engine.jacobian[last]
+                                     : blockJacobian(model, settings.inertia, b, 1.0 / (effective_s * effective_s),
+                                                     1.0 + settings.dampingTime_s / effective_s);
+    last = b;
+  }
+}
+
+// Takes the velocities away; returns how far the fastest corner went in the step.
+double stop(IslandStep& step) {
+  MotionState& state = step.simulation.state;
+  double farthest = 0.0;
+  for (const std::int32_t block : step.blocks) {
+    const auto b = static_cast<std::size_t>(block);
+    for (std::size_t c = 0; c < kCorners; ++c) {
+      farthest = std::max(farthest, (state.position.at(b, c) - step.engine.previous.at(b, c)).norm());
+      state.velocity.set(b, c, Vec3::Zero());
+    }
+    step.engine.clock[b].history_s = 0.0;
+  }
+  return farthest;
+}
+
+// Steps until nothing moves any more; false where that does not come about.
+bool settle(IslandStep& step) {
+  const double tolerance = step.simulation.tolerance_m;
+  double effective_s = kFirstStep_s;
+  int retries = 0;
+  for (int i = 0; i < kMostSteps; ++i) {
+    setJacobians(step, effective_s);
+    if (!stepFromRest(step, effective_s)) {
+      if (++retries > kMostRetries) return false;
+      effective_s /= kGrowth * kGrowth;
+      continue;
+    }
+    const double farthest = stop(step);
+    if (!(farthest < kFarthest * tolerance) || !updateContacts(step)) return false;
+    if (effective_s >= kLastStep_s && farthest < kSettled * tolerance) return true;
+    effective_s = std::min(kLastStep_s, kGrowth * effective_s);
+  }
+  return false;
+}
+
+void restoreIsland(IslandStep& step) {
+  Engine& engine = step.engine;
+  for (const std::int32_t block : step.blocks) {
+    const auto b = static_cast<std::size_t>(block);
+    for (std::size_t a = 0; a < 3; ++a) {
+      std::copy_n(engine.frameStart.position.values(a, b), kCorners, step.simulation.state.position.values(a, b));
+      std::copy_n(engine.frameStart.velocity.values(a, b), kCorners, step.simulation.state.velocity.values(a, b));
+    }
+    engine.clock[b] = engine.frameStartClock[b];
+  }
+  for (const std::int32_t at : step.pairs)
+    engine.pairs[static_cast<std::size_t>(at)] = engine.frameStartPairs[static_cast<std::size_t>(at)];
+  findTouching(step);
+}
+
+}  // namespace
+
+bool startInEquilibrium(IslandStep& step) {
+  if (!mayRest(step)) return false;
+  const Counters before = step.counters;
+  step.scaleMost = 1.0;
+  step.time_s = -std::numeric_limits<double>::infinity();
+  step.gravity = step.simulation.scene.gravity.at(step.simulation.time_s);
+  const bool rests = settle(step);
+  if (!rests) {
+    step.counters = before;
+    restoreIsland(step);
+  }
+  setJacobians(step, implicitEffectiveStep(step.simulation));
+  step.engine.implicitIslands[static_cast<std::size_t>(step.blocks.front())].factorised = false;
+  return rests;
+}
+
+}  // namespace springtower
