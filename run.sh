@@ -21,7 +21,8 @@ echo "picture: $PWD/out/tower18.png"
 echo
 if [[ -n ${DISPLAY-} || -n ${WAYLAND_DISPLAY-} ]]; then
   echo "viewer:  build/release/bin/springtower-viewer --players 2 (escape ends it)"
-  exec build/release/bin/springtower-viewer --players 2
+  if build/release/bin/springtower-viewer --players 2; then exit 0; fi
+  echo "viewer:  it did not open; the rest is done"  # it has said why
 fi
-echo "viewer:  there is no display here; where there is one: build/release/bin/springtower-viewer --players 2"
+echo "viewer:  where there is a display: build/release/bin/springtower-viewer --players 2"
 echo "         pictures without one: build/release/bin/springtower-viewer --headless --frames 60 --png out"

@@ -30,10 +30,23 @@ constexpr std::array<Colour, 6> kMap = {{{0.16F, 0.12F, 0.40F},
                                          {0.58F, 0.80F, 0.25F},
                                          {0.99F, 0.91F, 0.20F}}};
 
-void byValue(const std::vector<double>& values, std::string unit, BlockColours& result) {
+// From hardly held to held fast.
+constexpr std::array<Colour, 3> kHeldMap = {{{0.88F, 0.78F, 0.62F}, {0.82F, 0.50F, 0.30F}, {0.58F, 0.14F, 0.12F}}};
+
+// Each block's own shade, in steps of the golden section so that neighbours differ.
+Colour woodOf(std::size_t block) {
+  const auto bright = static_cast<float>(std::fmod(0.618033988749895 * static_cast<double>(block), 1.0) - 0.5);
+  const auto warm = static_cast<float>(std::fmod(0.754877666246693 * static_cast<double>(block), 1.0) - 0.5);
+  return {kWood[0] * (1.0F + 0.14F * bright + 0.04F * warm), kWood[1] * (1.0F + 0.14F * bright),
+          kWood[2] * (1.0F + 0.14F * bright - 0.10F * warm)};
+}
+
+void byValue(Overlay overlay, const std::vector<double>& values, std::string unit, BlockColours& result) {
   result.most = *std::max_element(values.begin(), values.end());
   result.unit = std::move(unit);
-  for (std::size_t b = 0; b < values.size(); ++b) result.colour[b] = colourMap(result.most > 0.0 ? values[b] / result.most : 0.0);
+  for (std::size_t b = 0; b < values.size(); ++b) {
+    result.colour[b] = colourMap(overlay, result.most > 0.0 ? values[b] / result.most : 0.0);
+  }
 }
 
 // Islands of awake blocks that touch, in hues as far apart as may be; sleeping blocks are grey.
@@ -85,12 +98,13 @@ Overlay overlayFromName(std::string_view name) {
   throw InputError(fmt::format("--overlay: found {}, allowed {}", inQuotes(name), allowed));
 }
 
-Colour colourMap(double share) {
-  const double at = std::clamp(share, 0.0, 1.0) * static_cast<double>(kMap.size() - 1);
-  const std::size_t below = std::min(static_cast<std::size_t>(at), kMap.size() - 2);
+Colour colourMap(Overlay overlay, double share) {
+  const std::span<const Colour> map = overlay == Overlay::hints ? std::span<const Colour>(kHeldMap) : kMap;
+  const double at = std::clamp(share, 0.0, 1.0) * static_cast<double>(map.size() - 1);
+  const std::size_t below = std::min(static_cast<std::size_t>(at), map.size() - 2);
   const auto part = static_cast<float>(at - static_cast<double>(below));
   Colour colour;
-  for (std::size_t a = 0; a < 3; ++a) colour[a] = kMap[below][a] + part * (kMap[below + 1][a] - kMap[below][a]);
+  for (std::size_t a = 0; a < 3; ++a) colour[a] = map[below][a] + part * (map[below + 1][a] - map[below][a]);
   return colour;
 }
 
@@ -113,18 +127,19 @@ BlockColours blockColours(const Session& session, Overlay overlay) {
   std::vector<double> values(result.colour.size());
   switch (overlay) {
     case Overlay::wood:
+      for (std::size_t b = 0; b < values.size(); ++b) result.colour[b] = woodOf(b);
       break;
     case Overlay::load: {
       const std::vector<Hint> all = hints(simulation, session.contacts);
       for (std::size_t b = 0; b < values.size(); ++b) values[b] = all[b].load_n;
-      byValue(values, "N", result);
+      byValue(overlay, values, "N", result);
       break;
     }
     case Overlay::strain:
       for (std::size_t b = 0; b < values.size(); ++b) {
         values[b] = 1e6 * blockStrain(simulation.model, simulation.state.position, b);
       }
-      byValue(values, "um/m", result);
+      byValue(overlay, values, "um/m", result);
       break;
     case Overlay::asleep:
       for (std::size_t b = 0; b < values.size(); ++b) result.colour[b] = simulation.asleep[b] != 0 ? kAsleep : kAwake;
@@ -135,7 +150,7 @@ BlockColours blockColours(const Session& session, Overlay overlay) {
     case Overlay::hints: {
       const std::vector<Hint> all = hints(simulation, session.contacts);
       for (std::size_t b = 0; b < values.size(); ++b) values[b] = all[b].drag_n;
-      byValue(values, "N", result);
+      byValue(overlay, values, "N", result);
       for (std::size_t b = 0; b < values.size(); ++b) {
         if (all[b].loose && mayTake(session.game, blockId(b))) result.colour[b] = kLoose;
       }

@@ -32,8 +32,9 @@ struct BlockColours {
 /// green is loose, the drag otherwise.
 BlockColours blockColours(const Session& session, Overlay overlay);
 
-/// A colour map from dark blue over green to yellow, of even steps in brightness; `share` 0..1.
-Colour colourMap(double share);
+/// The colour map of an overlay: from dark blue over green to yellow, of even steps in brightness; for hints from wood to red.
+/// `share` 0..1.
+Colour colourMap(Overlay overlay, double share);
 
 /// Largest strain of any of a block's springs.
 double blockStrain(const BlockModel& model, const CornerArray& position, std::size_t block);

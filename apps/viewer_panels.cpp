@@ -123,7 +123,7 @@ void showPanel(Viewer& viewer) {
   constexpr float kHeight = 12.0F;
   for (int i = 0; i < kParts; ++i) {
     const float left = at.x + kWidth * static_cast<float>(i) / kParts;
-    const ImU32 colour = packed(colourMap(i / (kParts - 1.0)));
+    const ImU32 colour = packed(colourMap(viewer.overlay, i / (kParts - 1.0)));
     ImGui::GetWindowDrawList()->AddRectFilled({left, at.y}, {left + kWidth / kParts, at.y + kHeight}, colour);
   }
   ImGui::Dummy({kWidth, kHeight});

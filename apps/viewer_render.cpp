@@ -13,7 +13,8 @@ namespace {
 
 constexpr int kShadowSize = 2048;
 constexpr int kSmallShadowSize = 1024;
-const Vec3 kToLight = Vec3(0.75, -0.35, 0.85).normalized();  // from the right of the default camera
+const Vec3 kToLight = Vec3(-0.2, -0.8, 0.75).normalized();  // from the left of the default camera
+const Vec3 kBackground = {0.965, 0.96, 0.955};
 
 GLuint compiled(GLenum kind, const char* source) {
   const GLuint shader = glCreateShader(kind);
@@ -177,7 +178,8 @@ void Renderer::draw(const Picture& picture, const Camera& camera, const Viewport
   drawShadows(picture, light);
 
   glViewport(0, 0, viewport.width, viewport.height);
-  glClearColor(0.86F, 0.89F, 0.93F, 1.0F);
+  glClearColor(static_cast<float>(kBackground.x()), static_cast<float>(kBackground.y()), static_cast<float>(kBackground.z()),
+               1.0F);
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
   const Eigen::Matrix4f clip = clipFromWorld(camera, viewport);
   const double floorRadius = std::max(2.0, 3.0 * ball.radius);
@@ -188,6 +190,7 @@ void Renderer::draw(const Picture& picture, const Camera& camera, const Viewport
   setMatrix(shade_, "clipFromWorld", clip);
   setMatrix(shade_, "lightFromWorld", light);
   setVector(shade_, "toLight", kToLight);
+  setVector(shade_, "background", kBackground);
   setVector(shade_, "eye", cameraFrame(camera).eye);
   glUniform1i(glGetUniformLocation(shade_, "highlighted"), picture.highlighted);
   glUniform2f(glGetUniformLocation(shade_, "floorMiddle"), static_cast<float>(ball.middle.x()),

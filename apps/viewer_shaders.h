@@ -43,6 +43,7 @@ in vec4 vLight;
 flat in int vBlock;
 uniform sampler2DShadow shadow;
 uniform vec3 toLight;
+uniform vec3 background;
 uniform vec3 eye;
 uniform int highlighted;
 uniform vec2 floorMiddle;
@@ -54,27 +55,28 @@ float sunlit() {
   if (any(lessThan(at, vec3(0.0))) || any(greaterThan(at, vec3(1.0)))) return 1.0;
   float size = 1.0 / float(textureSize(shadow, 0).x);
   float sum = 0.0;
-  for (int i = 0; i < 4; ++i) {
-    vec2 off = (vec2(float(i & 1), float(i >> 1)) - 0.5) * 2.2 * size;
+  for (int i = 0; i < 9; ++i) {
+    vec2 off = (vec2(float(i % 3), float(i / 3)) - 1.0) * 1.6 * size;
     sum += texture(shadow, vec3(at.xy + off, at.z - 0.0006));
   }
-  return 0.25 * sum;
+  return sum / 9.0;
 }
 
 void main() {
   vec3 n = normalize(vNormal);
   float sun = max(dot(n, toLight), 0.0) * sunlit();
   float sky = 0.5 + 0.5 * n.z;
+  float fill = max(dot(n, vec3(0.8, 0.5, 0.33)), 0.0);  // weak light from the other side
   if (vBlock < 0) {  // the floor: a grid of 2 cm, every fifth line stronger, that fades out
     vec2 from = vWorld.xy;
     vec2 width = max(fwidth(from), vec2(1e-6));
     vec2 fine = abs(fract(from / 0.02 - 0.5) - 0.5) * 0.02 / width;
     vec2 strong = abs(fract(from / 0.1 - 0.5) - 0.5) * 0.1 / width;
     float far = clamp(1.0 - max(width.x, width.y) / 0.008, 0.0, 1.0);
-    float lines = max(0.10 * (1.0 - min(min(fine.x, fine.y), 1.0)) * far, 0.22 * (1.0 - min(min(strong.x, strong.y), 1.0)));
-    vec3 base = vec3(0.66, 0.69, 0.72) * (0.60 + 0.40 * sun);
-    float fade = smoothstep(0.5, 1.0, length(from - floorMiddle) / floorRadius);
-    result = vec4(mix(base * (1.0 - lines), vec3(0.86, 0.89, 0.93), fade), 1.0);
+    float lines = max(0.07 * (1.0 - min(min(fine.x, fine.y), 1.0)) * far, 0.16 * (1.0 - min(min(strong.x, strong.y), 1.0)));
+    vec3 base = vec3(0.90, 0.90, 0.89) * mix(0.66, 1.0, sunlit());
+    float fade = smoothstep(0.15, 0.75, length(from - floorMiddle) / floorRadius);
+    result = vec4(mix(base * (1.0 - lines), background, fade), 1.0);
     return;
   }
   vec2 toEdge = vHalf - abs(vInFace);
@@ -85,7 +87,7 @@ void main() {
   float grain = sin(900.0 * vInFace.y + 3.0 * sin(40.0 * vInFace.x + float(vBlock)) + 1.7 * float(vBlock));
   vec3 colour = vColour * (1.0 + 0.03 * grain) * (highlighted == vBlock ? 1.18 : 1.0);
   float shine = pow(max(dot(n, normalize(toLight + normalize(eye - vWorld))), 0.0), 40.0) * 0.08 * sun;
-  result = vec4(colour * bevel * (0.30 * sky + 0.30 + 0.68 * sun) + shine, 1.0);
+  result = vec4(colour * bevel * (0.30 * sky + 0.36 + 0.14 * fill + 0.58 * sun) + shine, 1.0);
 }
 )glsl";
 

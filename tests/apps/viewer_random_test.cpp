@@ -235,7 +235,7 @@ TEST(ViewerRandom, RandomClicksOnThePanelsDoNotEndTheProgram) {
   Window window({"--scene", "tower:3"});
   Dice dice(6);
   std::string script;
-  for (int i = 0; i < 150; ++i) {
+  for (int i = 0; i < 80; ++i) {
     const int x = dice.below(360);
     script += fmt::format("mousemove {} {}\n{} 1\n", x, dice.below(kWindowHeight), dice.happens(0.7) ? "click" : "mousedown");
     if (i % 7 == 0) script += "mouseup 1\nclick 5\n";
