@@ -3,6 +3,7 @@
 #include "apps/viewer_shaders.h"
 
 #include <algorithm>
+#include <bit>
 #include <cstddef>
 #include <epoxy/gl.h>
 #include <stdexcept>
@@ -40,9 +41,14 @@ GLuint linked(const char* fragment) {
   throw std::runtime_error("the shaders do not link");
 }
 
+// OpenGL takes the offset in a buffer as a pointer.
+const void* asPointer(std::size_t offset) {
+  return std::bit_cast<const void*>(offset);
+}
+
 void attribute(GLuint at, GLint count, std::size_t offset) {
   glEnableVertexAttribArray(at);
-  glVertexAttribPointer(at, count, GL_FLOAT, GL_FALSE, sizeof(Vertex), reinterpret_cast<const void*>(offset));
+  glVertexAttribPointer(at, count, GL_FLOAT, GL_FALSE, sizeof(Vertex), asPointer(offset));
 }
 
 void setMatrix(GLuint program, const char* name, const Eigen::Matrix4f& matrix) {
@@ -121,7 +127,7 @@ Renderer::Renderer() : shadowSize_(drawsInSoftware() ? kSmallShadowSize : kShado
   attribute(3, 2, offsetof(Vertex, half));
   attribute(4, 3, offsetof(Vertex, colour));
   glEnableVertexAttribArray(5);
-  glVertexAttribIPointer(5, 1, GL_INT, sizeof(Vertex), reinterpret_cast<const void*>(offsetof(Vertex, block)));
+  glVertexAttribIPointer(5, 1, GL_INT, sizeof(Vertex), asPointer(offsetof(Vertex, block)));
 
   glGenTextures(1, &shadowMap_);
   glBindTexture(GL_TEXTURE_2D, shadowMap_);
