@@ -160,7 +160,7 @@ void timePanel(const Viewer& viewer) {
   ImGui::Dummy({kWidth, kHeight});
   const FrameBar& last = viewer.bars[(viewer.bar + kBars - 1) % kBars];
   text(fmt::format("{:.2f} ms a frame (line: {:.1f}), picture {:.1f} ms", static_cast<double>(last.frame_ms),
-                   0.5 * static_cast<double>(full_ms), static_cast<double>(last.picture_ms)));
+                   0.5 * static_cast<double>(full_ms), static_cast<double>(viewer.picture_ms)));
   for (std::size_t s = 0; s < kStages; ++s) {
     ImGui::PushStyleColor(ImGuiCol_Text, kStageColours[s]);
     text(fmt::format("{:<18}{:7.3f} ms", kStageNames[s], static_cast<double>(last.stage_ms[s])));
@@ -200,13 +200,15 @@ void drawNotices(const Viewer& viewer) {
   }
 }
 
-// A line of text beside a block, on a dark ground.
+// Text beside a block, on a dark ground.
 void drawBeside(const Viewer& viewer, std::size_t block, const std::string& line, ImU32 colour) {
   const auto at = seenAt(viewer.controls.camera, viewer.controls.viewport, centre(viewer.shown, block));
   if (!at) return;
   const ImVec2 scale = ImGui::GetIO().DisplayFramebufferScale;
-  const ImVec2 corner{static_cast<float>(at->x()) / scale.x + 18.0F, static_cast<float>(at->y()) / scale.y - 30.0F};
   const ImVec2 extent = ImGui::CalcTextSize(line.c_str());
+  const float right = ImGui::GetIO().DisplaySize.x - extent.x - 8.0F;  // all of it stays inside the window
+  const ImVec2 corner{std::max(8.0F, std::min(static_cast<float>(at->x()) / scale.x + 18.0F, right)),
+                      static_cast<float>(at->y()) / scale.y - 30.0F};
   ImDrawList& draw = *ImGui::GetForegroundDrawList();
   draw.AddRectFilled({corner.x - 5.0F, corner.y - 3.0F}, {corner.x + extent.x + 5.0F, corner.y + extent.y + 3.0F},
                      IM_COL32(20, 22, 26, 210), 4.0F);
@@ -228,7 +230,7 @@ void drawHint(const Viewer& viewer) {
                            : hint.margin_m > 0.0 ? fmt::format("without it the rest stands by {:.1f} mm", 1e3 * hint.margin_m)
                                                  : "without it the tower falls";
   drawBeside(viewer, b,
-             fmt::format("block {}: carries {:.2f} N, friction holds it with up to {:.2f} N{}; {}", b, hint.load_n, hint.drag_n,
+             fmt::format("block {}: carries {:.2f} N, friction holds it with up to {:.2f} N{}\n{}", b, hint.load_n, hint.drag_n,
                          hint.loose ? ", loose" : "", rest),
              IM_COL32(255, 255, 255, 255));
 }

@@ -15,8 +15,7 @@ namespace springtower {
 /// What one frame cost, ms.
 struct FrameBar {
   std::array<float, kStages> stage_ms{};
-  float frame_ms = 0.0F;    ///< the whole frame, with the hand, contact forces and the game
-  float picture_ms = 0.0F;  ///< drawing the picture that followed
+  float frame_ms = 0.0F;  ///< the whole frame, with the hand, contact forces and the game
 };
 inline constexpr std::size_t kBars = 240;
 
@@ -51,7 +50,8 @@ struct Viewer {
   std::optional<Replay> replay;
   std::string message;  ///< what the user should know, until something else is
   std::array<FrameBar, kBars> bars{};
-  std::size_t bar = 0;  ///< the oldest one
+  std::size_t bar = 0;      ///< the oldest one
+  float picture_ms = 0.0F;  ///< what drawing the last picture took
   Watch watch;
   CornerArray shown;  ///< m, positions of the picture
   PenetrationWorkspace workspace;

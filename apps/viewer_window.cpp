@@ -268,7 +268,7 @@ void drawWindow(Desk& desk) {
   ImGui::Render();
   ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
   writePicture(desk, picture, wishes);
-  viewer.bars[(viewer.bar + kBars - 1) % kBars].picture_ms = static_cast<float>(1e3 * secondsSince(start));
+  viewer.picture_ms = static_cast<float>(1e3 * secondsSince(start));
   glfwSwapBuffers(desk.window);
 }
 

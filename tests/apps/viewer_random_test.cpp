@@ -102,12 +102,14 @@ void retune(Viewer& viewer, Dice& dice) {
   viewer.tuning.tolerance_m = 2e-5 * std::pow(50.0, dice.share());
 }
 
-Viewer randomViewer(const std::string& scene, int players) {
+Viewer randomViewer(const std::string& scene, int players, Method method = Method::semiImplicitEuler) {
   SceneChoice choice;
   choice.name = scene;
   choice.players = players;
   choice.options.heightsSigma_m = kUsualSigma_m;
-  Viewer viewer(choice, tuningOf(sceneOf(choice)));
+  Tuning tuning = tuningOf(sceneOf(choice));
+  tuning.method = method;
+  Viewer viewer(choice, tuning);
   viewer.watch.measures = true;
   return viewer;
 }
@@ -130,9 +132,12 @@ bool finite(const CornerArray& position) {
   return true;
 }
 
-TEST(ViewerRandom, AMinuteOfRandomInputBreaksNothing) {
+class ViewerRandomMinute : public testing::TestWithParam<Method> {};
+INSTANTIATE_TEST_SUITE_P(Methods, ViewerRandomMinute, testing::Values(Method::semiImplicitEuler, Method::implicit));
+
+TEST_P(ViewerRandomMinute, BreaksNothing) {
   const double seconds = secondsOr(60.0);
-  Viewer viewer = randomViewer("tower:6", 0);
+  Viewer viewer = randomViewer("tower:6", 0, GetParam());
   Dice dice(1);
   play(viewer, seconds, dice);
   RecordProperty("frames", std::to_string(viewer.watch.frames));
