@@ -3,6 +3,7 @@
 #include "core/limits.h"
 
 #include <algorithm>
+#include <charconv>
 #include <fmt/format.h>
 #include <imgui.h>
 
@@ -39,33 +40,28 @@ void runPanel(Viewer& viewer) {
   }
 }
 
-void towerPanel(Viewer& viewer) {
-  static constexpr int kMostSliderRows = 72;
-  // What stands in the panel until it is used; it starts with what was chosen.
-  static SceneChoice next = viewer.choice;
-  static int rows = 18;
-  static int seed = static_cast<int>(viewer.choice.options.seed.value_or(1));
-  static float sigma_mm = static_cast<float>(1e3 * viewer.choice.options.heightsSigma_m.value_or(0.2e-3));
-  static int players = viewer.choice.players;
-  ImGui::SliderInt("rows", &rows, 1, kMostSliderRows);
-  ImGui::SliderFloat("heights vary, mm", &sigma_mm, 0.0F, 1.0F, "%.2f");
-  ImGui::InputInt("seed", &seed);
-  ImGui::SliderInt("players", &players, 0, kMostPlayers, players == 0 ? "no game" : "%d");
+void towerPanel(Viewer& viewer, PanelDraft& draft) {
+  constexpr int kMostSliderRows = 72;
+  ImGui::SliderInt("rows", &draft.rows, 1, kMostSliderRows);
+  ImGui::SliderFloat("heights vary, mm", &draft.sigma_mm, 0.0F, 1.0F, "%.2f");
+  ImGui::InputInt("seed", &draft.seed);
+  ImGui::SliderInt("players", &draft.players, 0, kMostPlayers, draft.players == 0 ? "no game" : "%d");
   bool build = ImGui::Button("new tower");
   ImGui::SameLine();
   if (ImGui::Button("next seed")) {
-    ++seed;
+    ++draft.seed;
     build = true;
   }
   if (!build) return;
-  next.name = fmt::format("tower:{}", rows);
-  next.players = players;
-  next.options.seed = static_cast<std::uint64_t>(std::max(seed, 0));
-  next.options.heightsSigma_m = 1e-3 * static_cast<double>(sigma_mm);
+  SceneChoice next = viewer.choice;
+  next.name = fmt::format("tower:{}", draft.rows);
+  next.players = draft.players;
+  next.options.seed = static_cast<std::uint64_t>(std::max(draft.seed, 0));
+  next.options.heightsSigma_m = 1e-3 * static_cast<double>(draft.sigma_mm);
   restart(viewer, next);
 }
 
-void physicsPanel(Viewer& viewer) {
+void physicsPanel(Viewer& viewer, PanelDraft& draft) {
   Tuning& tuning = viewer.tuning;
   const Simulation& simulation = viewer.session.simulation;
   constexpr std::array kMethods = {Method::semiImplicitEuler, Method::midpoint, Method::rungeKutta4, Method::implicit,
@@ -84,10 +80,9 @@ void physicsPanel(Viewer& viewer) {
     ImGui::EndCombo();
   }
   // Another stiffness is another simulation, so the slider counts when it is let go.
-  static float tolerance_um = 50.0F;
-  ImGui::SliderFloat("tolerance, um", &tolerance_um, 5.0F, 1000.0F, "%.0f", ImGuiSliderFlags_Logarithmic);
-  if (ImGui::IsItemDeactivatedAfterEdit()) tuning.tolerance_m = 1e-6 * static_cast<double>(tolerance_um);
-  if (!ImGui::IsItemActive()) tolerance_um = static_cast<float>(1e6 * tuning.tolerance_m);
+  ImGui::SliderFloat("tolerance, um", &draft.tolerance_um, 5.0F, 1000.0F, "%.0f", ImGuiSliderFlags_Logarithmic);
+  if (ImGui::IsItemDeactivatedAfterEdit()) tuning.tolerance_m = 1e-6 * static_cast<double>(draft.tolerance_um);
+  if (!ImGui::IsItemActive()) draft.tolerance_um = static_cast<float>(1e6 * tuning.tolerance_m);
   auto friction = static_cast<float>(tuning.friction);
   if (ImGui::SliderFloat("friction", &friction, 0.0F, 1.0F, "%.2f")) tuning.friction = static_cast<double>(friction);
   text(fmt::format("{} steps a frame, contacts {:.1f} kN/m", simulation.substeps, 1e-3 * simulation.contactStiffness_n_m));
@@ -242,7 +237,17 @@ double nextRate(double rate) {
   return at == kRates.end() || at + 1 == kRates.end() ? kRates.front() : *(at + 1);
 }
 
-PanelWishes drawPanels(Viewer& viewer, bool filming) {
+PanelDraft::PanelDraft(const SceneChoice& choice)
+    : seed(static_cast<int>(choice.options.seed.value_or(1))),
+      sigma_mm(static_cast<float>(1e3 * choice.options.heightsSigma_m.value_or(kUsualSigma_m))),
+      players(choice.players) {
+  const std::string_view name = choice.name;
+  constexpr std::string_view kTower = "tower:";
+  // Anything else leaves the rows as they are.
+  if (name.starts_with(kTower)) std::from_chars(name.data() + kTower.size(), name.data() + name.size(), rows);
+}
+
+PanelWishes drawPanels(Viewer& viewer, PanelDraft& draft, bool filming) {
   PanelWishes wishes;
   drawNotices(viewer);
   drawHandForce(viewer);
@@ -258,8 +263,8 @@ PanelWishes drawPanels(Viewer& viewer, bool filming) {
   if (section("hand", true)) handPanel(viewer);
   if (section("show", true)) showPanel(viewer);
   if (section("time", true)) timePanel(viewer);
-  if (section("tower and game", false)) towerPanel(viewer);
-  if (section("physics", false)) physicsPanel(viewer);
+  if (section("tower and game", false)) towerPanel(viewer, draft);
+  if (section("physics", false)) physicsPanel(viewer, draft);
   if (section("files", false)) {
     wishes.screenshot = ImGui::Button("screenshot");
     ImGui::SameLine();

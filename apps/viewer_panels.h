@@ -11,9 +11,20 @@ struct PanelWishes {
   bool recording = false;  ///< writes what was played so far
 };
 
+/// What stands in the panels until it is used.
+struct PanelDraft {
+  explicit PanelDraft(const SceneChoice& choice);
+
+  int rows = 18;
+  int seed;
+  float sigma_mm;  ///< of the heights
+  int players;
+  float tolerance_um = 0.0F;  ///< while its slider is held
+};
+
 /// Draws panels, notices and the hand's force with Dear ImGui, and carries out what the user changes in them. Call between
 /// ImGui::NewFrame and ImGui::Render. `filming`: whether a film runs.
-PanelWishes drawPanels(Viewer& viewer, bool filming);
+PanelWishes drawPanels(Viewer& viewer, PanelDraft& draft, bool filming);
 
 /// The next slower rate of simulated time, or real time after the slowest.
 double nextRate(double rate);

@@ -30,6 +30,7 @@ double secondsSince(Clock::time_point start) {
 struct Desk {
   Viewer& viewer;
   const ViewerFiles& files;
+  PanelDraft draft;
   GLFWwindow* window = nullptr;
   std::unique_ptr<Renderer> renderer = nullptr;
   std::unique_ptr<Film> film = nullptr;
@@ -264,7 +265,7 @@ void drawWindow(Desk& desk) {
   ImGui_ImplOpenGL3_NewFrame();
   ImGui_ImplGlfw_NewFrame();
   ImGui::NewFrame();
-  const PanelWishes wishes = drawPanels(viewer, desk.film != nullptr);
+  const PanelWishes wishes = drawPanels(viewer, desk.draft, desk.film != nullptr);
   ImGui::Render();
   ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
   writePicture(desk, picture, wishes);
@@ -327,7 +328,7 @@ GLFWwindow* openedWindow(const Viewport& size) {
 
 void runWindow(Viewer& viewer, const ViewerFiles& files, const Viewport& size, Clock::time_point started) {
   const GlfwUse glfw;
-  Desk desk{viewer, files};
+  Desk desk{viewer, files, PanelDraft(viewer.choice)};
   desk.window = openedWindow(size);
   glfwSwapInterval(1);
   glfwSetWindowUserPointer(desk.window, &desk);
