@@ -68,9 +68,8 @@ CLI::Option* addWholeNumber(CLI::App& app, const std::string& name, std::optiona
 
 void addPhysicsOptions(CLI::App& app, PhysicsOptions& options) {
   app.add_option("--method", options.method,
-                 "how a frame is stepped: semi-implicit-euler (default), implicit, midpoint, runge-kutta-4, or report (the "
-                 "impulses of the "
-                 "2003 report, for comparison)")
+                 "how a frame is stepped: implicit (default), semi-implicit-euler, midpoint, runge-kutta-4, or report (the "
+                 "impulses of the 2003 report, for comparison)")
       ->type_name("NAME");
   app.add_option("--inertia", options.inertia,
                  "how corners carry the mass: cuboid (default, a uniform cuboid's) or lumped (eight equal masses)")

@@ -1,7 +1,8 @@
-// The command line program. Exit codes: 0 done, 1 a verdict differs (--check), 2 bad input or arguments, 3 diverged, 70 an error
+// The command line program. Exit codes: 0 done, 1 an answer differs (--check), 2 bad input or arguments, 3 diverged, 70 an error
 // of the program itself.
 #include "apps/profile_command.h"
 #include "apps/run_command.h"
+#include "apps/statics_command.h"
 #include "apps/verdict.h"
 #include "core/error.h"
 #include "core/version.h"
@@ -24,8 +25,9 @@ constexpr std::string_view kFooter = R"help(examples:
   springtower run "(010)-(010)-(011)" --seconds 5 --picture tower.png
   springtower verdict towers.jsonl                  which towers of a list stand
   springtower profile --quick                       how long a frame takes
+  springtower statics tower:18                      whether it can stand at all, and by what margin
   springtower run --help                            all options of a command
-exit codes: 0 done, 1 a verdict differs (verdict --check), 2 bad input, 3 the simulation diverged)help";
+exit codes: 0 done, 1 an answer differs (--check), 2 bad input, 3 the simulation diverged)help";
 
 int complain(const std::string& message, int code) {
   fmt::print(stderr, "springtower: {}\n", onOneLine(message));
@@ -37,7 +39,7 @@ int complainAboutArguments(const CLI::App& program, const CLI::ParseError& error
   std::string hint = "springtower --help";
   for (const CLI::App* command : program.get_subcommands()) hint = fmt::format("springtower {} --help", command->get_name());
   const bool noCommand = program.get_subcommands().empty() && error.get_name() == "RequiredError";
-  complain(noCommand ? "found no command, allowed are run, verdict and profile" : error.what(), kBadInput);
+  complain(noCommand ? "found no command, allowed are run, verdict, profile and statics" : error.what(), kBadInput);
   fmt::print(stderr, "Try '{}'.\n", hint);
   return kBadInput;
 }
@@ -53,10 +55,12 @@ int run(int argc, char** argv) {
   program.get_formatter()->column_width(34);
   RunCommand runCommand;
   VerdictCommand verdictCommand;
+  ProfileCommand profileCommand;
+  StaticsCommand staticsCommand;
   const CLI::App* runApp = defineRun(program, runCommand);
   defineVerdict(program, verdictCommand);
-  ProfileCommand profileCommand;
   const CLI::App* profileApp = defineProfile(program, profileCommand);
+  const CLI::App* staticsApp = defineStatics(program, staticsCommand);
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -64,6 +68,7 @@ int run(int argc, char** argv) {
     return complainAboutArguments(program, error);
   }
   if (profileApp->parsed()) return executeProfile(profileCommand);
+  if (staticsApp->parsed()) return executeStatics(staticsCommand);
   return runApp->parsed() ? executeRun(runCommand) : executeVerdict(verdictCommand);
 }
 

@@ -20,4 +20,5 @@ configure_package_config_file("${CMAKE_CURRENT_LIST_DIR}/springtowerConfig.cmake
                               "${PROJECT_BINARY_DIR}/springtowerConfig.cmake" INSTALL_DESTINATION "${package_dir}")
 write_basic_package_version_file("${PROJECT_BINARY_DIR}/springtowerConfigVersion.cmake" COMPATIBILITY SameMinorVersion)
 install(FILES "${PROJECT_BINARY_DIR}/springtowerConfig.cmake" "${PROJECT_BINARY_DIR}/springtowerConfigVersion.cmake"
+              "${CMAKE_CURRENT_LIST_DIR}/FindClp.cmake"
         DESTINATION "${package_dir}")

@@ -21,7 +21,7 @@ enum class Sleep { off, on, report };
 /// (`settingTable`). Lengths, speeds and times of thresholds are multiples of the scene's block height h, sqrt(g h) and sqrt(h /
 /// g), so any size of block works unchanged.
 struct Settings {
-  Method method = Method::semiImplicitEuler;
+  Method method = Method::implicit;
   Inertia inertia = Inertia::cuboid;
   Sleep sleep = Sleep::on;
   double frame_s = 1.0 / 60.0;  ///< s; one frame of a 60 Hz display

@@ -152,35 +152,66 @@ std::int32_t find(const BlockCholesky& matrix, std::int32_t column, std::int32_t
   return static_cast<std::int32_t>(std::lower_bound(first, last, row) - matrix.row.begin());
 }
 
+// The pattern of A below the diagonal by columns: edgeRow[edgeStart[j] .. edgeStart[j + 1]], by counting.
+void findColumns(std::span<const BlockPair> edges, BlockCholesky& matrix) {
+  const auto ends = [&](const BlockPair& edge) {
+    const std::int32_t p = matrix.position[static_cast<std::size_t>(edge.a)];
+    const std::int32_t q = matrix.position[static_cast<std::size_t>(edge.b)];
+    return std::pair{static_cast<std::size_t>(std::min(p, q)), std::max(p, q)};
+  };
+  const std::size_t count = matrix.node.size();
+  matrix.edgeStart.assign(count + 2, 0);
+  matrix.edgeRow.resize(edges.size());
+  for (const BlockPair& edge : edges) ++matrix.edgeStart[ends(edge).first + 2];
+  for (std::size_t j = 2; j < count + 2; ++j) matrix.edgeStart[j] += matrix.edgeStart[j - 1];
+  for (const BlockPair& edge : edges) {
+    const auto [column, row] = ends(edge);
+    matrix.edgeRow[static_cast<std::size_t>(matrix.edgeStart[column + 1]++)] = row;
+  }
+}
+
 }  // namespace
 
-void analyse(std::span<const std::int32_t> order, std::span<const BlockPair> edges, BlockCholesky& matrix) {
+bool analyse(std::span<const std::int32_t> order, std::span<const BlockPair> edges, std::size_t mostProducts,
+             BlockCholesky& matrix) {
   const std::size_t count = order.size();
   matrix.node.assign(order.begin(), order.end());
   matrix.position.resize(count);
   for (std::size_t k = 0; k < count; ++k) matrix.position[static_cast<std::size_t>(order[k])] = static_cast<std::int32_t>(k);
+  findColumns(edges, matrix);
 
-  // The pattern of A by columns, then that of L: column j is its own part of A and what the columns leave that have j as their
-  // first row below the diagonal (their parent in the elimination tree).
-  std::vector<std::vector<std::int32_t>> column(count);
-  for (const BlockPair& edge : edges) {
-    const std::int32_t p = matrix.position[static_cast<std::size_t>(edge.a)];
-    const std::int32_t q = matrix.position[static_cast<std::size_t>(edge.b)];
-    column[static_cast<std::size_t>(std::min(p, q))].push_back(std::max(p, q));
-  }
-  for (std::size_t j = 0; j < count; ++j) {
-    std::vector<std::int32_t>& rows = column[j];
-    std::sort(rows.begin(), rows.end());
-    rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
-    if (rows.empty()) continue;
-    std::vector<std::int32_t>& parent = column[static_cast<std::size_t>(rows.front())];
-    parent.insert(parent.end(), rows.begin() + 1, rows.end());
-  }
+  // The pattern of L: column j is its own part of A and what the columns leave that have j as their first row below the diagonal
+  // (their parent in the elimination tree).
   matrix.columnStart.assign(1, 0);
   matrix.row.clear();
-  for (const std::vector<std::int32_t>& rows : column) {
-    matrix.row.insert(matrix.row.end(), rows.begin(), rows.end());
+  matrix.mark.assign(count, -1);
+  matrix.firstChild.assign(count, -1);
+  matrix.nextChild.assign(count, -1);
+  std::size_t products = 0;
+  for (std::size_t j = 0; j < count; ++j) {
+    const auto column = static_cast<std::int32_t>(j);
+    const std::size_t first = matrix.row.size();
+    matrix.mark[j] = column;
+    const auto add = [&](std::int32_t row) {
+      if (matrix.mark[static_cast<std::size_t>(row)] == column) return;
+      matrix.mark[static_cast<std::size_t>(row)] = column;
+      matrix.row.push_back(row);
+    };
+    for (std::int32_t i = matrix.edgeStart[j]; i < matrix.edgeStart[j + 1]; ++i) add(matrix.edgeRow[static_cast<std::size_t>(i)]);
+    for (std::int32_t child = matrix.firstChild[j]; child >= 0; child = matrix.nextChild[static_cast<std::size_t>(child)]) {
+      const auto c = static_cast<std::size_t>(child);
+      for (std::int32_t i = matrix.columnStart[c]; i < matrix.columnStart[c + 1]; ++i)
+        add(matrix.row[static_cast<std::size_t>(i)]);
+    }
+    const std::size_t below = matrix.row.size() - first;
+    products += below * (below + 3) / 2;
+    if (products > mostProducts) return false;
+    std::sort(matrix.row.begin() + static_cast<std::ptrdiff_t>(first), matrix.row.end());
     matrix.columnStart.push_back(static_cast<std::int32_t>(matrix.row.size()));
+    if (below == 0) continue;
+    const auto parent = static_cast<std::size_t>(matrix.row[first]);
+    matrix.nextChild[j] = matrix.firstChild[parent];
+    matrix.firstChild[parent] = column;
   }
   matrix.target.clear();
   matrix.targetStart.clear();
@@ -196,6 +227,7 @@ void analyse(std::span<const std::int32_t> order, std::span<const BlockPair> edg
   matrix.diagonal.resize(kNodeMatrix * count);
   matrix.lower.resize(kNodeMatrix * matrix.row.size());
   matrix.work.resize(kNodeSize * count);
+  return true;
 }
 
 BlockSlot slotOf(const BlockCholesky& matrix, std::int32_t first, std::int32_t second) {

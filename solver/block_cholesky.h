@@ -29,16 +29,18 @@ struct BlockCholesky {
   std::vector<std::int32_t> target;       ///< blocks (>= 0) or diagonals (-1 - row) that elimination updates, in order
   AlignedVector<float> diagonal;          ///< [nodes][144]; after factorisation the inverse of D
   AlignedVector<float> lower;             ///< [blocks][144]; after factorisation the transposed blocks of L
-  std::vector<std::int32_t> mark;         ///< working space
-  AlignedVector<float> work;              ///< working space of solutions, [nodes][12]
+  std::vector<std::int32_t> mark, firstChild, nextChild, edgeStart, edgeRow;  ///< working space of `analyse`
+  AlignedVector<float> work;                                                  ///< working space of solutions, [nodes][12]
 
   [[nodiscard]] std::size_t nodeCount() const { return node.size(); }
   [[nodiscard]] std::size_t blockCount() const { return row.size(); }
 };
 
 /// Lays out the matrix for nodes in this order of elimination (a permutation: order[k] is the k-th node) that are coupled by
-/// `edges`, and all blocks that fill in.
-void analyse(std::span<const std::int32_t> order, std::span<const BlockPair> edges, BlockCholesky& matrix);
+/// `edges`, and all blocks that fill in. Returns false, and lays out nothing, where factorising would take more than
+/// `mostProducts` products of 12 x 12 blocks.
+bool analyse(std::span<const std::int32_t> order, std::span<const BlockPair> edges, std::size_t mostProducts,
+             BlockCholesky& matrix);
 
 /// The slot of a coupled pair of nodes.
 BlockSlot slotOf(const BlockCholesky& matrix, std::int32_t first, std::int32_t second);

@@ -16,6 +16,7 @@ using ContactMask = std::uint16_t;
 /// last assembled, and working space of the iteration.
 struct ImplicitIsland {
   std::uint64_t pattern = 0;  ///< of which blocks touch which; what the matrix is laid out for
+  bool tooDense = false;      ///< so many blocks touch one another that explicit steps cost less
   bool factorised = false;
   bool forcesKnown = false;  ///< engine.force holds the forces at the island's present state
   BlockCholesky matrix;
@@ -25,12 +26,15 @@ struct ImplicitIsland {
   std::vector<std::array<std::array<double, 3>, 3>> axes;  ///< the frames the blocks were assembled in, [node][axis][component]
   std::vector<ModeVectors> residual;                       ///< N, in the blocks' frames, by node
   std::vector<double> affine;                              ///< right-hand sides and solutions, [nodes][12]
+  std::vector<std::int32_t> order;                         ///< working space of `layOut`
+  std::vector<double> height;                              ///< working space of `layOut`, m
+  std::vector<BlockPair> edges;                            ///< working space of `layOut`
 };
 
 struct IslandStep;
 
-/// Lays out the matrix anew where blocks have begun or ceased to touch. Returns whether it did.
-bool layOut(IslandStep& step, ImplicitIsland& island);
+/// Lays out the matrix anew where blocks have begun or ceased to touch, unless the island is too dense.
+void layOut(IslandStep& step, ImplicitIsland& island);
 
 /// Assembles and factorises for contacts that stand as `mask` says. `step_s` is the step times the method's factor. Returns false
 /// where the matrix is not positive definite.

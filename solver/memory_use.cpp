@@ -61,6 +61,17 @@ MemoryUse memoryUse(const Simulation& simulation) {
   for (std::size_t a = 0; a < 3; ++a) use.working += sumOf(engine.boxes.lower[a], engine.boxes.upper[a]);
   use.working += sumOf(engine.islands.blocks, engine.islands.start, engine.islands.islandOf, engine.islands.edges,
                        engine.islands.asleep, engine.islands.parent);
+  for (const ImplicitIsland& island : engine.implicitIslands) {
+    const BlockCholesky& matrix = island.matrix;
+    use.factor += sumOf(matrix.position, matrix.node, matrix.columnStart, matrix.row, matrix.targetStart, matrix.target,
+                        matrix.diagonal, matrix.lower);
+    use.working +=
+        sizeof(ImplicitIsland) + sumOf(matrix.mark, matrix.firstChild, matrix.nextChild, matrix.edgeStart, matrix.edgeRow,
+                                       matrix.work, island.touching, island.slot, island.mask, island.axes, island.residual,
+                                       island.affine, island.order, island.height, island.edges);
+  }
+  use.working += sumOf(engine.trial, engine.previousVelocity, engine.jacobian, engine.history, engine.stepVelocity, engine.target,
+                       engine.nodeOf, engine.frameStartPrevious, engine.frameStartPreviousVelocity);
   return use;
 }
 

@@ -5,6 +5,7 @@
 #include "solver/implicit.h"
 #include "solver/inertia.h"
 #include "solver/near_pairs.h"
+#include "solver/rest.h"
 #include "solver/spring_force.h"
 #include "solver/stability.h"
 #include "solver/stiffness.h"
@@ -152,6 +153,13 @@ Simulation& Simulation::operator=(Simulation&&) noexcept = default;
 const CornerArray& carriedVelocities(const Simulation& simulation) {
   const bool multiStage = !simulation.engine->carried.component[0].empty();
   return multiStage ? simulation.engine->carried : simulation.state.velocity;
+}
+
+void kick(Simulation& simulation, std::size_t block, const Vec3& velocity) {
+  for (std::size_t c = 0; c < kCorners; ++c) simulation.state.velocity.add(block, c, velocity);
+  simulation.engine->clock[block].history_s = 0.0;
+  simulation.restTime_s[block] = 0.0;
+  wake(simulation, block);
 }
 
 struct Snapshot {

@@ -43,6 +43,10 @@ struct Simulation {
 /// step in which a position stops being finite or a block turns inside out.
 void stepFrame(Simulation& simulation);
 
+/// Adds to the velocity of a block (m/s), as a blow would that takes no time, and wakes it. Methods that step from what was before
+/// forget it for this block; velocities in `state` are not to be changed behind their back.
+void kick(Simulation& simulation, std::size_t block, const Vec3& velocity);
+
 /// Whether every block has been at rest (speed of its rigid motion, force and torque balance) for the time the settings name.
 bool atRest(const Simulation& simulation);
 

@@ -217,14 +217,14 @@ bool solveStep(IslandStep& step, double effective_s) {
   ImplicitIsland& island = islandOf(step);
   MotionState& state = step.simulation.state;
   StageClock clock(step.times);
-  const bool fresh = layOut(step, island);
-  double residual = findResidual(step, island, effective_s);
+  layOut(step, island);
+  double residual = island.tooDense ? 0.0 : findResidual(step, island, effective_s);
   bool converged = false;
-  int most = kMostIterations;
+  int most = island.tooDense ? 0 : kMostIterations;
   for (int iteration = 0; iteration < most; ++iteration) {
     const bool changed = updateMasks(step, island, iteration == 0);
     if (changed) most = std::min(kMostContactIterations, iteration + kMostIterations);
-    if ((changed || fresh || !island.factorised) && !assemble(step, island, effective_s)) break;
+    if ((changed || !island.factorised) && !assemble(step, island, effective_s)) break;
     correct(step, island);
     updateVelocities(step, effective_s);
     clock.lap(Stage::integration);

@@ -88,8 +88,8 @@ TEST(MemoryUse, OfABlockOfTheTower) {
   const MemoryUse use = memoryUse(simulation);
   const auto blocks = static_cast<double>(simulation.model.blockCount());
   const auto each = [&](std::size_t bytes) { return static_cast<double>(bytes) / blocks; };
-  fmt::print("bytes a block: state {:.0f}, springs and masses {:.0f}, contacts {:.0f}, working space {:.0f}\n", each(use.state),
-             each(use.model), each(use.contacts), each(use.working));
+  fmt::print("bytes a block: state {:.0f}, springs and masses {:.0f}, contacts {:.0f}, factor {:.0f}, working space {:.0f}\n",
+             each(use.state), each(use.model), each(use.contacts), each(use.factor), each(use.working));
   RecordProperty("state_bytes", fmt::format("{:.0f}", each(use.state)));
   // Eight corners with three coordinates and velocities, a flag and a time.
   EXPECT_EQ(each(use.state), 8 * 6 * 8 + 1 + 8);
@@ -98,7 +98,7 @@ TEST(MemoryUse, OfABlockOfTheTower) {
   EXPECT_GT(each(use.contacts), 500.0);
   EXPECT_LT(each(use.contacts), 3000.0);
   EXPECT_LT(each(use.working), 5500.0);
-  EXPECT_EQ(use.total(), use.state + use.model + use.contacts + use.working);
+  EXPECT_EQ(use.total(), use.state + use.model + use.contacts + use.factor + use.working);
 }
 
 // Nothing grows with time in a scene that stands, nor faster than the blocks.

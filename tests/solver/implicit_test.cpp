@@ -1,0 +1,98 @@
+#include "core/scene.h"
+#include "solver/run.h"
+#include "solver/simulation.h"
+#include "tests/support/block_scenes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <gtest/gtest.h>
+#include <vector>
+
+namespace springtower {
+namespace {
+
+constexpr int kRows = 18;
+
+// How the mean of the top row moves along x over 2 s after its blocks were given a velocity, m, a value a frame.
+std::vector<double> kickedTop(Method method, double speed) {
+  Scene scene = towerScene(kRows);
+  scene.settings.sleep = Sleep::off;
+  scene.settings.method = method;
+  Simulation simulation(scene);
+  stepFor(simulation, 0.5);
+  const std::size_t first = simulation.model.blockCount() - 3;
+  const auto place = [&] {
+    double sum = 0.0;
+    for (std::size_t b = first; b < first + 3; ++b) sum += centre(simulation.state.position, b).x() / 3.0;
+    return sum;
+  };
+  const double start = place();
+  for (std::size_t b = first; b < first + 3; ++b) kick(simulation, b, Vec3(speed, 0.0, 0.0));
+  std::vector<double> moved;
+  for (int frame = 0; frame < 120; ++frame) {
+    stepFrame(simulation);
+    moved.push_back(place() - start);
+  }
+  return moved;
+}
+
+double ringOver(const std::vector<double>& moved, std::size_t from, std::size_t to) {
+  const auto [low, high] =
+      std::minmax_element(moved.begin() + static_cast<std::ptrdiff_t>(from), moved.begin() + static_cast<std::ptrdiff_t>(to));
+  return *high - *low;
+}
+
+struct KickTest : ::testing::TestWithParam<double> {};
+
+// The sway of the tower is what an implicit step may damp away unseen. Explicit steps, some 170 a frame, are the reference.
+TEST_P(KickTest, TheTopSwingsAsWithExplicitSteps) {
+  const std::vector<double> reference = kickedTop(Method::semiImplicitEuler, GetParam());
+  const std::vector<double> implicit = kickedTop(Method::implicit, GetParam());
+  const double peak = *std::max_element(reference.begin(), reference.end());
+  const double trough = *std::min_element(reference.begin(), reference.end());
+  EXPECT_NEAR(*std::max_element(implicit.begin(), implicit.end()), peak, 0.05 * peak);
+  EXPECT_NEAR(*std::min_element(implicit.begin(), implicit.end()), trough, 0.05 * (peak - trough));
+  // What is left of the swing in the second half second against the first, as both damp.
+  const double kept = ringOver(reference, 90, 120) / ringOver(reference, 0, 30);
+  EXPECT_NEAR(ringOver(implicit, 90, 120) / ringOver(implicit, 0, 30), kept, 0.3 * kept);
+}
+
+INSTANTIATE_TEST_SUITE_P(Speeds, KickTest, ::testing::Values(0.02, 0.1),
+                         [](const auto& tested) { return std::to_string(std::lround(1000.0 * tested.param)) + "mm_s"; });
+
+// A block that spins in the air for 2 s; what holds it together must not brake it.
+TEST(Implicit, ASpinningBlockKeepsItsSpin) {
+  Scene scene = oneBlockScene(false);
+  scene.settings.method = Method::implicit;
+  scene.gravity.magnitude = 0.0;
+  scene.blocks[0].spin = Vec3(0.0, 0.0, 10.0);
+  Simulation simulation(scene);
+  stepFor(simulation, 2.0);
+  Vec3 moment = Vec3::Zero();
+  double inertia = 0.0;
+  for (std::size_t c = 0; c < kCorners; ++c) {
+    const Vec3 arm = simulation.state.position.at(0, c) - centre(simulation.state.position, 0);
+    moment += arm.cross(simulation.state.velocity.at(0, c));
+    inertia += arm.x() * arm.x() + arm.y() * arm.y();
+  }
+  EXPECT_NEAR(moment.z() / inertia, 10.0, 0.1);
+}
+
+// Nothing is handed to explicit steps where nothing meets or spins, and hardly any iterations are needed at rest.
+TEST(Implicit, ATowerAtRestTakesOneIterationAStep) {
+  Scene scene = towerScene(kRows);
+  scene.settings.sleep = Sleep::off;
+  scene.settings.method = Method::implicit;
+  Simulation simulation(scene);
+  stepFor(simulation, 1.0);
+  const Counters before = simulation.counters;
+  stepFor(simulation, 1.0);
+  EXPECT_EQ(before.handedOver, 0U);
+  EXPECT_EQ(simulation.counters.handedOver, 0U);
+  EXPECT_EQ(simulation.counters.implicitSteps - before.implicitSteps, 240U);
+  EXPECT_EQ(simulation.counters.implicitIterations - before.implicitIterations, 240U);
+  EXPECT_EQ(simulation.counters.factorisations, before.factorisations);
+}
+
+}  // namespace
+}  // namespace springtower
