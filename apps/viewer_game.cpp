@@ -1,11 +1,12 @@
 #include "apps/viewer_game.h"
 
 #include "solver/inertia.h"
+#include "solver/statics_margin.h"
 
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-#include <limits>
+#include <numeric>
 
 namespace springtower {
 namespace {
@@ -64,55 +65,6 @@ bool quiet(const Simulation& simulation) {
     if (simulation.asleep[b] == 0 && rigidMotion(simulation.state, b).cornerSpeed > kQuietSpeed_m_s) return false;
   }
   return true;
-}
-
-// How far inside the convex hull of some points a point lies: the distance to the nearest side, negative outside.
-double insideHull(std::vector<Eigen::Vector2d> points, const Eigen::Vector2d& point) {
-  if (points.empty()) return -std::numeric_limits<double>::infinity();
-  std::sort(points.begin(), points.end(),
-            [](const auto& a, const auto& b) { return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y()); });
-  const auto turn = [](const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c) {
-    return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
-  };
-  std::vector<Eigen::Vector2d> hull;  // counterclockwise (Andrew's monotone chain)
-  const auto extend = [&](const Eigen::Vector2d& next, std::size_t least) {
-    while (hull.size() >= least + 2 && turn(hull[hull.size() - 2], hull.back(), next) <= 0.0) hull.pop_back();
-    hull.push_back(next);
-  };
-  for (const auto& next : points) extend(next, 0);
-  const std::size_t lower = hull.size() - 1;
-  for (auto next = points.rbegin() + 1; next != points.rend(); ++next) extend(*next, lower);
-  if (hull.size() < 3) return -(points.front() - point).norm();
-  double margin = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i + 1 < hull.size(); ++i) {
-    const double length = (hull[i + 1] - hull[i]).norm();
-    if (length > 0.0) margin = std::min(margin, turn(hull[i], hull[i + 1], point) / length);
-  }
-  return margin;
-}
-
-// The margin of the weight above a row on the row's contacts, without one block of that row.
-double marginWithout(const Simulation& simulation, std::span<const ContactForce> contacts, std::span<const int> rows,
-                     std::size_t removed) {
-  const int row = rows[removed];
-  Vec3 moment = Vec3::Zero();
-  double mass = 0.0;
-  for (std::size_t b = 0; b < rows.size(); ++b) {
-    if (rows[b] <= row) continue;
-    moment += simulation.model.mass[b] * centre(simulation.state.position, b);
-    mass += simulation.model.mass[b];
-  }
-  if (mass == 0.0) return std::numeric_limits<double>::infinity();
-  std::vector<Eigen::Vector2d> carrying;
-  for (const ContactForce& contact : contacts) {
-    if (contact.lower == kFloor || contact.upper == kFloor) continue;
-    std::size_t above = index(contact.upper);
-    std::size_t below = index(contact.lower);
-    if (rows[above] < rows[below]) std::swap(above, below);
-    const bool carries = rows[below] == row && rows[above] > row && below != removed && std::abs(contact.normal.z()) > kFlat;
-    if (carries) carrying.emplace_back(contact.point.head<2>());
-  }
-  return insideHull(std::move(carrying), (moment / mass).head<2>());
 }
 
 }  // namespace
@@ -189,11 +141,7 @@ std::string describe(const Game& game) {
 std::vector<Hint> hints(const Simulation& simulation, std::span<const ContactForce> contacts) {
   const std::size_t blocks = simulation.model.blockCount();
   std::vector<Hint> all(blocks);
-  std::vector<int> rows(blocks);
-  for (std::size_t b = 0; b < blocks; ++b) {
-    all[b].block = blockId(b);
-    rows[b] = rowOf(simulation, b);
-  }
+  for (std::size_t b = 0; b < blocks; ++b) all[b].block = blockId(b);
   for (const ContactForce& contact : contacts) {
     const double drag = simulation.scene.staticFriction * contact.normalForce;
     // A contact presses on the face below it from above, whichever of its blocks the engine calls upper.
@@ -207,9 +155,41 @@ std::vector<Hint> hints(const Simulation& simulation, std::span<const ContactFor
   const double gravity = simulation.scene.gravity.magnitude;
   for (std::size_t b = 0; b < blocks; ++b) {
     all[b].loose = all[b].load_n < kLooseInWeights * simulation.model.mass[b] * gravity;
-    all[b].margin_m = rows[b] < 0 ? 0.0 : marginWithout(simulation, contacts, rows, b);
   }
   return all;
+}
+
+std::optional<WithoutBlock> withoutBlock(const Simulation& simulation, std::span<const ContactForce> contacts, BlockId block) {
+  const Vec3 gravity = simulation.scene.gravity.at(simulation.time_s);
+  const std::size_t blocks = simulation.model.blockCount();
+  if (gravity.norm() == 0.0 || blocks < 2) return {};
+  Scene rest = simulation.scene;
+  rest.forces.clear();
+  rest.blocks.clear();
+  for (std::size_t b = 0; b < blocks; ++b) {
+    if (blockId(b) == block) continue;
+    BlockSpec& spec = rest.blocks.emplace_back();
+    spec.centre = centre(simulation.state.position, b);
+    spec.dimensions = simulation.model.dimensions[b];
+    spec.orientation = orientationOf(simulation.state.position, b);
+    spec.mass = simulation.model.mass[b];
+  }
+  const auto renumbered = [&](BlockId b) { return b == kFloor || index(b) < index(block) ? b : blockId(index(b) - 1); };
+  std::vector<Facing> facings;
+  for (const ContactForce& contact : contacts) {
+    if (contact.upper == block || contact.lower == block) continue;
+    facings.push_back({renumbered(contact.upper), renumbered(contact.lower), contact.normal, {{contact.point, 0.0}}});
+  }
+  return WithoutBlock{staticsModel(rest, facings), gravity.normalized()};
+}
+
+double tiltBorne(const WithoutBlock& question) {
+  constexpr double kTolerance_deg = 0.05;
+  constexpr double kNever_deg = -90.0;
+  std::vector<std::size_t> usable(question.model.points.size());
+  std::iota(usable.begin(), usable.end(), std::size_t{0});
+  const std::optional<TiltMargin> margin = tiltMargin(question.model, usable, question.gravity, kTolerance_deg);
+  return margin ? margin->tilt_deg : kNever_deg;
 }
 
 }  // namespace springtower

@@ -1,8 +1,11 @@
 #pragma once
 
 #include "apps/viewer_grip.h"
+#include "solver/statics_model.h"
 
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -54,15 +57,26 @@ std::string describe(const Game& game);
 /// How a block could be taken, judged from the forces.
 struct Hint {
   BlockId block = kFloor;
-  double drag_n = 0.0;    ///< N, friction that holds it: the coefficient times all normal forces on it
-  double load_n = 0.0;    ///< N, what rests on it
-  bool loose = false;     ///< nearly nothing but its own weight
-  double margin_m = 0.0;  ///< without it: how far the weight above stays inside what carries it, negative when it would fall
+  double drag_n = 0.0;  ///< N, friction that holds it: the coefficient times all normal forces on it
+  double load_n = 0.0;  ///< N, what rests on it
+  bool loose = false;   ///< nearly nothing but its own weight
 };
 
-/// Hints for all blocks, [blocks]. The margin is statics of rigid parts: for each row, the weight of all that is above it has to
-/// fall inside the convex hull of the contacts that carry it; the block's own are taken away. It says nothing of friction, nor of
-/// what is pushed while the block is drawn.
+/// Hints for all blocks, [blocks].
 std::vector<Hint> hints(const Simulation& simulation, std::span<const ContactForce> contacts);
+
+/// What statics is asked about the tower without a block: the other blocks as they lie and what they touch now.
+struct WithoutBlock {
+  StaticsModel model;
+  Vec3 gravity = -Vec3::UnitZ();  ///< unit
+};
+
+/// The question. Blocks that would lean until they touch something else are not looked for: these are the present contacts.
+/// Empty when there is no gravity or no other block.
+std::optional<WithoutBlock> withoutBlock(const Simulation& simulation, std::span<const ContactForce> contacts, BlockId block);
+
+/// The answer: by how many degrees gravity may turn towards its worst side before rigid blocks with friction cannot rest on these
+/// contacts; negative when they cannot as it is (then -90 where no gravity will do). Takes some milliseconds.
+double tiltBorne(const WithoutBlock& question);
 
 }  // namespace springtower

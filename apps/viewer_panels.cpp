@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <chrono>
 #include <fmt/format.h>
 #include <imgui.h>
 
@@ -217,16 +218,37 @@ void drawHandForce(const Viewer& viewer) {
   drawBeside(viewer, index(held), fmt::format("{:.2f} N", session.gripForce.force.norm()), packed(holdColour(session.hold)));
 }
 
-void drawHint(const Viewer& viewer) {
+// Asks about the block under the mouse, again once a second as the tower changes.
+void askStatics(const Viewer& viewer, BlockId block, StaticsHint& statics) {
+  constexpr std::uint64_t kAgain = 60;
+  const Session& session = viewer.session;
+  if (statics.coming.valid()) {
+    if (statics.coming.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
+    statics.tilt_deg = statics.coming.get();
+  }
+  const bool fresh = statics.block == block && statics.frame <= session.frame && session.frame < statics.frame + kAgain;
+  if (fresh) return;
+  if (statics.block != block) statics.tilt_deg.reset();
+  statics.block = block;
+  statics.frame = session.frame;
+  auto question = withoutBlock(session.simulation, session.contacts, block);
+  if (!question) return;
+  statics.coming = std::async(std::launch::async, [asked = std::move(*question)] { return tiltBorne(asked); });
+}
+
+void drawHint(const Viewer& viewer, StaticsHint& statics) {
   if (viewer.overlay != Overlay::hints || !viewer.controls.hover) return;
-  const std::size_t b = index(viewer.controls.hover->block);
-  const Hint hint = hints(viewer.session.simulation, viewer.session.contacts)[b];
-  const std::string rest = hint.margin_m > 1.0   ? "nothing rests on its row"
-                           : hint.margin_m > 0.0 ? fmt::format("without it the rest stands by {:.1f} mm", 1e3 * hint.margin_m)
-                                                 : "without it the tower falls";
-  drawBeside(viewer, b,
-             fmt::format("block {}: carries {:.2f} N, friction holds it with up to {:.2f} N{}\n{}", b, hint.load_n, hint.drag_n,
-                         hint.loose ? ", loose" : "", rest),
+  const BlockId block = viewer.controls.hover->block;
+  askStatics(viewer, block, statics);
+  std::string rest = "...";
+  if (statics.block == block && statics.tilt_deg) {
+    rest = *statics.tilt_deg < 0.0 ? "without it the rest cannot stay as it is"
+                                   : fmt::format("without it the rest stands, up to a tilt of {:.1f} degrees", *statics.tilt_deg);
+  }
+  const Hint hint = hints(viewer.session.simulation, viewer.session.contacts)[index(block)];
+  drawBeside(viewer, index(block),
+             fmt::format("block {}: carries {:.2f} N, friction holds it with up to {:.2f} N{}\n{}", index(block), hint.load_n,
+                         hint.drag_n, hint.loose ? ", loose" : "", rest),
              IM_COL32(255, 255, 255, 255));
 }
 
@@ -251,7 +273,7 @@ PanelWishes drawPanels(Viewer& viewer, PanelDraft& draft, bool filming) {
   PanelWishes wishes;
   drawNotices(viewer);
   drawHandForce(viewer);
-  drawHint(viewer);
+  drawHint(viewer, draft.statics);
   if (!viewer.panels) return wishes;
   ImGui::SetNextWindowPos({10.0F, 10.0F}, ImGuiCond_FirstUseEver);
   ImGui::Begin("Springtower", nullptr, ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoNav);

@@ -273,18 +273,14 @@ void drawWindow(Desk& desk) {
   glfwSwapBuffers(desk.window);
 }
 
-// GLFW for as long as it is needed.
-struct GlfwUse {
-  GlfwUse() {
-    if (glfwInit() == GLFW_TRUE) return;
-    const char* why = nullptr;
-    glfwGetError(&why);
-    throw InputError(fmt::format("no window: {}; without a display use --headless", why == nullptr ? "unknown" : why));
-  }
-  GlfwUse(const GlfwUse&) = delete;
-  GlfwUse& operator=(const GlfwUse&) = delete;
-  ~GlfwUse() { glfwTerminate(); }
-};
+// GLFW and its window stay until the program ends, which gives all back: what a driver keeps in its own variables would count as
+// lost memory once the driver is unloaded, and hide what we lose.
+void startGlfw() {
+  if (glfwInit() == GLFW_TRUE) return;
+  const char* why = nullptr;
+  glfwGetError(&why);
+  throw InputError(fmt::format("no window: {}; without a display use --headless", why == nullptr ? "unknown" : why));
+}
 
 struct ImGuiUse {
   explicit ImGuiUse(GLFWwindow* window) {
@@ -327,7 +323,7 @@ GLFWwindow* openedWindow(const Viewport& size) {
 }  // namespace
 
 void runWindow(Viewer& viewer, const ViewerFiles& files, const Viewport& size, Clock::time_point started) {
-  const GlfwUse glfw;
+  startGlfw();
   Desk desk{viewer, files, PanelDraft(viewer.choice)};
   desk.window = openedWindow(size);
   glfwSwapInterval(1);

@@ -2,8 +2,11 @@
 
 #include "tests/apps/viewer_play.h"
 
+#include <cmath>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <limits>
+#include <numbers>
 
 namespace springtower {
 namespace {
@@ -113,13 +116,26 @@ TEST(ViewerGame, HintsKnowTheLooseBlockAndTheLoads) {
 TEST(ViewerGame, StaticsOfRemovingABlock) {
   Session session(bitCodeScene("(011)-(111)-(010)-(111)"));
   wait(session, 30);
-  const std::vector<Hint> all = hints(session.simulation, session.contacts);
-  EXPECT_LT(all[0].margin_m, 0.0);  // leaves position 3 alone: the weight lies 13.8 mm outside
-  EXPECT_NEAR(all[0].margin_m, -0.0138, 1e-3);
-  EXPECT_GT(all[1].margin_m, 0.005);  // leaves the middle
-  for (const std::size_t b : {2U, 3U, 4U}) EXPECT_GT(all[b].margin_m, 0.0) << b;
-  EXPECT_LT(all[5].margin_m, 0.0);  // the only one of its row
-  EXPECT_GT(all[6].margin_m, 1.0);  // nothing rests on the top row
+  const auto tilt = [&](std::size_t block) {
+    const auto question = withoutBlock(session.simulation, session.contacts, blockId(block));
+    return question ? tiltBorne(*question) : std::numeric_limits<double>::quiet_NaN();
+  };
+  EXPECT_LT(tilt(0), 0.0);  // leaves position 3 alone
+  EXPECT_GT(tilt(1), 5.0);  // leaves the middle
+  for (const std::size_t b : {2U, 3U, 4U}) EXPECT_GT(tilt(b), 0.0) << b;
+  EXPECT_LT(tilt(5), 0.0);  // the only one of its row
+  for (const std::size_t b : {6U, 7U, 8U}) EXPECT_GT(tilt(b), 0.0) << b;
+}
+
+// Two blocks one on the other: what is left is one block, which tips or slides as a block on a slope does.
+TEST(ViewerGame, StaticsOfABlockThatIsLeft) {
+  Session session(bitCodeScene("(010)-(010)"));
+  wait(session, 30);
+  const auto question = withoutBlock(session.simulation, session.contacts, blockId(1));
+  ASSERT_TRUE(question);
+  EXPECT_NEAR(tiltBorne(*question), std::atan(0.4) * 180.0 / std::numbers::pi, 0.1);
+  Session alone(bitCodeScene("(010)"));
+  EXPECT_FALSE(withoutBlock(alone.simulation, alone.contacts, blockId(0)));
 }
 
 }  // namespace
