@@ -1,7 +1,19 @@
 #!/usr/bin/env bash
-# Makes the README's pictures again: docs/pictures.sh (after a Release build).
+# Makes the README's pictures again, without a display: docs/pictures.sh (after a Release build).
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
-program=build/release/bin/springtower
-"$program" run tower:18 --seconds 2 --picture docs/pictures/tower18.png
-"$program" run tower:18 --seconds 0.55 --gravity-tilt 16 --gravity-direction 30 --no-sleep --picture docs/pictures/collapse.png
+viewer=build/release/bin/springtower-viewer
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+
+# picture NAME FRAMES CAMERA OPTION...: the scene after so many frames; the camera as degrees round, degrees up, metres off.
+picture() {
+  "$viewer" --headless --frames "$2" --png-every "$2" --camera "$3" --size 480x600 --png "$scratch" "${@:4}"
+  mv "$scratch/$(printf 'frame-%05d.png' "$2")" "docs/pictures/$1.png"
+}
+
+printf '%s\n' '[tower]' 'rows = 18' '[gravity]' 'tilt_deg = 16.0' 'direction_deg = 30.0' >"$scratch/tilted.toml"
+picture tower18 60 -52:18:0.68 --scene tower:18
+picture collapse 31 -14:20:1.0 --scene "$scratch/tilted.toml" --no-sleep
+picture load 120 -52:18:0.44 --scene tower:9 --overlay load --arrows
+picture hints 120 -52:18:0.44 --scene tower:9 --overlay hints

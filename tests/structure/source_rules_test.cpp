@@ -28,7 +28,7 @@ TEST(SourceRules, EachFolderKnowsItselfAndTheFoldersBelow) {
       "1111000",  // solver
       "1111100",  // apps
       "1111010",  // bench
-      "1111001",  // tests
+      "1111101",  // tests
   };
   for (size_t from = 0; from < folders.size(); ++from) {
     for (size_t to = 0; to < folders.size(); ++to) {
