@@ -5,6 +5,7 @@
 #include "solver/implicit.h"
 #include "solver/inertia.h"
 #include "solver/near_pairs.h"
+#include "solver/rigid_frame.h"
 #include "solver/spring_force.h"
 #include "solver/stability.h"
 #include "solver/stiffness.h"
@@ -59,8 +60,8 @@ double foreseenSpectralRadius(const Simulation& simulation, const Stiffness& sti
 void chooseStiffness(Simulation& simulation) {
   const Settings& settings = simulation.scene.settings;
   LoadEstimate loads = estimateLoads(simulation.scene);
-  const bool implicit = settings.method == Method::implicit;  // stable with any step
-  simulation.fixedSubsteps = implicit ? 0 : settings.substeps;
+  const bool stable = settings.method == Method::implicit || isRigid(settings.method);  // with any step
+  simulation.fixedSubsteps = stable ? 0 : settings.substeps;
   simulation.tolerance_m = settings.tolerance_m;
   Stiffness stiffness = stiffnessForTolerance(loads, settings.tolerance_m);
   if (simulation.fixedSubsteps > 0) {
@@ -134,6 +135,7 @@ Simulation::Simulation(const Scene& given) : scene(given), engine(std::make_uniq
   }
   if (scene.settings.method == Method::report) e.report.resize(count);
   if (scene.settings.method == Method::implicit) prepareImplicit(*this);
+  if (isRigid(scene.settings.method)) prepareRigid(*this);
   if (scene.settings.method == Method::midpoint || scene.settings.method == Method::rungeKutta4) {
     e.carried.resize(count);
     e.carriedMotion.resize(count);
