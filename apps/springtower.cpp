@@ -1,5 +1,6 @@
 // The command line program. Exit codes: 0 done, 1 a verdict differs (--check), 2 bad input or arguments, 3 diverged, 70 an error
 // of the program itself.
+#include "apps/chart_command.h"
 #include "apps/profile_command.h"
 #include "apps/run_command.h"
 #include "apps/verdict.h"
@@ -24,6 +25,7 @@ constexpr std::string_view kFooter = R"help(examples:
   springtower run "(010)-(010)-(011)" --seconds 5 --picture tower.png
   springtower verdict towers.jsonl                  which towers of a list stand
   springtower profile --quick                       how long a frame takes
+  springtower chart --quick                         speed against accuracy, every method
   springtower run --help                            all options of a command
 exit codes: 0 done, 1 a verdict differs (verdict --check), 2 bad input, 3 the simulation diverged)help";
 
@@ -37,7 +39,7 @@ int complainAboutArguments(const CLI::App& program, const CLI::ParseError& error
   std::string hint = "springtower --help";
   for (const CLI::App* command : program.get_subcommands()) hint = fmt::format("springtower {} --help", command->get_name());
   const bool noCommand = program.get_subcommands().empty() && error.get_name() == "RequiredError";
-  complain(noCommand ? "found no command, allowed are run, verdict and profile" : error.what(), kBadInput);
+  complain(noCommand ? "found no command, allowed are run, verdict, profile and chart" : error.what(), kBadInput);
   fmt::print(stderr, "Try '{}'.\n", hint);
   return kBadInput;
 }
@@ -57,6 +59,8 @@ int run(int argc, char** argv) {
   defineVerdict(program, verdictCommand);
   ProfileCommand profileCommand;
   const CLI::App* profileApp = defineProfile(program, profileCommand);
+  ChartCommand chartCommand;
+  const CLI::App* chartApp = defineChart(program, chartCommand);
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -64,6 +68,7 @@ int run(int argc, char** argv) {
     return complainAboutArguments(program, error);
   }
   if (profileApp->parsed()) return executeProfile(profileCommand);
+  if (chartApp->parsed()) return executeChart(chartCommand);
   return runApp->parsed() ? executeRun(runCommand) : executeVerdict(verdictCommand);
 }
 
