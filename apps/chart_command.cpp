@@ -99,7 +99,8 @@ void writeResume(const std::string& folder, const Chart& chart, const std::vecto
   writeFile(folder, "chart.json", [&](std::ostream& stream) { writeChartJson(stream, all); });
 }
 
-void writeAll(const std::string& folder, const Chart& chart) {
+// The table, the charts and the index, of what there is so far. Returns the number of charts.
+std::size_t writeAll(const std::string& folder, const Chart& chart) {
   writeFile(folder, "chart.csv", [&](std::ostream& stream) { writeChartCsv(stream, chart); });
   std::vector<std::string> names;
   for (const auto& [name, plot] : chartPlots(chart)) {
@@ -109,8 +110,7 @@ void writeAll(const std::string& folder, const Chart& chart) {
     names.push_back(name);
   }
   writeFile(folder, "index.md", [&](std::ostream& stream) { writeChartIndex(stream, chart, names); });
-  fmt::print("{} cases, {} charts (SVG and PNG), chart.csv, chart.json and index.md in {}\n", chart.results.size(), names.size(),
-             onOneLine(folder));
+  return names.size();
 }
 
 void printScene(const Chart& chart, ChartScene scene) {
@@ -171,6 +171,7 @@ int executeChart(const ChartCommand& command) {
     steps += static_cast<int>(work.back().size()) * (1 + chart.limits.samples);
   }
   int done = 0;
+  std::size_t charts = 0;
   Progress progress(steps, "steps");
   for (const std::vector<ChartCase>& cases : work) {
     const bool allKnown =
@@ -186,10 +187,13 @@ int executeChart(const ChartCommand& command) {
       writeResume(command.out, chart, before);
     }
     progress.clear();
-    if (!cases.empty()) printScene(chart, cases.front().scene);
+    if (cases.empty()) continue;
+    printScene(chart, cases.front().scene);
+    std::fflush(stdout);
+    charts = writeAll(command.out, chart);
   }
-  writeResume(command.out, chart, before);
-  writeAll(command.out, chart);
+  fmt::print("{} cases, {} charts (SVG and PNG), chart.csv, chart.json and index.md in {}\n", chart.results.size(), charts,
+             onOneLine(command.out));
   return 0;
 }
 
