@@ -57,7 +57,7 @@ const std::vector<Sweep>& sweeps() {
       {Method::semiImplicitEuler, Knob::tolerance, {2e-4, 1e-4, 5e-5, 2e-5, 1e-5}, {1e-4, 5e-5}},
       {Method::midpoint, Knob::tolerance, {2e-4, 1e-4}, {1e-4}},
       {Method::rungeKutta4, Knob::tolerance, {2e-4, 1e-4, 5e-5}, {1e-4}},
-      {Method::report, Knob::substeps, {25, 50, 100, 200}, {50}},
+      {Method::report, Knob::tolerance, {1e-3, 2e-4, 5e-5}, {1e-3}},
       {Method::rigidPgs, Knob::substeps, {4, 8, 16, 32, 64, 128}, {16, 64}},
       {Method::rigidLcp, Knob::substeps, {1, 2, 4}, {1}},
       {Method::xpbd, Knob::substeps, {12, 25, 50, 100, 200}, {25, 100}},
