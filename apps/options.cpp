@@ -67,9 +67,11 @@ CLI::Option* addWholeNumber(CLI::App& app, const std::string& name, std::optiona
 }
 
 void addPhysicsOptions(CLI::App& app, PhysicsOptions& options) {
-  app.add_option("--method", options.method,
-                 "how a frame is stepped: implicit (default), semi-implicit-euler, midpoint, runge-kutta-4, or report (the "
-                 "impulses of the 2003 report, for comparison)")
+  app.add_option(
+         "--method", options.method,
+         "how a frame is stepped: implicit (default), semi-implicit-euler, midpoint, runge-kutta-4, report (the impulses of "
+         "the 2003 report, for comparison), or rigid blocks: rigid-pgs (sequential impulses), rigid-lcp (pivoting), xpbd "
+         "(position-based)")
       ->type_name("NAME");
   app.add_option("--inertia", options.inertia,
                  "how corners carry the mass: cuboid (default, a uniform cuboid's) or lumped (eight equal masses)")
@@ -79,6 +81,8 @@ void addPhysicsOptions(CLI::App& app, PhysicsOptions& options) {
             "(default 5e-05)");
   addWholeNumber(app, "--substeps", options.substeps, settingRange("substeps"),
                  "steps of a frame; alone, the tolerance follows from them and is printed");
+  addWholeNumber(app, "--iterations", options.iterations, settingRange("iterations"),
+                 "rigid methods: passes over the contacts in a step (default 1)");
   app.add_flag("--no-sleep", options.noSleep, "simulate blocks at rest like all others");
   app.add_flag("--force-unstable", options.forceUnstable, "allow a tolerance and substeps that do not fit together");
   addWholeNumber(app, "--threads", options.threads, kThreadsRange,
@@ -107,6 +111,7 @@ void applyPhysicsOptions(const PhysicsOptions& options, Settings& settings) {
     settings.toleranceGiven = true;
   }
   if (options.substeps) settings.substeps = static_cast<int>(*options.substeps);
+  if (options.iterations) settings.iterations = static_cast<int>(*options.iterations);
   if (options.noSleep) settings.sleep = Sleep::off;
   if (options.forceUnstable) settings.forceUnstable = true;
 }

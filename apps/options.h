@@ -17,6 +17,7 @@ struct PhysicsOptions {
   std::optional<std::string> inertia;
   std::optional<double> tolerance_m;
   std::optional<std::int64_t> substeps;
+  std::optional<std::int64_t> iterations;
   bool noSleep = false;
   bool forceUnstable = false;
   std::optional<std::int64_t> threads;

@@ -189,7 +189,9 @@ class Drawing {
       if (line.marker != Marker::none) canvas_.marker(x, y, style, line.marker == Marker::filled);
       if (i >= line.labels.size() || line.labels[i].empty()) continue;
       canvas_.ink(kBlack);
-      canvas_.text(x + 6.0, y - 4.0, line.labels[i], kText - 1.5);
+      const double end = x + 6.0 + canvas_.textWidth(line.labels[i], kText - 1.5);
+      const bool fits = end <= kLeft + kPlaneWidth;
+      canvas_.text(fits ? x + 6.0 : x - 6.0, y - 4.0, line.labels[i], kText - 1.5, fits ? Anchor::start : Anchor::end);
     }
   }
 

@@ -44,16 +44,21 @@ constexpr auto kSettingTable = std::to_array<SettingRow>({
     {"report_disable_distance_m", "m", "sleep report: a block whose particles travel less in a frame is disabled", 0, 1,
      &Settings::reportDisableDistance_m},
     {"report_iterations", "", "method report: most passes of its collision loop in a step", 1, 1000, &Settings::reportIterations},
+    {"iterations", "", "rigid methods: passes over the contacts in a step; more of them hold taller towers", 1, 1000,
+     &Settings::iterations},
 });
 
 template <class T>
 using Names = std::span<const std::pair<std::string_view, T>>;
 
-constexpr std::array<std::pair<std::string_view, Method>, 5> kMethodNames = {{{"implicit", Method::implicit},
+constexpr std::array<std::pair<std::string_view, Method>, 8> kMethodNames = {{{"implicit", Method::implicit},
                                                                               {"semi-implicit-euler", Method::semiImplicitEuler},
                                                                               {"midpoint", Method::midpoint},
                                                                               {"runge-kutta-4", Method::rungeKutta4},
-                                                                              {"report", Method::report}}};
+                                                                              {"report", Method::report},
+                                                                              {"rigid-pgs", Method::rigidPgs},
+                                                                              {"rigid-lcp", Method::rigidLcp},
+                                                                              {"xpbd", Method::xpbd}}};
 constexpr std::array<std::pair<std::string_view, Inertia>, 2> kInertiaNames = {
     {{"cuboid", Inertia::cuboid}, {"lumped", Inertia::lumped}}};
 constexpr std::array<std::pair<std::string_view, Sleep>, 3> kSleepNames = {

@@ -9,7 +9,13 @@
 namespace springtower {
 
 /// How a frame is stepped. Each is one file solve_*.cpp of solver/.
-enum class Method { implicit, semiImplicitEuler, midpoint, rungeKutta4, report };
+enum class Method { implicit, semiImplicitEuler, midpoint, rungeKutta4, report, rigidPgs, rigidLcp, xpbd };
+
+/// Whether a method takes blocks as rigid: it has no stiffness, and its knobs are substeps and iterations.
+constexpr bool isRigid(Method method) {
+  return method == Method::rigidPgs || method == Method::rigidLcp || method == Method::xpbd;
+}
+
 /// How the corner particles carry a block's mass: `cuboid` has exactly the mass and inertia of a uniform cuboid, `lumped` is the
 /// report's eight equal masses (three times the central moments).
 enum class Inertia { cuboid, lumped };
@@ -46,6 +52,7 @@ struct Settings {
   double reportDisableDistance_m = 2e-4;  ///< m; the report's threshold on the summed travel of a block's particles (its
                                           ///< appendix 2.5); the report's own number, for blocks of its unit size, scaled by h
   int reportIterations = 10;              ///< most passes of the report's collision loop in a step
+  int iterations = 1;                     ///< rigid methods: passes over the contacts in a step
 };
 
 /// One row of the table of settings: what the user may write, what it means, and what is allowed.

@@ -17,3 +17,6 @@ picture tower18 60 -52:18:0.68 --scene tower:18
 picture collapse 31 -14:20:1.0 --scene "$scratch/tilted.toml" --no-sleep
 picture load 120 -52:18:0.44 --scene tower:9 --overlay load --arrows
 picture hints 120 -52:18:0.44 --scene tower:9 --overlay hints
+
+build/release/bin/springtower chart --scenes uniform --peers bench/data/peers/records.csv --out "$scratch/chart"
+cp "$scratch/chart/uniform_penetration_mm.png" docs/pictures/speed_accuracy.png

@@ -9,6 +9,7 @@
 #include "solver/contact_force.h"
 #include "solver/implicit_island.h"
 #include "solver/report_state.h"
+#include "solver/rigid_island.h"
 #include "solver/simulation.h"
 
 #include <array>
@@ -86,10 +87,11 @@ struct Engine {
   CornerArray previousVelocity;    ///< m/s, at the start of the step; for implicit steps
   std::vector<ImplicitIsland> implicitIslands;  ///< by the island's smallest block; empty for other methods
   std::vector<BlockJacobian> jacobian;          ///< of each block alone, for implicit steps
+  std::vector<RigidIsland> rigidIslands;        ///< by the island's smallest block; empty for other methods
   CornerArray history;                          ///< m, what past steps give of the position at an implicit step's end
   CornerArray stepVelocity;                     ///< m/s, mean over the implicit step
   CornerArray target;                           ///< m, where the implicit step ends without forces
-  std::vector<std::int32_t> nodeOf;             ///< the place of each block in its island, for implicit steps
+  std::vector<std::int32_t> nodeOf;             ///< the place of each block in its island, for implicit steps and rigid methods
   std::vector<PairForce> pairForce;             ///< N, by position in `pairs`; for islands that run on many threads
   std::vector<BlockClock> clock;                ///< [blocks]
   std::vector<std::int32_t> lostPartner;        ///< sleeping blocks whose awake neighbour went out of reach in this frame

@@ -2,6 +2,7 @@
 
 #include "solver/inertia.h"
 #include "solver/island_step.h"
+#include "solver/rigid_contacts.h"
 #include "solver/spring_force.h"
 
 #include <algorithm>
@@ -29,6 +30,10 @@ struct ManifoldNow {
     const double behind = simulation.engine->clock[upper].lastDrift_s;
     manifoldForces(manifold, up, low, law, {behind, 1.0, 1.0}, 0.0, &manifold, force);
     points = pointForces(manifold, up, low, law);
+    if (isRigid(simulation.scene.settings.method)) {
+      manifold = stored;
+      readForces(stored, simulation.scene.settings.method, points);
+    }
   }
 };
 

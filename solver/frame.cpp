@@ -6,6 +6,7 @@
 #include "solver/near_pairs.h"
 #include "solver/report_frame.h"
 #include "solver/rest.h"
+#include "solver/rigid_frame.h"
 #include "solver/stability.h"
 #include "solver/static_start.h"
 #include "solver/stiffness.h"
@@ -128,6 +129,10 @@ void stepIsland(Method method, IslandStep& step) {
     case Method::report:
       stepReport(step);
       return;
+    case Method::rigidPgs:  // these step through runRigidSteps
+    case Method::rigidLcp:
+    case Method::xpbd:
+      return;
   }
 }
 
@@ -135,10 +140,9 @@ IslandOutcome runIsland(IslandStep& step) {
   Simulation& simulation = step.simulation;
   const Settings& settings = simulation.scene.settings;
   IslandOutcome outcome;
-  if (simulation.frame == 0 && settings.method != Method::report) {
-    findTouching(step);
-    startInEquilibrium(step);
-  }
+  if (simulation.frame == 0 && settings.method != Method::report) findTouching(step);
+  if (isRigid(settings.method)) return runRigidSteps(step);
+  if (simulation.frame == 0 && settings.method != Method::report) startInEquilibrium(step);
   double begin_s = 0.0;
   if (settings.method == Method::implicit) {
     outcome = runImplicitSteps(step, begin_s);

@@ -6,6 +6,7 @@
 #include "solver/inertia.h"
 #include "solver/near_pairs.h"
 #include "solver/rest.h"
+#include "solver/rigid_frame.h"
 #include "solver/spring_force.h"
 #include "solver/stability.h"
 #include "solver/stiffness.h"
@@ -60,8 +61,8 @@ double foreseenSpectralRadius(const Simulation& simulation, const Stiffness& sti
 void chooseStiffness(Simulation& simulation) {
   const Settings& settings = simulation.scene.settings;
   LoadEstimate loads = estimateLoads(simulation.scene);
-  const bool implicit = settings.method == Method::implicit;  // stable with any step
-  simulation.fixedSubsteps = implicit ? 0 : settings.substeps;
+  const bool stable = settings.method == Method::implicit || isRigid(settings.method);  // with any step
+  simulation.fixedSubsteps = stable ? 0 : settings.substeps;
   simulation.tolerance_m = settings.tolerance_m;
   Stiffness stiffness = stiffnessForTolerance(loads, settings.tolerance_m);
   if (simulation.fixedSubsteps > 0) {
@@ -135,6 +136,8 @@ Simulation::Simulation(const Scene& given) : scene(given), engine(std::make_uniq
   }
   if (scene.settings.method == Method::report) {
     e.report.resize(count);
+  } else if (isRigid(scene.settings.method)) {
+    prepareRigid(*this);
   } else {
     prepareImplicit(*this);  // explicit methods start in the equilibrium that implicit steps find
   }

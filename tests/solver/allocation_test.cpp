@@ -77,6 +77,9 @@ INSTANTIATE_TEST_SUITE_P(Frames, AllocationTest,
                                            Case{.name = "Midpoint", .rows = 3, .method = Method::midpoint, .frames = 5},
                                            Case{.name = "RungeKutta4", .rows = 3, .method = Method::rungeKutta4, .frames = 5},
                                            Case{.name = "Report", .rows = 3, .method = Method::report, .frames = 5},
+                                           Case{.name = "RigidPgs", .tilt_deg = 14.5, .method = Method::rigidPgs},
+                                           Case{.name = "RigidLcp", .rows = 2, .method = Method::rigidLcp, .frames = 5},
+                                           Case{.name = "Xpbd", .tilt_deg = 14.5, .method = Method::xpbd},
                                            // More blocks than kParallelBlocks: the kernels that run in ranges.
                                            Case{.name = "LargeIsland", .rows = 90, .frames = 1}),
                          [](const auto& one) { return one.param.name; });

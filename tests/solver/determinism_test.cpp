@@ -159,7 +159,8 @@ TEST_P(SnapshotTest, ARestoredSimulationRepeatsItsFuture) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, SnapshotTest,
-                         ::testing::Values(Method::semiImplicitEuler, Method::midpoint, Method::rungeKutta4, Method::report));
+                         ::testing::Values(Method::semiImplicitEuler, Method::midpoint, Method::rungeKutta4, Method::report,
+                                           Method::rigidPgs, Method::xpbd));
 
 // Sleep is part of a state: a snapshot of a sleeping tower sleeps, whatever the simulation that takes it over was doing.
 TEST(Snapshot, KeepsSleep) {

@@ -1,0 +1,119 @@
+#pragma once
+
+#include "apps/provenance.h"
+#include "core/settings.h"
+
+#include <array>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace springtower {
+
+/// What the blocks do while a method's speed and accuracy are measured.
+enum class ChartScene {
+  uniform,    ///< a tower of equal blocks
+  heights,    ///< heights vary by 0.2 mm
+  pull,       ///< a block is pulled out of the middle row at 4 cm/s
+  drop,       ///< three rows dropped together from 2 cm
+  collapse,   ///< the tower leans by a little more than it can stand
+  spin,       ///< one block tumbles without gravity
+  heavyLight  ///< every other row ten times as heavy
+};
+
+/// Names as the command line spells them, in the order of the enumeration.
+inline constexpr std::array<std::string_view, 7> kChartSceneNames = {"uniform",  "heights", "pull",       "drop",
+                                                                     "collapse", "spin",    "heavy-light"};
+constexpr std::string_view nameOf(ChartScene scene) {
+  return kChartSceneNames[static_cast<std::size_t>(scene)];
+}
+
+/// What is asked of a method's result; a small value is a good one.
+enum class ChartMeasure { penetration, compression, creep, jitter, energy };
+inline constexpr std::size_t kChartMeasures = 5;
+
+/// How a measure is named in files, titled on an axis, and below what it makes no difference (drawn there).
+struct ChartMeasureRow {
+  std::string_view key;
+  std::string_view title;
+  double floor;
+};
+inline constexpr std::array<ChartMeasureRow, kChartMeasures> kChartMeasureRows = {
+    {{"penetration_mm", "largest penetration, mm", 1e-6},
+     {"compression_mm", "tower lower than rigid blocks would be, mm a row", 1e-6},
+     {"creep_mm", "creep, mm", 1e-6},
+     {"jitter_mm_s", "root mean square speed of corners at rest, mm/s", 1e-6},
+     {"energy_error", "energy gained, of the energy at the start", 1e-10}}};
+
+/// The knob by which a method trades speed for accuracy.
+enum class Knob { tolerance, substeps };
+
+/// One point of a chart: a method at one setting of its knob.
+struct ChartCase {
+  ChartScene scene = ChartScene::uniform;
+  Method method = Method::semiImplicitEuler;
+  Knob knob = Knob::tolerance;
+  double value = 0.0;  ///< m, or steps of a frame
+  bool operator==(const ChartCase&) const = default;
+};
+
+/// How long to look.
+struct ChartLimits {
+  int rows = 18;          ///< of the towers
+  double seconds = 10.0;  ///< s simulated; creep and jitter are those of the second half
+  double case_s = 4.0;    ///< s of processor time after which a case has timed out
+  int samples = 5;        ///< by turns with those of the other cases, each from the same state
+  int frames = 120;       ///< timed in a sample; the first after the state is restored is left out
+  double sample_s = 0.2;  ///< s of processor time after which a sample ends early
+  bool operator==(const ChartLimits&) const = default;
+};
+
+/// How a case came out.
+enum class ChartOutcome { right, wrongVerdict, diverged, timedOut };
+inline constexpr std::array<std::string_view, 4> kChartOutcomeNames = {"right", "wrong verdict", "diverged", "timed out"};
+constexpr std::string_view nameOf(ChartOutcome outcome) {
+  return kChartOutcomeNames[static_cast<std::size_t>(outcome)];
+}
+
+struct ChartResult {
+  ChartCase what;
+  ChartOutcome outcome = ChartOutcome::right;
+  std::string note;                                            ///< what is worth saying: when it fell or diverged
+  double simulated_s = 0.0;                                    ///< how far it came
+  double from_s = 0.0;                                         ///< creep and jitter are measured from here
+  std::array<double, kChartMeasures> measured{};               ///< NaN where it was not, or means nothing in the scene
+  double frame_ms = std::numeric_limits<double>::quiet_NaN();  ///< ms of processor time a frame: mean over the frames, of each
+                                                               ///< the least of the samples
+
+  [[nodiscard]] double of(ChartMeasure measure) const { return measured[static_cast<std::size_t>(measure)]; }
+};
+
+/// A figure of another engine, measured elsewhere.
+struct PeerResult {
+  std::string engine;
+  std::string settings;
+  std::string verdict;
+  std::array<double, kChartMeasures> measured{};  ///< as above
+  double frame_ms = 0.0;
+};
+
+struct Chart {
+  Provenance provenance;
+  ChartLimits limits;
+  std::vector<ChartResult> results;
+  std::vector<PeerResult> peers;
+};
+
+/// "implicit 0.05 mm", "rigid-pgs 64 steps".
+std::string nameOf(const ChartCase& what);
+
+/// Whether a scene is one of the kind that comes to rest, so that a resting tolerance can be asked of it.
+constexpr bool comesToRest(ChartScene scene) {
+  return scene == ChartScene::uniform || scene == ChartScene::heights || scene == ChartScene::drop ||
+         scene == ChartScene::heavyLight;
+}
+
+}  // namespace springtower

@@ -1,0 +1,200 @@
+#include "apps/chart_command.h"
+
+#include "apps/chart_draw.h"
+#include "apps/chart_files.h"
+#include "apps/chart_measure.h"
+#include "apps/chart_scene.h"
+#include "apps/options.h"
+#include "apps/output_file.h"
+#include "apps/progress.h"
+#include "core/error.h"
+#include "core/limits.h"
+#include "core/scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fmt/format.h>
+#include <functional>
+
+namespace springtower {
+namespace {
+
+constexpr Range kRowsRange{2, 200, ""};
+constexpr Range kSimulatedRange{0.2, 1000.0, "s"};
+constexpr Range kCaseRange{0.01, 1e5, "s"};
+constexpr Range kSamplesRange{1, 1000, ""};
+
+constexpr std::string_view kExamples =
+    R"help(scenes: uniform (equal blocks), heights (varying by 0.2 mm), pull (a block at 4 cm/s), drop (three rows from 2 cm), collapse
+(it leans more than it can stand), spin (one block in flight), heavy-light (every other row ten times as heavy)
+
+Each method turns its own knob: a tolerance, or steps of a frame. Accuracy is measured first, cases side by side; then the
+speed, each case alone and by turns. A method that falls, diverges or times out is a result and is named on the chart. A run
+that was broken off goes on where it was.
+
+examples:
+  springtower chart --quick --out quick              a look in less than a minute
+  springtower chart --out figures                    everything, in minutes
+  springtower chart --scenes uniform --methods implicit,rigid-pgs --seconds 60 --case-limit 600)help";
+
+std::vector<ChartScene> scenesOf(const ChartCommand& command) {
+  std::vector<ChartScene> scenes;
+  if (command.scenes.empty()) {
+    for (std::size_t i = 0; i < kChartSceneNames.size(); ++i) scenes.push_back(static_cast<ChartScene>(i));
+    return scenes;
+  }
+  for (const std::string& name : command.scenes) {
+    const auto* const found = std::find(kChartSceneNames.begin(), kChartSceneNames.end(), name);
+    if (found == kChartSceneNames.end()) {
+      throw InputError(fmt::format("--scenes: found {}, allowed are {}", inQuotes(name), fmt::join(kChartSceneNames, ", ")));
+    }
+    const auto scene = static_cast<ChartScene>(found - kChartSceneNames.begin());
+    if (std::find(scenes.begin(), scenes.end(), scene) == scenes.end()) scenes.push_back(scene);
+  }
+  return scenes;
+}
+
+std::vector<Method> methodsOf(const ChartCommand& command) {
+  std::vector<Method> methods;
+  for (const std::string& name : command.methods) methods.push_back(methodFromName(name, "--methods"));
+  if (!methods.empty()) return methods;
+  return {Method::implicit, Method::semiImplicitEuler, Method::midpoint, Method::rungeKutta4,
+          Method::report,   Method::rigidPgs,          Method::rigidLcp, Method::xpbd};
+}
+
+ChartLimits limitsOf(const ChartCommand& command) {
+  ChartLimits limits;
+  if (command.quick) limits = {6, 1.0, 0.25, 2, 20, 0.02};
+  if (command.rows) limits.rows = static_cast<int>(*command.rows);
+  if (command.seconds) limits.seconds = *command.seconds;
+  if (command.case_s) limits.case_s = *command.case_s;
+  if (command.samples) limits.samples = static_cast<int>(*command.samples);
+  return limits;
+}
+
+void writeFile(const std::string& folder, const std::string& name, const std::function<void(std::ostream&)>& write) {
+  OutputFile file((std::filesystem::path(folder) / name).string(), "--out");
+  write(file.stream());
+  file.commit();
+}
+
+void makeFolder(const std::string& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error || !std::filesystem::is_directory(folder)) {
+    throw InputError(fmt::format("--out: cannot make the folder {}: {}", inQuotes(folder),
+                                 error ? error.message() : std::string("there is a file of that name")));
+  }
+}
+
+// Everything measured so far, and what an earlier run has measured beside it.
+void writeResume(const std::string& folder, const Chart& chart, const std::vector<ChartResult>& before) {
+  Chart all = chart;
+  for (const ChartResult& result : before) {
+    const bool newer = std::any_of(chart.results.begin(), chart.results.end(),
+                                   [&](const ChartResult& other) { return other.what == result.what; });
+    if (!newer) all.results.push_back(result);
+  }
+  writeFile(folder, "chart.json", [&](std::ostream& stream) { writeChartJson(stream, all); });
+}
+
+// The table, the charts and the index, of what there is so far. Returns the number of charts.
+std::size_t writeAll(const std::string& folder, const Chart& chart) {
+  writeFile(folder, "chart.csv", [&](std::ostream& stream) { writeChartCsv(stream, chart); });
+  std::vector<std::string> names;
+  for (const auto& [name, plot] : chartPlots(chart)) {
+    const Plot& drawn = plot;
+    writeFile(folder, name + ".svg", [&](std::ostream& stream) { writeSvg(stream, drawn); });
+    writeFile(folder, name + ".png", [&](std::ostream& stream) { writePng(stream, drawn); });
+    names.push_back(name);
+  }
+  writeFile(folder, "index.md", [&](std::ostream& stream) { writeChartIndex(stream, chart, names); });
+  return names.size();
+}
+
+void printScene(const Chart& chart, ChartScene scene) {
+  fmt::print("{}\n  {:<30}{:>10}{:>13}{:>13}{:>13}{:>13}{:>13}  {}\n", nameOf(scene), "method", "ms/frame", "depth mm",
+             "lower mm/row", "creep mm", "jitter mm/s", "energy", "outcome");
+  for (const ChartResult& result : chart.results) {
+    if (result.what.scene != scene) continue;
+    fmt::print("  {:<30}{:>10.3g}", nameOf(result.what), result.frame_ms);
+    for (const double value : result.measured) fmt::print("{:>13.3g}", value);
+    fmt::print("  {}{}{}\n", nameOf(result.outcome), result.note.empty() ? "" : ": ", result.note);
+  }
+}
+
+}  // namespace
+
+CLI::App* defineChart(CLI::App& program, ChartCommand& command) {
+  CLI::App* chart = program.add_subcommand("chart", "draws speed against accuracy for every method");
+  chart->add_option("--scenes", command.scenes, "what the blocks do (default all; see below)")
+      ->delimiter(',')
+      ->type_name("NAME,...");
+  chart->add_option("--methods", command.methods, "as in `run` (default all)")->delimiter(',')->type_name("NAME,...");
+  addWholeNumber(*chart, "--rows", command.rows, kRowsRange, "rows of the towers (default 18)");
+  addNumber(*chart, "--seconds", command.seconds, kSimulatedRange, "S",
+            "simulated; the second half counts for rest (default 10)");
+  addNumber(*chart, "--case-limit", command.case_s, kCaseRange, "S",
+            "processor time after which a case has timed out (default 4)");
+  addWholeNumber(*chart, "--samples", command.samples, kSamplesRange, "of each case's speed, taken by turns (default 5)");
+  chart->add_option("--peers", command.peers, "figures of other engines, drawn hollow beside ours; see bench/data/peers")
+      ->type_name("FILE.csv");
+  chart->add_option("--out", command.out, "writes into this folder (default chart)")->type_name("DIR");
+  chart->add_flag("--quick", command.quick, "small towers, few cases and short samples: less than a minute");
+  chart->add_flag("--fresh", command.fresh, "measures everything again, also what an earlier run has left in the folder");
+  wrapDescriptions(*chart);
+  chart->footer(std::string(kExamples));
+  return chart;
+}
+
+int executeChart(const ChartCommand& command) {
+  const std::vector<ChartScene> scenes = scenesOf(command);
+  const std::vector<Method> methods = methodsOf(command);
+  Chart chart;
+  chart.provenance = provenanceNow();
+  chart.limits = limitsOf(command);
+  if (command.peers) chart.peers = readPeers(*command.peers, chart.limits.rows);
+  makeFolder(command.out);
+  const std::string resume = (std::filesystem::path(command.out) / "chart.json").string();
+  std::vector<ChartResult> before;
+  if (!command.fresh) before = readChartJson(resume, chart);
+
+  // A scene is taken over from an earlier run only as a whole, as its cases were timed by turns.
+  const auto known = [&](const ChartCase& what) {
+    return std::find_if(before.begin(), before.end(), [&](const ChartResult& result) { return result.what == what; });
+  };
+  std::vector<std::vector<ChartCase>> work;
+  int steps = 0;
+  for (const ChartScene scene : scenes) {
+    work.push_back(casesOf(scene, methods, command.quick));
+    steps += static_cast<int>(work.back().size()) * (1 + chart.limits.samples);
+  }
+  int done = 0;
+  std::size_t charts = 0;
+  Progress progress(steps, "steps");
+  for (const std::vector<ChartCase>& cases : work) {
+    const bool allKnown =
+        std::all_of(cases.begin(), cases.end(), [&](const ChartCase& what) { return known(what) != before.end(); });
+    if (allKnown) {
+      for (const ChartCase& what : cases) chart.results.push_back(*known(what));
+      done += static_cast<int>(cases.size()) * (1 + chart.limits.samples);
+    } else {
+      const std::vector<ChartResult> results = measureChart(cases, chart.limits, [&](const ChartCase& now) {
+        progress.update(++done, fmt::format("{}, {}", nameOf(now.scene), nameOf(now)));
+      });
+      chart.results.insert(chart.results.end(), results.begin(), results.end());
+      writeResume(command.out, chart, before);
+    }
+    progress.clear();
+    if (cases.empty()) continue;
+    printScene(chart, cases.front().scene);
+    std::fflush(stdout);
+    charts = writeAll(command.out, chart);
+  }
+  fmt::print("{} cases, {} charts (SVG and PNG), chart.csv, chart.json and index.md in {}\n", chart.results.size(), charts,
+             onOneLine(command.out));
+  return 0;
+}
+
+}  // namespace springtower

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace springtower {
+
+/// What the command line of `springtower chart` asks for.
+struct ChartCommand {
+  std::vector<std::string> scenes;
+  std::vector<std::string> methods;
+  std::optional<std::int64_t> rows;
+  std::optional<double> seconds;
+  std::optional<double> case_s;
+  std::optional<std::int64_t> samples;
+  std::optional<std::string> peers;
+  std::string out = "chart";
+  bool quick = false;
+  bool fresh = false;
+};
+
+/// Adds the command to the program.
+CLI::App* defineChart(CLI::App& program, ChartCommand& command);
+
+/// Measures every case, scene by scene, and writes chart.json, chart.csv, the charts and index.md into the folder of `--out`.
+/// What an earlier run with the same build and limits has left there is not measured again. Returns the exit code 0. Throws
+/// InputError.
+int executeChart(const ChartCommand& command);
+
+}  // namespace springtower

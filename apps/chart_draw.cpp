@@ -1,0 +1,195 @@
+#include "apps/chart_draw.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <ostream>
+
+namespace springtower {
+namespace {
+
+constexpr double kFrame_ms = 1e3 / 60.0;
+constexpr int kFrontStyle = 6;  // grey
+constexpr std::array<double, 3> kTolerances_mm = {0.1, 0.01, 0.001};
+
+// As a chart shows it: what is below the floor of its measure makes no difference.
+double shown(const ChartResult& result, ChartMeasure measure) {
+  return std::max(result.of(measure), kChartMeasureRows[static_cast<std::size_t>(measure)].floor);
+}
+
+bool drawn(const ChartResult& result, ChartMeasure measure) {
+  return std::isfinite(result.of(measure)) && std::isfinite(result.frame_ms);
+}
+
+std::string describe(ChartScene scene, int rows) {
+  switch (scene) {
+    case ChartScene::uniform:
+      return fmt::format("a tower of {} rows of equal blocks at rest", rows);
+    case ChartScene::heights:
+      return fmt::format("a tower of {} rows, heights varying by 0.2 mm, at rest", rows);
+    case ChartScene::pull:
+      return fmt::format("a block of the middle row of {} pulled out at 4 cm/s", rows);
+    case ChartScene::drop:
+      return "three rows dropped together from 2 cm";
+    case ChartScene::collapse:
+      return fmt::format("a tower of {} rows that leans more than it can stand", rows);
+    case ChartScene::spin:
+      return "one block tumbling without gravity";
+    case ChartScene::heavyLight:
+      return fmt::format("a tower of {} rows, every other row ten times as heavy, at rest", rows);
+  }
+  return "";
+}
+
+// Beside a point: only what went wrong.
+std::string labelOf(const ChartResult& result) {
+  return result.outcome == ChartOutcome::right ? "" : result.note;
+}
+
+std::string listed(const std::vector<const ChartResult*>& front) {
+  std::string text;
+  for (const ChartResult* result : front) text += fmt::format("{}{}", text.empty() ? "" : "; ", nameOf(result->what));
+  return text.empty() ? "none" : text;
+}
+
+Plot plotOf(const Chart& chart, ChartScene scene, ChartMeasure measure) {
+  const ChartMeasureRow& row = kChartMeasureRows[static_cast<std::size_t>(measure)];
+  Plot plot;
+  plot.title = "Speed against accuracy: " + std::string(row.title);
+  plot.subtitle = describe(scene, chart.limits.rows);
+  plot.x = {std::string(row.title), true};
+  plot.y = {"processor time of a frame of 1/60 s, ms", true};
+  plot.references = {{kFrame_ms, "16.7 ms: real time"}};
+  std::string missing;
+  for (const ChartResult& result : chart.results) {
+    if (result.what.scene != scene) continue;
+    if (!drawn(result, measure)) {
+      missing += fmt::format("{}{} ({})", missing.empty() ? "" : "; ", nameOf(result.what),
+                             result.note.empty() ? "not measured" : result.note);
+      continue;
+    }
+    const auto style = static_cast<int>(result.what.method);
+    if (plot.lines.empty() || plot.lines.back().style != style) {
+      plot.lines.push_back({std::string(nameOf(result.what.method)), {}, Marker::filled});
+      plot.lines.back().style = style;
+    }
+    plot.lines.back().points.push_back({shown(result, measure), result.frame_ms});
+    plot.lines.back().labels.push_back(labelOf(result));
+  }
+  if (scene == ChartScene::uniform) {
+    for (const PeerResult& peer : chart.peers) {
+      const double value = peer.measured[static_cast<std::size_t>(measure)];
+      if (!std::isfinite(value) || !(peer.frame_ms > 0.0)) continue;
+      const std::string name = peer.engine + " (elsewhere)";
+      if (plot.lines.empty() || plot.lines.back().name != name) {
+        plot.lines.push_back({name, {}, Marker::hollow});
+        plot.lines.back().style = static_cast<int>(plot.lines.size());
+      }
+      plot.lines.back().points.push_back({std::max(value, row.floor), peer.frame_ms});
+      plot.lines.back().labels.push_back(peer.verdict.starts_with("yes") ? "" : peer.verdict);
+    }
+  }
+  const std::vector<const ChartResult*> front = paretoFront(chart, scene, measure);
+  PlotLine line{"Pareto front, measured here", {}, Marker::none};
+  line.dashed = true;
+  line.style = kFrontStyle;
+  for (const ChartResult* result : front) line.points.push_back({shown(*result, measure), result->frame_ms});
+  if (!front.empty()) plot.lines.push_back(std::move(line));
+  plot.footnote = fmt::format("Pareto front: {}. Values below {:g} are drawn there. ", listed(front), row.floor);
+  if (!missing.empty()) plot.footnote += "Not drawn: " + missing + ". ";
+  if (scene == ChartScene::uniform && !chart.peers.empty()) {
+    plot.footnote += "Hollow: other engines, measured elsewhere, on another machine. ";
+  }
+  plot.footnote += fmt::format("One thread; mean over up to {} frames, of each the least of {} samples. {}", chart.limits.frames,
+                               chart.limits.samples, footnote(chart.provenance));
+  return plot;
+}
+
+}  // namespace
+
+std::vector<ChartScene> scenesIn(const Chart& chart) {
+  std::vector<ChartScene> scenes;
+  for (std::size_t i = 0; i < kChartSceneNames.size(); ++i) {
+    const auto scene = static_cast<ChartScene>(i);
+    if (std::any_of(chart.results.begin(), chart.results.end(), [&](const ChartResult& r) { return r.what.scene == scene; }))
+      scenes.push_back(scene);
+  }
+  return scenes;
+}
+
+std::vector<const ChartResult*> paretoFront(const Chart& chart, ChartScene scene, ChartMeasure measure) {
+  std::vector<const ChartResult*> candidates;
+  for (const ChartResult& result : chart.results) {
+    if (result.what.scene == scene && result.outcome == ChartOutcome::right && drawn(result, measure))
+      candidates.push_back(&result);
+  }
+  std::vector<const ChartResult*> front;
+  for (const ChartResult* result : candidates) {
+    const bool beaten = std::any_of(candidates.begin(), candidates.end(), [&](const ChartResult* other) {
+      const double here = shown(*result, measure);
+      const double there = shown(*other, measure);
+      return other->frame_ms <= result->frame_ms && there <= here && (other->frame_ms < result->frame_ms || there < here);
+    });
+    if (!beaten) front.push_back(result);
+  }
+  std::sort(front.begin(), front.end(), [](const ChartResult* a, const ChartResult* b) { return a->frame_ms > b->frame_ms; });
+  return front;
+}
+
+const ChartResult* fastestWithin(const Chart& chart, ChartScene scene, double tolerance_mm) {
+  const ChartResult* fastest = nullptr;
+  for (const ChartResult& result : chart.results) {
+    if (result.what.scene != scene || result.outcome != ChartOutcome::right || !std::isfinite(result.frame_ms)) continue;
+    const auto within = [&](ChartMeasure measure) { return result.of(measure) <= tolerance_mm; };
+    if (!within(ChartMeasure::penetration) || !within(ChartMeasure::compression) || !within(ChartMeasure::creep)) continue;
+    if (fastest == nullptr || result.frame_ms < fastest->frame_ms) fastest = &result;
+  }
+  return fastest;
+}
+
+std::vector<std::pair<std::string, Plot>> chartPlots(const Chart& chart) {
+  std::vector<std::pair<std::string, Plot>> plots;
+  for (const ChartScene scene : scenesIn(chart)) {
+    for (std::size_t i = 0; i < kChartMeasures; ++i) {
+      const auto measure = static_cast<ChartMeasure>(i);
+      const bool any = std::any_of(chart.results.begin(), chart.results.end(), [&](const ChartResult& result) {
+        return result.what.scene == scene && drawn(result, measure);
+      });
+      if (!any) continue;
+      std::string name = fmt::format("{}_{}", nameOf(scene), kChartMeasureRows[i].key);
+      std::replace(name.begin(), name.end(), '-', '_');
+      plots.emplace_back(name, plotOf(chart, scene, measure));
+    }
+  }
+  return plots;
+}
+
+void writeChartIndex(std::ostream& stream, const Chart& chart, const std::vector<std::string>& names) {
+  stream
+      << "# Speed against accuracy\n\nEvery method on the same scenes, each with its own knob. All figures are in "
+         "[chart.csv](chart.csv).\n\n"
+      << footnote(chart.provenance) << "\n\n## The fastest method within a tolerance\n\n"
+      << "No penetration, no compression of a row and no creep above it, and the right verdict; ms of processor time a frame.\n\n"
+      << "| scene |";
+  for (const double tolerance : kTolerances_mm) stream << fmt::format(" {:g} mm |", tolerance);
+  stream << "\n|---|---|---|---|\n";
+  for (const ChartScene scene : scenesIn(chart)) {
+    if (!comesToRest(scene)) continue;
+    stream << fmt::format("| {} |", nameOf(scene));
+    for (const double tolerance : kTolerances_mm) {
+      const ChartResult* best = fastestWithin(chart, scene, tolerance);
+      stream << (best == nullptr ? std::string(" none |") : fmt::format(" {}, {:.3g} ms |", nameOf(best->what), best->frame_ms));
+    }
+    stream << '\n';
+  }
+  stream << "\n## Charts\n";
+  for (const std::string& name : names) stream << fmt::format("\n![{}]({}.png) ([SVG]({}.svg))\n", name, name, name);
+  stream << "\n## Where methods fail\n\n| scene | method | outcome | what happened |\n|---|---|---|---|\n";
+  for (const ChartResult& result : chart.results) {
+    if (result.outcome == ChartOutcome::right) continue;
+    stream << fmt::format("| {} | {} | {} | {} |\n", nameOf(result.what.scene), nameOf(result.what), nameOf(result.outcome),
+                          result.note);
+  }
+}
+
+}  // namespace springtower

@@ -1,0 +1,272 @@
+#include "apps/chart_measure.h"
+
+#include "apps/chart_scene.h"
+#include "apps/profile_scene.h"
+#include "core/error.h"
+#include "solver/measures.h"
+#include "solver/penetration.h"
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <fmt/format.h>
+#include <memory>
+#include <mutex>
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/task_arena.h>
+
+namespace springtower {
+namespace {
+
+// A tower may be looked at from here on, s.
+constexpr double kEarliest_s = 1.0;
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+// Of the calling thread: a case runs on one.
+double processorTime_s() {
+  std::timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+// A frame cannot be broken off. So a tall tower's cost is foreseen from a small one's; no method's grows faster than its cube.
+// Returns the seconds that a frame of kFewRows rows takes where one of all rows would take longer than a case may, else 0.
+constexpr int kFewRows = 6;
+double tooSlowAtFewRows(const ChartCase& what, const ChartLimits& limits) {
+  if (limits.rows <= kFewRows || what.scene == ChartScene::drop || what.scene == ChartScene::spin) return 0.0;
+  ChartLimits few = limits;
+  few.rows = kFewRows;
+  Simulation simulation(sceneOf(what, few));
+  double frame_s = 0.0;
+  try {
+    stepFrame(simulation);
+    const double begin_s = processorTime_s();
+    stepFrame(simulation);
+    frame_s = processorTime_s() - begin_s;
+  } catch (const DivergenceError&) {
+    return 0.0;  // the tall tower shows when
+  }
+  const double ratio = static_cast<double>(limits.rows) / kFewRows;
+  return frame_s * ratio * ratio * ratio > limits.case_s ? frame_s : 0.0;
+}
+
+// A case on its way: its simulation, what is known of its accuracy so far, and its times.
+class ChartRun {
+ public:
+  ChartRun(const ChartCase& what, const ChartLimits& limits)
+      : limits_(limits), times_(timesOf(what.scene, limits)), simulation_(sceneOf(what, limits)) {
+    result.what = what;
+    result.measured.fill(kNone);
+    const Scene& scene = simulation_.scene;
+    start_ = simulation_.state.position;
+    for (const BlockSpec& block : scene.blocks) row_.push_back(block.row);
+    closed_ = closedRows(start_, row_, scene.floor);
+    reference_ = fittedBoxes(closed_);
+    pulled_ = pulledBlock(what.scene, scene, limits.rows);
+    if (pulled_ >= 0) {
+      leftOut_.assign(scene.blocks.size(), 0);
+      leftOut_[static_cast<std::size_t>(pulled_)] = 1;
+    }
+  }
+
+  void measureAccuracy() {
+    if (const double few_s = tooSlowAtFewRows(result.what, limits_); few_s > 0.0) {
+      result.outcome = ChartOutcome::timedOut;
+      result.note = fmt::format("timed out, foreseen: a frame of {} rows takes {:.2g} s", kFewRows, few_s);
+      return;
+    }
+    double least_j = energy(simulation_).total();
+    start_j_ = least_j;
+    double gained_j = 0.0;
+    try {
+      while (simulation_.time_s < times_.end_s - halfFrame()) {
+        if (!snapshot_ && simulation_.time_s > times_.keep_s - halfFrame()) keep();
+        const double begin_s = processorTime_s();
+        step();
+        spent_s_ += processorTime_s() - begin_s;
+        observe();
+        const double now_j = energy(simulation_).total();
+        gained_j = std::max(gained_j, result.what.scene == ChartScene::spin ? std::abs(now_j - start_j_) : now_j - least_j);
+        least_j = std::min(least_j, now_j);
+        if (spent_s_ > limits_.case_s && !lookAtOnce()) break;
+      }
+      finish(gained_j);
+    } catch (const DivergenceError& error) {
+      result.outcome = ChartOutcome::diverged;
+      result.note = fmt::format("diverged at {:.3g} s", error.time_s);
+    }
+    result.simulated_s = simulation_.time_s;
+  }
+
+  // One sample: back to the kept state, a frame that is not timed, then the timed ones.
+  void sample() {
+    if (result.outcome == ChartOutcome::diverged || !snapshot_) return;
+    restoreSnapshot(simulation_, *snapshot_);
+    hand_ = handKept_;
+    double spent_s = 0.0;
+    std::size_t frame = 0;
+    const auto timedStep = [&] {
+      const double begin_s = processorTime_s();
+      step();
+      return processorTime_s() - begin_s;
+    };
+    try {
+      spent_s = timedStep();
+      // A method so slow that one frame is more than a sample may take has been timed by it.
+      if (spent_s > limits_.sample_s && frame_ms_.size() < 2) keepLeast(frame++, spent_s);
+      while (frame < static_cast<std::size_t>(limits_.frames) && (spent_s < limits_.sample_s || frame < 1)) {
+        const double step_s = timedStep();
+        spent_s += step_s;
+        keepLeast(frame++, step_s);
+      }
+    } catch (const DivergenceError& error) {
+      result.note = fmt::format("diverged at {:.3g} s while it was timed", error.time_s);
+    }
+    frame_ms_.resize(std::min(frame_ms_.size(), std::max<std::size_t>(frame, 1)));
+    double sum = 0.0;
+    for (const double ms : frame_ms_) sum += ms;
+    if (!frame_ms_.empty()) result.frame_ms = sum / static_cast<double>(frame_ms_.size());
+    sampled_ = true;
+  }
+
+  ChartResult result;
+
+ private:
+  [[nodiscard]] double halfFrame() const { return 0.5 * simulation_.scene.settings.frame_s; }
+
+  // A slow method that comes to rest is looked at before its time, so that it has figures at all. Returns whether the run may go
+  // on: for a quarter of its limit more.
+  bool lookAtOnce() {
+    const bool settled = simulation_.time_s > times_.from_s - halfFrame();
+    if (!settled && comesToRest(result.what.scene) && simulation_.time_s > kEarliest_s) {
+      times_.from_s = simulation_.time_s;
+      more_s_ = 0.25 * limits_.case_s;
+    }
+    return spent_s_ <= limits_.case_s + more_s_;
+  }
+
+  void keep() {
+    snapshot_ = takeSnapshot(simulation_);
+    if (pulled_ < 0) return;
+    hand_.block = pulled_;
+    hand_.direction = meanEdge(simulation_.state.position, static_cast<std::size_t>(pulled_), 0).normalized();
+    handKept_ = hand_;
+  }
+
+  void step() {
+    if (hand_.block >= 0) pull(hand_, simulation_);
+    stepFrame(simulation_);
+  }
+
+  void keepLeast(std::size_t frame, double step_s) {
+    if (frame < frame_ms_.size()) {
+      frame_ms_[frame] = std::min(frame_ms_[frame], 1e3 * step_s);
+    } else if (!sampled_) {
+      frame_ms_.push_back(1e3 * step_s);
+    }
+  }
+
+  // What is looked at after every frame.
+  void observe() {
+    const CornerArray& position = simulation_.state.position;
+    const ChartScene scene = result.what.scene;
+    if (fall_.empty() && scene != ChartScene::spin) {
+      const Standing now = standing(simulation_.model, reference_, position, leftOut_);
+      if (!now.stands) fall_ = fmt::format("fell at {:.2f} s", simulation_.time_s);
+    }
+    const bool settled = simulation_.time_s > times_.from_s + halfFrame();
+    const bool wholeRun = scene == ChartScene::drop || scene == ChartScene::collapse;
+    if (wholeRun || settled) {
+      penetration_m_ = std::max(penetration_m_, maxPenetration(position, simulation_.scene.floor, workspace_).depth);
+    }
+    if (!settled) return;
+    if (settledPosition_.blockCount() == 0) {
+      settledPosition_ = position;
+      result.from_s = simulation_.time_s;
+    }
+    creep_m_ = std::max(creep_m_, largestCornerMove(settledPosition_, position));
+    const double speed = rootMeanSquareCornerSpeed(simulation_.state.velocity);
+    squares_ += speed * speed;
+    ++counted_;
+  }
+
+  void finish(double gained_j) {
+    const ChartScene scene = result.what.scene;
+    if (!snapshot_) keep();
+    const bool complete = simulation_.time_s > times_.end_s - halfFrame();
+    const std::optional<bool> expected = expectedToStand(scene);
+    if (!fall_.empty()) result.note = fall_;
+    if (expected && fall_.empty() != *expected && (complete || *expected)) {
+      result.outcome = ChartOutcome::wrongVerdict;
+      if (fall_.empty()) result.note = "stands";
+    } else if (!complete && (counted_ == 0 || scene == ChartScene::collapse || scene == ChartScene::pull)) {
+      result.outcome = ChartOutcome::timedOut;
+      result.note = fmt::format("timed out at {:.2f} s", simulation_.time_s);
+    }
+    const auto set = [&](ChartMeasure measure, double value) { result.measured[static_cast<std::size_t>(measure)] = value; };
+    if (start_j_ != 0.0) set(ChartMeasure::energy, gained_j / std::abs(start_j_));
+    if (scene == ChartScene::spin) return;
+    if (penetration_m_ >= 0.0) set(ChartMeasure::penetration, 1e3 * penetration_m_);
+    if (!comesToRest(scene) || counted_ == 0) return;
+    const int rows = 1 + *std::max_element(row_.begin(), row_.end());
+    set(ChartMeasure::compression, 1e3 * std::abs(topHeightError(closed_, simulation_.state.position)) / rows);
+    set(ChartMeasure::creep, 1e3 * creep_m_);
+    set(ChartMeasure::jitter, 1e3 * std::sqrt(squares_ / counted_));
+  }
+
+  ChartLimits limits_;
+  ChartTimes times_;
+  Simulation simulation_;
+  CornerArray start_;
+  CornerArray closed_;  // the start without gaps between rows
+  std::vector<FittedBox> reference_;
+  std::vector<int> row_;
+  std::vector<std::uint8_t> leftOut_;
+  int pulled_ = -1;
+  Hand hand_;
+  Hand handKept_;
+  std::shared_ptr<const Snapshot> snapshot_;
+  PenetrationWorkspace workspace_;
+  CornerArray settledPosition_;
+  std::string fall_;
+  double start_j_ = 0.0;
+  double penetration_m_ = -1.0;
+  double creep_m_ = 0.0;
+  double squares_ = 0.0;
+  double counted_ = 0.0;
+  double spent_s_ = 0.0;
+  double more_s_ = 0.0;  // beyond the limit
+  bool sampled_ = false;
+  std::vector<double> frame_ms_;  // of each frame the least of the samples
+};
+
+}  // namespace
+
+std::vector<ChartResult> measureChart(const std::vector<ChartCase>& cases, const ChartLimits& limits,
+                                      const ChartProgress& progress) {
+  std::vector<std::unique_ptr<ChartRun>> runs(cases.size());
+  std::mutex mutex;
+  // Each in an arena of its own, so that no thread takes up a second case in the middle of one it is timing.
+  tbb::parallel_for(std::size_t{0}, cases.size(), [&](std::size_t i) {
+    tbb::task_arena alone(1);
+    alone.execute([&] {
+      runs[i] = std::make_unique<ChartRun>(cases[i], limits);
+      runs[i]->measureAccuracy();
+    });
+    const std::scoped_lock lock(mutex);
+    progress(cases[i]);
+  });
+  tbb::task_arena alone(1);
+  for (int turn = 0; turn < limits.samples; ++turn) {
+    for (const auto& run : runs) {
+      alone.execute([&] { run->sample(); });
+      progress(run->result.what);
+    }
+  }
+  std::vector<ChartResult> results;
+  results.reserve(runs.size());
+  for (const auto& run : runs) results.push_back(std::move(run->result));
+  return results;
+}
+
+}  // namespace springtower

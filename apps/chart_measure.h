@@ -1,0 +1,18 @@
+#pragma once
+
+#include "apps/chart.h"
+
+#include <functional>
+#include <vector>
+
+namespace springtower {
+
+/// Called after each of the steps of the work, 1 + samples for each case, with the case; by one thread at a time.
+using ChartProgress = std::function<void(const ChartCase& done)>;
+
+/// Measures the cases of one scene: first how accurate they are, side by side on all processors, each case on one thread; then
+/// their speed, alone and by turns.
+std::vector<ChartResult> measureChart(const std::vector<ChartCase>& cases, const ChartLimits& limits,
+                                      const ChartProgress& progress);
+
+}  // namespace springtower

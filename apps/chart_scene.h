@@ -1,0 +1,30 @@
+#pragma once
+
+#include "apps/chart.h"
+#include "core/scene.h"
+
+#include <vector>
+
+namespace springtower {
+
+/// The scene of a case, awake throughout. Throws InputError for rows that are not allowed.
+Scene sceneOf(const ChartCase& what, const ChartLimits& limits);
+
+/// All cases of a scene for these methods, each method with its own knob; fewer of them if `quick`.
+std::vector<ChartCase> casesOf(ChartScene scene, const std::vector<Method>& methods, bool quick);
+
+/// When, in s of simulated time: the state is kept that samples start from, resting figures begin, and all ends.
+struct ChartTimes {
+  double keep_s;
+  double from_s;
+  double end_s;
+};
+ChartTimes timesOf(ChartScene scene, const ChartLimits& limits);
+
+/// Whether the blocks have to stand at the end; empty for the block that flies.
+std::optional<bool> expectedToStand(ChartScene scene);
+
+/// The block that is pulled in scene `pull`: the middle one of the middle row. -1 in other scenes.
+int pulledBlock(ChartScene scene, const Scene& blocks, int rows);
+
+}  // namespace springtower

@@ -1,0 +1,135 @@
+// springtower chart, run as a user would.
+#include "tests/apps/program.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+namespace springtower {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+using Json = nlohmann::json;
+
+ProgramResult chart(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), "chart");
+  return runProgram("springtower", arguments);
+}
+
+void expectRefusal(const std::vector<std::string>& arguments, const std::string& message) {
+  const ProgramResult result = chart(arguments);
+  EXPECT_EQ(result.exitCode, 2);
+  EXPECT_THAT(result.error, StartsWith("springtower: "));
+  EXPECT_THAT(result.error, HasSubstr(message));
+}
+
+TEST(Chart, RefusesWhatItDoesNotKnow) {
+  expectRefusal({"--scenes", "uniform,flood"}, "'flood'");
+  expectRefusal({"--methods", "magic"}, "'magic'");
+  expectRefusal({"--rows", "1"}, "2 to 200");
+  expectRefusal({"--out", "/dev/null"}, "--out");
+}
+
+TEST(Chart, RefusesPeersWithoutTheirColumns) {
+  const ScratchFolder scratch;
+  std::ofstream(scratch.file("peers.csv")) << "engine,rows\nBox,18\n";
+  expectRefusal({"--peers", scratch.file("peers.csv"), "--out", scratch.file("out")}, "no column 'version'");
+}
+
+// A small chart that all tests below read.
+class ChartFiles : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = std::make_unique<ScratchFolder>();
+    result_ = chart(arguments());
+  }
+  static void TearDownTestSuite() { folder_.reset(); }
+  void SetUp() override { ASSERT_EQ(result_.exitCode, 0) << result_.error; }
+
+  static std::vector<std::string> arguments() {
+    return {"--quick",
+            "--rows",
+            "3",
+            "--scenes",
+            "uniform,spin",
+            "--methods",
+            "implicit,rigid-pgs",
+            "--peers",
+            std::string(SPRINGTOWER_SOURCE_DIR) + "/bench/data/peers/records.csv",
+            "--out",
+            path("out")};
+  }
+  static std::string path(const std::string& name) { return folder_->file(name); }
+  static Json json() { return Json::parse(contentOf(path("out/chart.json"))); }
+
+  inline static std::unique_ptr<ScratchFolder> folder_;
+  inline static ProgramResult result_;
+};
+
+TEST_F(ChartFiles, HoldEveryCaseWithItsFigures) {
+  const Json file = json();
+  ASSERT_EQ(file.at("cases").size(), 8U);  // two scenes, two methods, two settings each
+  for (const Json& one : file.at("cases")) {
+    SCOPED_TRACE(one.dump());
+    EXPECT_GT(one.at("cpu_ms_per_frame").get<double>(), 0.0);
+    const bool tower = one.at("scene") == "uniform";
+    for (const char* key : {"penetration_mm", "compression_mm", "creep_mm", "jitter_mm_s"})
+      EXPECT_EQ(one.at(key).is_number(), tower) << key;
+    if (!tower) continue;
+    EXPECT_EQ(one.at("outcome"), "right") << one.at("note");
+    EXPECT_LT(one.at("penetration_mm").get<double>(), 1.0);
+    EXPECT_LT(one.at("creep_mm").get<double>(), 1.0);
+  }
+}
+
+TEST_F(ChartFiles, TableSaysWhereItComesFrom) {
+  const std::vector<std::string> lines = linesOf(contentOf(path("out/chart.csv")));
+  ASSERT_EQ(lines.size(), 9U) << "no peers at 3 rows";
+  for (const char* column : {"measured,", "cpu_ms_per_frame", "commit,compiler,flags,cpu,date"})
+    EXPECT_THAT(lines[0], HasSubstr(column));
+  const std::string commit = json().at("commit");
+  for (std::size_t i = 1; i < lines.size(); ++i) {
+    EXPECT_THAT(lines[i], StartsWith("here,"));
+    EXPECT_THAT(lines[i], HasSubstr("," + commit + ","));
+  }
+}
+
+TEST_F(ChartFiles, IndexNamesEveryChart) {
+  const std::string index = contentOf(path("out/index.md"));
+  EXPECT_THAT(index, HasSubstr("| uniform |"));
+  std::size_t charts = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(path("out"))) {
+    if (entry.path().extension() != ".svg") continue;
+    ++charts;
+    EXPECT_THAT(index, HasSubstr(entry.path().filename().string()));
+    const std::filesystem::path picture = std::filesystem::path(entry.path()).replace_extension(".png");
+    EXPECT_THAT(contentOf(picture), HasSubstr("PNG"));
+    EXPECT_GT(contentOf(entry.path()).size(), 10000U);
+  }
+  EXPECT_EQ(charts, 6U);  // five measures of the tower, the energy of the block that flies
+}
+
+// What has been measured is not measured again; with another limit it is.
+TEST_F(ChartFiles, AnotherRunGoesOnFromThem) {
+  const std::string before = contentOf(path("out/chart.csv"));
+  ASSERT_EQ(chart(arguments()).exitCode, 0);
+  const std::string after = contentOf(path("out/chart.csv"));
+  const auto withoutDates = [](const std::string& text) {
+    std::string cut;
+    for (const std::string& line : linesOf(text)) cut += line.substr(0, line.rfind(',')) + "\n";
+    return cut;
+  };
+  EXPECT_EQ(withoutDates(after), withoutDates(before));
+  std::vector<std::string> fresh = arguments();
+  fresh.emplace_back("--fresh");
+  ASSERT_EQ(chart(fresh).exitCode, 0);
+  EXPECT_NE(withoutDates(contentOf(path("out/chart.csv"))), withoutDates(before)) << "no two timings are the same";
+}
+
+}  // namespace
+}  // namespace springtower

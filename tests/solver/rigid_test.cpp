@@ -1,0 +1,188 @@
+#include "core/scene.h"
+#include "solver/measures.h"
+#include "solver/penetration.h"
+#include "solver/run.h"
+#include "solver/simulation.h"
+#include "tests/support/block_scenes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <gtest/gtest.h>
+#include <numbers>
+#include <oneapi/tbb/global_control.h>
+#include <oneapi/tbb/task_arena.h>
+#include <string>
+
+namespace springtower {
+namespace {
+
+constexpr double kFriction = 0.4;
+
+// Every rigid method keeps these.
+struct RigidMethod : ::testing::TestWithParam<Method> {
+  static Scene flying() {
+    Scene scene = oneBlockScene(false);
+    scene.settings.method = GetParam();
+    return scene;
+  }
+  static Scene standing() {
+    Scene scene = oneBlockScene(true);
+    scene.settings.method = GetParam();
+    return scene;
+  }
+  static Scene tower(int rows) {
+    Scene scene = towerScene(rows);
+    scene.settings.method = GetParam();
+    scene.settings.sleep = Sleep::off;
+    if (GetParam() == Method::rigidLcp) scene.settings.substeps = 1;  // it is exact in each, and slow
+    return scene;
+  }
+};
+
+std::string nameOfTest(const ::testing::TestParamInfo<Method>& test) {
+  std::string name(nameOf(test.param));
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, RigidMethod, ::testing::Values(Method::rigidPgs, Method::rigidLcp, Method::xpbd), nameOfTest);
+
+// Speeds first, then places: after n steps a block has fallen g dt^2 n (n + 1) / 2, with rounding.
+TEST_P(RigidMethod, FallsFreely) {
+  Scene scene = flying();
+  scene.settings.substeps = 10;
+  Simulation simulation(scene);
+  const double start = centre(simulation.state.position, 0).z();
+  stepFor(simulation, 0.5);
+  const double dt = scene.settings.frame_s / 10.0;
+  const double steps = 300.0;
+  const double drop = start - centre(simulation.state.position, 0).z();
+  EXPECT_NEAR(drop, 0.5 * kStandardGravity_m_s2 * dt * dt * steps * (steps + 1.0), 1e-12);
+  EXPECT_NEAR(centre(simulation.state.velocity, 0).z(), -kStandardGravity_m_s2 * 0.5, 1e-12);
+}
+
+// Spun about the axis of middle moment it tumbles. Momentum is kept to rounding; the energy to second order in the step.
+TEST_P(RigidMethod, TumblesWithItsAngularMomentum) {
+  Scene scene = flying();
+  scene.gravity.magnitude = 0.0;
+  scene.blocks[0].spin = Vec3(0.05, 10.0, 0.02);
+  scene.settings.substeps = 20;
+  Simulation simulation(scene);
+  const Vec3 before = momentum(simulation).angular;
+  const double energyBefore = energy(simulation).kinetic;
+  stepFor(simulation, 2.0);
+  EXPECT_LT((momentum(simulation).angular - before).norm(), 1e-9 * before.norm());
+  EXPECT_NEAR(energy(simulation).kinetic, energyBefore, 1e-4 * energyBefore);
+  EXPECT_GT(std::abs(meanEdge(simulation.state.position, 0, 1).normalized().dot(Vec3::UnitY()) - 1.0), 1e-3)
+      << "it did not tumble";
+}
+
+TEST_P(RigidMethod, DoesNotDeform) {
+  Scene scene = tower(2);
+  scene.gravity.tilt_deg = 30.0;
+  Simulation simulation(scene);
+  stepFor(simulation, 0.5);
+  EXPECT_LT(maxStrain(simulation.model, simulation.state.position), 1e-12);
+}
+
+TEST_P(RigidMethod, SticksBelowTheFrictionAngle) {
+  Scene scene = standing();
+  scene.gravity.tilt_deg = degrees(std::atan(kFriction)) - 1.0;
+  scene.gravity.direction_deg = 30.0;
+  Simulation simulation(scene);
+  stepFor(simulation, 0.2);
+  const CornerArray then = simulation.state.position;
+  stepFor(simulation, 1.0);
+  EXPECT_LT(largestCornerMove(then, simulation.state.position), 1e-5);
+}
+
+// Above it the block slides with g (sin a - mu cos a).
+TEST_P(RigidMethod, SlidesAboveTheFrictionAngle) {
+  Scene scene = standing();
+  const double angle = std::atan(kFriction) + 0.1;
+  scene.gravity.tilt_deg = degrees(angle);
+  Simulation simulation(scene);
+  stepFor(simulation, 0.2);
+  const double then = centre(simulation.state.velocity, 0).x();
+  stepFor(simulation, 0.5);
+  const double expected = kStandardGravity_m_s2 * (std::sin(angle) - kFriction * std::cos(angle));
+  EXPECT_NEAR((centre(simulation.state.velocity, 0).x() - then) / 0.5, expected, 0.02 * expected);
+}
+
+// A block that meets the floor stops at its surface: the step is taken again with the contacts it has found.
+TEST_P(RigidMethod, StopsAtTheFloor) {
+  Scene scene = standing();
+  scene.blocks[0].centre.z() += 0.02;
+  Simulation simulation(scene);
+  RunOptions options;
+  options.seconds = 1.0;
+  const RunResult result = runScene(simulation, options);
+  EXPECT_LT(result.deepest.depth, 1e-5);
+  EXPECT_LT(*result.maxEnergyRise, 1e-3);
+  EXPECT_EQ(result.counters.contactsBornPenetrating, 0U);
+  EXPECT_NEAR(centre(simulation.state.position, 0).z(), 0.5 * kBlockHeight_m, 1e-5);
+}
+
+TEST_P(RigidMethod, ASmallTowerStands) {
+  Simulation simulation(tower(3));
+  RunOptions options;
+  options.seconds = 2.0;
+  const RunResult result = runScene(simulation, options);
+  EXPECT_TRUE(result.standing.stands) << describe(result.standing);
+  EXPECT_LT(result.deepest.depth, 5e-5);
+  EXPECT_LT(result.jitter_m_s, 1e-3);
+}
+
+// The contact forces that a rigid method leaves carry the weight of what stands on them.
+TEST_P(RigidMethod, FloorCarriesTheWeight) {
+  Simulation simulation(tower(2));
+  stepFor(simulation, 1.0);
+  double carried = 0.0;
+  for (const ContactForce& contact : contactForces(simulation)) {
+    if (contact.lower == kFloor) carried += contact.normalForce * contact.normal.z() + contact.frictionForce.z();
+  }
+  const double weight = 6.0 * kBlockMass_kg * kStandardGravity_m_s2;
+  EXPECT_NEAR(carried, weight, 0.01 * weight);
+}
+
+// Put to sleep, the tower wakes and falls when the blocks below are pushed out.
+TEST_P(RigidMethod, ASleepingTowerWakesWhenItLosesItsSupport) {
+  Scene scene = bitCodeScene("(010)-(010)");
+  scene.settings.method = GetParam();
+  scene.forces.push_back({0, -1, Vec3(0.0, 3.0, 0.0), 3.0, 3.2});
+  Simulation simulation(scene);
+  stepFor(simulation, 2.9);
+  ASSERT_EQ(std::count(simulation.asleep.begin(), simulation.asleep.end(), std::uint8_t{1}), 2);
+  stepFor(simulation, 2.0);
+  EXPECT_LT(centre(simulation.state.position, 1).z(), 1.2 * kBlockHeight_m);
+}
+
+std::uint64_t hashAfter(const Scene& scene, int threads) {
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+  tbb::task_arena arena(threads);
+  return arena.execute([&] {
+    Simulation simulation(scene);
+    stepFor(simulation, 0.25);
+    return stateHash(simulation);
+  });
+}
+
+// Four leaning stacks, islands of their own, sliding apart.
+TEST_P(RigidMethod, IsTheSameOnAnyThreads) {
+  Scene scene = tower(2);
+  const std::vector<BlockSpec> one = scene.blocks;
+  for (int i = 1; i < 4; ++i) {
+    for (BlockSpec block : one) {
+      block.centre.x() += 0.3 * i;
+      scene.blocks.push_back(block);
+    }
+  }
+  scene.gravity.tilt_deg = 24.0;
+  const std::uint64_t hash = hashAfter(scene, 1);
+  EXPECT_EQ(hashAfter(scene, 1), hash);
+  EXPECT_EQ(hashAfter(scene, 2), hash);
+  EXPECT_EQ(hashAfter(scene, 4), hash);
+}
+
+}  // namespace
+}  // namespace springtower
