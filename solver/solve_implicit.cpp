@@ -238,6 +238,29 @@ void reject(IslandStep& step) {
   ++step.counters.handedOver;
 }
 
+// After explicit steps the velocities are half a step behind the positions, and the contact memory a whole one: brings both up.
+void synchronise(IslandStep& step) {
+  Engine& engine = step.engine;
+  double behind_s = 0.0;
+  for (const std::int32_t block : step.blocks)
+    behind_s = std::max(behind_s, engine.clock[static_cast<std::size_t>(block)].lastDrift_s);
+  if (behind_s == 0.0) return;
+  CornerArray& velocity = step.simulation.state.velocity;
+  evaluateForces(step, step.simulation.state, velocity, behind_s, Memory::advance);
+  for (const std::int32_t block : step.blocks) {
+    const auto b = static_cast<std::size_t>(block);
+    const double half_s = 0.5 * engine.clock[b].lastDrift_s;
+    double acceleration[3][kCorners];
+    accelerate(step, b, acceleration);
+    for (std::size_t a = 0; a < 3; ++a) {
+      double* v = velocity.values(a, b);
+      for (std::size_t c = 0; c < kCorners; ++c) v[c] += half_s * acceleration[a][c];
+    }
+    engine.clock[b].lastDrift_s = 0.0;
+  }
+  islandOf(step).forcesKnown = false;
+}
+
 // Newton's iteration for the state at the step's end, from engine.target and engine.history.
 bool solveStep(IslandStep& step, double effective_s) {
   ImplicitIsland& island = islandOf(step);
@@ -274,6 +297,7 @@ bool solveStep(IslandStep& step, double effective_s) {
 
 bool stepImplicit(IslandStep& step) {
   const double effective_s = kBdf2 * step.drift_s;
+  synchronise(step);
   if (!islandOf(step).forcesKnown)
     evaluateForces(step, step.simulation.state, step.simulation.state.velocity, 0.0, Memory::trial);
   foretell(step, effective_s);
