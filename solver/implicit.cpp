@@ -147,8 +147,8 @@ IslandOutcome runImplicitSteps(IslandStep& step, double& reached_s) {
   step.scaleMost = 1.0;
   engine.implicitIslands[static_cast<std::size_t>(step.blocks.front())].forcesKnown = false;
   for (int i = 0; i < steps; ++i) {
-    step.time_s = simulation.time_s + (i + 1) * step.drift_s;  // forces are those of the step's end
-    step.gravity = simulation.scene.gravity.at(step.time_s);
+    step.time_s = simulation.time_s + i * step.drift_s;
+    step.gravity = simulation.scene.gravity.at(step.time_s + step.drift_s);  // forces are those of the step's end
     if (!stepImplicit(step)) {
       for (const std::int32_t block : step.blocks) engine.clock[static_cast<std::size_t>(block)].explicitFrames = kExplicitFrames;
       return outcome;

@@ -60,6 +60,23 @@ TEST_P(KickTest, TheTopSwingsAsWithExplicitSteps) {
 INSTANTIATE_TEST_SUITE_P(Speeds, KickTest, ::testing::Values(0.02, 0.1),
                          [](const auto& tested) { return std::to_string(std::lround(1000.0 * tested.param)) + "mm_s"; });
 
+// A block on the floor pulled for six frames with twice what friction holds, and let go: with a = mu g it goes a t^2 / 2 while it
+// is pulled and as far again until friction has stopped it, whichever steps a frame has.
+TEST(Implicit, AForceActsForJustItsTime) {
+  Scene scene = oneBlockScene(true);
+  scene.settings.method = Method::implicit;
+  const double slowing = scene.kineticFriction * kStandardGravity_m_s2;
+  const double pulled_s = 6.0 * scene.settings.frame_s;
+  scene.forces.push_back({0, -1, Vec3(2.0 * scene.blocks[0].mass * slowing, 0.0, 0.0), 1.0, 1.0 + pulled_s});
+  Simulation simulation(scene);
+  stepFor(simulation, 1.0);
+  const double start = centre(simulation.state.position, 0).x();
+  stepFor(simulation, 0.5);
+  const double path = slowing * pulled_s * pulled_s;
+  EXPECT_NEAR(centre(simulation.state.position, 0).x() - start, path, 0.01 * path);
+  EXPECT_LT(centre(simulation.state.velocity, 0).norm(), 1e-6);
+}
+
 // A block that spins in the air for 2 s; what holds it together must not brake it.
 TEST(Implicit, ASpinningBlockKeepsItsSpin) {
   Scene scene = oneBlockScene(false);
