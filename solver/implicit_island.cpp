@@ -153,9 +153,10 @@ void layOut(IslandStep& step, ImplicitIsland& island) {
       mix(pattern, std::uint64_t{asleep[static_cast<std::size_t>(m.upper)]} << 1U | asleep[static_cast<std::size_t>(m.lower)]);
     }
   }
-  if (pattern == island.pattern) return;
+  // A block may have been in another island since this layout was made, so its place in it is written every time.
   const std::size_t count = step.blocks.size();
   for (std::size_t i = 0; i < count; ++i) engine.nodeOf[static_cast<std::size_t>(step.blocks[i])] = static_cast<std::int32_t>(i);
+  if (pattern == island.pattern) return;
 
   // From the bottom up: in a tower the matrix is then a band three blocks wide.
   std::vector<std::int32_t>& order = island.order;
