@@ -1,5 +1,6 @@
 #include "apps/run_command.h"
 
+#include "apps/forces_report.h"
 #include "apps/output_file.h"
 #include "apps/picture.h"
 #include "apps/poses.h"
@@ -78,6 +79,7 @@ CLI::App* defineRun(CLI::App& program, RunCommand& command) {
             "towards which side, from +x over +y (default 0)");
   run->add_option("--gravity-sway", command.sway, "and swings by DEG about that, HZ times a second")->type_name("DEG:HZ");
   run->add_option("--report", command.report, "writes all figures as JSON")->type_name("FILE.json");
+  run->add_flag("--forces", command.forces, "adds every contact point's force at the end to the report")->needs("--report");
   run->add_option("--poses", command.poses, "writes the corners of all blocks as CSV: time_s,block,x0,y0,z0,...,x7,y7,z7, metres")
       ->type_name("FILE.csv");
   addNumber(*run, "--poses-every", command.posesEvery_s, kPosesEveryRange, "S", "time between poses (default: every frame)")
@@ -132,7 +134,9 @@ int executeRun(const RunCommand& command) {
   progress.clear();
   if (poses) poses->commit();
   if (report) {
-    report->stream() << reportJson(simulation, result, threads).dump(2) << '\n';
+    nlohmann::ordered_json json = reportJson(simulation, result, threads);
+    if (command.forces) json["forces"] = forcesJson(simulation);
+    report->stream() << json.dump(2) << '\n';
     report->commit();
   }
   if (picture) {

@@ -23,6 +23,7 @@ struct RunCommand {
   std::optional<double> direction_deg;
   std::optional<std::string> sway;  ///< DEG:HZ
   std::optional<std::string> report;
+  bool forces = false;  ///< in the report
   std::optional<std::string> poses;
   std::optional<double> posesEvery_s;
   std::optional<std::string> picture;

@@ -4,6 +4,7 @@
 #include "apps/profile_command.h"
 #include "apps/run_command.h"
 #include "apps/statics_command.h"
+#include "apps/validate_command.h"
 #include "apps/verdict.h"
 #include "core/error.h"
 #include "core/version.h"
@@ -28,6 +29,7 @@ constexpr std::string_view kFooter = R"help(examples:
   springtower profile --quick                       how long a frame takes
   springtower statics tower:18                      whether it can stand at all, and by what margin
   springtower chart --quick                         speed against accuracy, every method
+  springtower validate --out validation             every claim about it, measured
   springtower run --help                            all options of a command
 exit codes: 0 done, 1 an answer differs (--check), 2 bad input, 3 the simulation diverged)help";
 
@@ -41,7 +43,8 @@ int complainAboutArguments(const CLI::App& program, const CLI::ParseError& error
   std::string hint = "springtower --help";
   for (const CLI::App* command : program.get_subcommands()) hint = fmt::format("springtower {} --help", command->get_name());
   const bool noCommand = program.get_subcommands().empty() && error.get_name() == "RequiredError";
-  complain(noCommand ? "found no command, allowed are run, verdict, profile, statics and chart" : error.what(), kBadInput);
+  complain(noCommand ? "found no command, allowed are run, verdict, profile, statics, chart and validate" : error.what(),
+           kBadInput);
   fmt::print(stderr, "Try '{}'.\n", hint);
   return kBadInput;
 }
@@ -59,12 +62,14 @@ int run(int argc, char** argv) {
   VerdictCommand verdictCommand;
   ProfileCommand profileCommand;
   StaticsCommand staticsCommand;
+  ValidateCommand validateCommand;
   const CLI::App* runApp = defineRun(program, runCommand);
   defineVerdict(program, verdictCommand);
   const CLI::App* profileApp = defineProfile(program, profileCommand);
   const CLI::App* staticsApp = defineStatics(program, staticsCommand);
   ChartCommand chartCommand;
   const CLI::App* chartApp = defineChart(program, chartCommand);
+  const CLI::App* validateApp = defineValidate(program, validateCommand);
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -74,6 +79,7 @@ int run(int argc, char** argv) {
   if (profileApp->parsed()) return executeProfile(profileCommand);
   if (staticsApp->parsed()) return executeStatics(staticsCommand);
   if (chartApp->parsed()) return executeChart(chartCommand);
+  if (validateApp->parsed()) return executeValidate(validateCommand);
   return runApp->parsed() ? executeRun(runCommand) : executeVerdict(verdictCommand);
 }
 

@@ -100,7 +100,7 @@ TEST(Program, WithoutACommandNamesTheCommands) {
   for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{{}, {"jump"}, {"--colour"}}) {
     const ProgramResult result = runProgram("springtower", arguments);
     EXPECT_EQ(result.exitCode, 2);
-    EXPECT_THAT(result.error, HasSubstr("run, verdict, profile, statics and chart"));
+    EXPECT_THAT(result.error, HasSubstr("run, verdict, profile, statics, chart and validate"));
     EXPECT_THAT(linesOf(result.error), SizeIs(2));
   }
 }

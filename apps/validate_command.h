@@ -1,0 +1,28 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace springtower {
+
+/// What `springtower validate` was asked for.
+struct ValidateCommand {
+  std::string out;
+  std::vector<std::string> only;
+  std::string oracle = "tests/data/oracle";
+  std::optional<std::int64_t> threads;
+  bool longForm = false;
+  bool check = false;
+};
+
+/// Adds the command to the program.
+CLI::App* defineValidate(CLI::App& program, ValidateCommand& command);
+
+/// Measures, prints a line a claim, writes the page and its figures. Returns the exit code: 1 where --check found a claim that
+/// fails. Throws InputError before anything is measured.
+int executeValidate(const ValidateCommand& command);
+
+}  // namespace springtower

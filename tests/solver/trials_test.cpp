@@ -1,0 +1,87 @@
+#include "solver/trials.h"
+
+#include "solver/statics.h"
+
+#include <cmath>
+#include <gtest/gtest.h>
+#include <string>
+
+namespace springtower {
+namespace {
+
+constexpr double kWeight_n = kBlockMass_kg * kStandardGravity_m_s2;
+
+Simulation settled(Scene scene, double seconds) {
+  scene.settings.sleep = Sleep::off;
+  Simulation simulation(scene);
+  while (simulation.time_s < seconds) stepFrame(simulation);
+  return simulation;
+}
+
+// Alone on the floor a block slips at mu m g, whatever the direction. (Friction is held below 0.6: beyond that contacts of the
+// default tolerance give way by more than the 0.05 mm of a slip before they slide.)
+TEST(Pull, ABlockAloneSlipsAtFrictionTimesItsWeight) {
+  for (const double friction : {0.2, 0.4, 0.5}) {
+    for (const double angle : {0.0, 1.0}) {
+      Scene scene = bitCodeScene("(010)");
+      scene.staticFriction = friction;
+      scene.kineticFriction = friction;
+      Simulation simulation = settled(scene, 0.5);
+      const SlipTrial trial = pullUntilSlip(simulation, 0, {std::cos(angle), std::sin(angle), 0.0});
+      ASSERT_TRUE(trial.slipped) << friction;
+      EXPECT_NEAR(trial.force_n / (friction * kWeight_n), 1.0, 0.01) << friction << " towards " << angle;
+    }
+  }
+}
+
+struct PulledBlock {
+  std::string name;
+  std::string scene;
+  int row;
+  int position;
+};
+
+class PullTest : public ::testing::TestWithParam<PulledBlock> {};
+
+// At first slip all contacts slide: the force is mu times the sum of the normal forces just before, and no more than statics
+// allows.
+TEST_P(PullTest, SlipsAtFrictionTimesItsNormalForces) {
+  const Scene scene = sceneFromName(GetParam().scene);
+  std::size_t block = 0;
+  while (scene.blocks[block].row != GetParam().row || scene.blocks[block].position != GetParam().position) ++block;
+  const Vec3 direction = scene.blocks[block].orientation * Vec3::UnitX();
+  Simulation simulation = settled(scene, 2.0);
+  const SlipTrial trial = pullUntilSlip(simulation, block, direction);
+  ASSERT_TRUE(trial.slipped);
+  EXPECT_NEAR(trial.force_n / (scene.staticFriction * trial.normal_n), 1.0, 0.01);
+  const std::optional<double> limit = pullLimit(staticScene(scene), blockId(block), direction);
+  ASSERT_TRUE(limit.has_value());
+  EXPECT_LT(trial.force_n, 1.01 * *limit);
+}
+
+INSTANTIATE_TEST_SUITE_P(Pull, PullTest,
+                         ::testing::Values(PulledBlock{"Middle", "tower:6", 2, 2}, PulledBlock{"Outer", "tower:6", 3, 1},
+                                           PulledBlock{"Loose", "(111)-(111)-(1L1)-(111)-(111)", 2, 2}),
+                         [](const auto& block) { return block.param.name; });
+
+// A column of six blocks tips over the edge of the lowest: half its width over half the column's height.
+TEST(Tilt, AColumnGoesAtItsEdge) {
+  const Scene scene = bitCodeScene("(010)-(010)-(010)-(010)-(010)-(010)");
+  const double edge_deg = std::atan(0.5 * kBlockWidth_m / (3.0 * kBlockHeight_m)) * 57.29577951;
+  const std::optional<TiltMargin> margin = tiltMargin(staticScene(scene));
+  ASSERT_TRUE(margin.has_value());
+  EXPECT_NEAR(margin->tilt_deg, edge_deg, 0.01);
+  const TiltTrial trial =
+      tiltUntilFall(scene, {margin->direction_deg, margin->tilt_deg - 0.5, 2.0, 0.5, 0.1, margin->tilt_deg + 2.0});
+  ASSERT_TRUE(trial.fell);
+  EXPECT_NEAR(trial.tilt_deg, edge_deg, 0.3);
+}
+
+TEST(Tilt, WhatStandsIsNotSaidToFall) {
+  const TiltTrial trial = tiltUntilFall(bitCodeScene("(010)-(010)"), {0.0, 0.0, 2.0, 0.0, 5.0, 5.0});
+  EXPECT_FALSE(trial.fell);
+  EXPECT_NEAR(trial.tilt_deg, 5.0, 0.1);
+}
+
+}  // namespace
+}  // namespace springtower
