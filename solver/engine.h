@@ -95,6 +95,7 @@ struct Engine {
   std::vector<PairForce> pairForce;             ///< N, by position in `pairs`; for islands that run on many threads
   std::vector<BlockClock> clock;                ///< [blocks]
   std::vector<std::int32_t> lostPartner;        ///< sleeping blocks whose awake neighbour went out of reach in this frame
+  std::vector<std::int32_t> beginning;          ///< working space: pairs of each block that may begin to push in this frame
   std::vector<std::int32_t> toWake;             ///< working space
   std::vector<std::int32_t> restless;           ///< working space
   std::vector<std::int32_t> parent;             ///< working space of connectedBlocks

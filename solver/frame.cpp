@@ -32,6 +32,7 @@ struct Approach {
   double reducedMass = 0.0;    // kg, largest
   double cornerInverse = 0.0;  // 1/kg, largest: the inverse mass of two corners against each other
   bool meeting = false;        // whether blocks that are apart may meet at all
+  int together = 0;            // most pairs of any one block that may begin to push: hit at once they add up
 };
 
 double fastestCorner(const CornerArray& velocity, std::size_t block, const Vec3& against) {
@@ -40,8 +41,14 @@ double fastestCorner(const CornerArray& velocity, std::size_t block, const Vec3&
   return std::sqrt(squared);
 }
 
+bool pushes(const Manifold& manifold) {
+  return std::any_of(manifold.live.begin(), manifold.live.begin() + manifold.count, [](double live) { return live != 0.0; });
+}
+
 Approach approachOf(const IslandStep& step) {
   const Simulation& simulation = step.simulation;
+  std::vector<std::int32_t>& beginning = step.engine.beginning;
+  for (const std::int32_t block : step.blocks) beginning[static_cast<std::size_t>(block)] = 0;
   const CornerArray& velocity = simulation.state.velocity;
   const double corner = affineCornerInverseMass(simulation.scene.settings.inertia);
   const double frame_s = simulation.scene.settings.frame_s;
@@ -73,6 +80,10 @@ Approach approachOf(const IslandStep& step) {
     const bool apart = pair.manifold.touch == Touch::apart;
     const bool mayMeet = apart && pair.margin - (travel - pair.checkedTravel) < speed * frame_s;
     if (apart && !mayMeet) continue;
+    if (apart || !pushes(pair.manifold)) {
+      approach.together = std::max(approach.together, ++beginning[a]);
+      if (pair.b >= 0) approach.together = std::max(approach.together, ++beginning[static_cast<std::size_t>(pair.b)]);
+    }
     approach.meeting = approach.meeting || mayMeet;
     approach.speed = std::max(approach.speed, speed);
     approach.reducedMass = std::max(approach.reducedMass, reduced);
@@ -97,7 +108,8 @@ int chooseSubsteps(IslandStep& step) {
   const double depth = settings.impactPenetration * simulation.tolerance_m;
   const double wanted =
       approach.reducedMass * approach.speed * approach.speed / (depth * depth * simulation.contactStiffness_n_m);
-  const double born = 2.0 * stiffness * approach.cornerInverse;  // what one new contact at rest stiffness adds
+  // What the new contacts add at rest stiffness: one of a pair, in each of the pairs of a block that may be hit at once.
+  const double born = 2.0 * stiffness * approach.cornerInverse * std::max(1, approach.together);
 
   double allowed = 0.0;  // largest eigenvalue the step bears
   int substeps = simulation.fixedSubsteps;

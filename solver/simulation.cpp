@@ -127,6 +127,7 @@ Simulation::Simulation(const Scene& given) : scene(given), engine(std::make_uniq
   e.previous = state.position;
   e.clock.assign(count, BlockClock{});
   e.rest.resize(count);
+  e.beginning.assign(count, 0);
   e.awakeCount = count;
   for (std::size_t b = 0; b < count; ++b) {
     const bool asBefore =
