@@ -108,21 +108,22 @@ int chooseSubsteps(IslandStep& step) {
   const double depth = settings.impactPenetration * simulation.tolerance_m;
   const double wanted =
       approach.reducedMass * approach.speed * approach.speed / (depth * depth * simulation.contactStiffness_n_m);
-  // What the new contacts add at rest stiffness: one of a pair, in each of the pairs of a block that may be hit at once.
-  const double born = 2.0 * stiffness * approach.cornerInverse * std::max(1, approach.together);
+  const double born = 2.0 * stiffness * approach.cornerInverse;  // what one new contact at rest stiffness adds
+  // Pairs of a block that are hit at once add up: all of them may be as stiff as at rest, or one as the impact wants it.
+  const double together = std::max(1, approach.together);
 
   double allowed = 0.0;  // largest eigenvalue the step bears
   int substeps = simulation.fixedSubsteps;
   if (substeps > 0) {
     allowed = stableSpectralRadius(settings.method, settings.frame_s / substeps, settings.dampingTime_s, settings.stepMargin);
   } else {
-    const double needed = standing + (approach.meeting || wanted > 1.0 ? std::max(1.0, wanted) * born : 0.0);
+    const double needed = standing + (approach.meeting || wanted > 1.0 ? std::max(together, wanted) * born : 0.0);
     const double margin = settings.stepMargin * (settings.method == Method::report ? kImpulseMargin : 1.0);
     const double dt = stableStep(settings.method, needed, settings.dampingTime_s, margin);
     substeps = std::clamp(static_cast<int>(std::ceil(settings.frame_s / dt)), 1, kMostSubsteps);
     allowed = stableSpectralRadius(settings.method, settings.frame_s / substeps, settings.dampingTime_s, settings.stepMargin);
   }
-  step.scaleMost = born > 0.0 ? std::clamp((allowed - standing) / born, 1.0, std::max(1.0, wanted)) : 1.0;
+  step.scaleMost = born > 0.0 ? std::clamp((allowed - standing) / (together * born), 1.0, std::max(1.0, wanted)) : 1.0;
   return substeps;
 }
 
