@@ -76,6 +76,8 @@ void mergePairs(Simulation& simulation) {
     engine.pairs.push_back(fresh);
   }
   keepDormantBefore({static_cast<std::int32_t>(simulation.model.blockCount()), 0});
+  // The two change places: as large as one has grown, the other will be.
+  engine.pairsBefore.reserve(engine.pairs.capacity());
 }
 
 // The island a pair moves with: that of whichever block is awake.
