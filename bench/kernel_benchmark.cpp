@@ -86,7 +86,8 @@ void contacts(benchmark::State& run) {
   for (auto iteration : run) {
     for (NearPair& pair : engine.pairs) {
       if (pair.manifold.touch == Touch::apart) continue;
-      manifoldForces(pair.manifold, side(pair.manifold.upper), side(pair.manifold.lower), law, {}, kBlockMass_kg, &pair.manifold, force);
+      manifoldForces(pair.manifold, side(pair.manifold.upper), side(pair.manifold.lower), law, {}, kBlockMass_kg, &pair.manifold,
+                     force);
       benchmark::DoNotOptimize(force);
     }
   }
