@@ -73,21 +73,6 @@ ChartLimits limitsOf(const ChartCommand& command) {
   return limits;
 }
 
-void writeFile(const std::string& folder, const std::string& name, const std::function<void(std::ostream&)>& write) {
-  OutputFile file((std::filesystem::path(folder) / name).string(), "--out");
-  write(file.stream());
-  file.commit();
-}
-
-void makeFolder(const std::string& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error || !std::filesystem::is_directory(folder)) {
-    throw InputError(fmt::format("--out: cannot make the folder {}: {}", inQuotes(folder),
-                                 error ? error.message() : std::string("there is a file of that name")));
-  }
-}
-
 // Everything measured so far, and what an earlier run has measured beside it.
 void writeResume(const std::string& folder, const Chart& chart, const std::vector<ChartResult>& before) {
   Chart all = chart;
@@ -96,20 +81,20 @@ void writeResume(const std::string& folder, const Chart& chart, const std::vecto
                                    [&](const ChartResult& other) { return other.what == result.what; });
     if (!newer) all.results.push_back(result);
   }
-  writeFile(folder, "chart.json", [&](std::ostream& stream) { writeChartJson(stream, all); });
+  writeOutputFile(folder, "chart.json", [&](std::ostream& stream) { writeChartJson(stream, all); });
 }
 
 // The table, the charts and the index, of what there is so far. Returns the number of charts.
 std::size_t writeAll(const std::string& folder, const Chart& chart) {
-  writeFile(folder, "chart.csv", [&](std::ostream& stream) { writeChartCsv(stream, chart); });
+  writeOutputFile(folder, "chart.csv", [&](std::ostream& stream) { writeChartCsv(stream, chart); });
   std::vector<std::string> names;
   for (const auto& [name, plot] : chartPlots(chart)) {
     const Plot& drawn = plot;
-    writeFile(folder, name + ".svg", [&](std::ostream& stream) { writeSvg(stream, drawn); });
-    writeFile(folder, name + ".png", [&](std::ostream& stream) { writePng(stream, drawn); });
+    writeOutputFile(folder, name + ".svg", [&](std::ostream& stream) { writeSvg(stream, drawn); });
+    writeOutputFile(folder, name + ".png", [&](std::ostream& stream) { writePng(stream, drawn); });
     names.push_back(name);
   }
-  writeFile(folder, "index.md", [&](std::ostream& stream) { writeChartIndex(stream, chart, names); });
+  writeOutputFile(folder, "index.md", [&](std::ostream& stream) { writeChartIndex(stream, chart, names); });
   return names.size();
 }
 
@@ -155,7 +140,7 @@ int executeChart(const ChartCommand& command) {
   chart.provenance = provenanceNow();
   chart.limits = limitsOf(command);
   if (command.peers) chart.peers = readPeers(*command.peers, chart.limits.rows);
-  makeFolder(command.out);
+  makeOutputFolder(command.out);
   const std::string resume = (std::filesystem::path(command.out) / "chart.json").string();
   std::vector<ChartResult> before;
   if (!command.fresh) before = readChartJson(resume, chart);

@@ -1,6 +1,7 @@
 #include "apps/chart_files.h"
 
 #include "apps/options.h"
+#include "apps/output_file.h"
 #include "core/error.h"
 #include "core/limits.h"
 
@@ -71,16 +72,6 @@ ChartResult resultFromJson(const Json& json) {
   for (std::size_t i = 0; i < kChartMeasures; ++i)
     result.measured[i] = numberFrom(json.at(std::string(kChartMeasureRows[i].key)));
   return result;
-}
-
-// A text as a field of a CSV file (RFC 4180).
-std::string csvText(std::string_view text) {
-  std::string field = "\"";
-  for (const char c : text) {
-    if (c == '"') field += '"';
-    field += c;
-  }
-  return field + '"';
 }
 
 std::string csvNumber(double value) {

@@ -54,4 +54,28 @@ void OutputFile::fail(const std::string& what) const {
   throw InputError(fmt::format("{}: cannot write {}: {}", option_, inQuotes(path_), what));
 }
 
+void makeOutputFolder(const std::string& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error || !std::filesystem::is_directory(folder)) {
+    throw InputError(fmt::format("--out: cannot make the folder {}: {}", inQuotes(folder),
+                                 error ? error.message() : std::string("there is a file of that name")));
+  }
+}
+
+void writeOutputFile(const std::string& folder, const std::string& name, const std::function<void(std::ostream&)>& write) {
+  OutputFile file((std::filesystem::path(folder) / name).string(), "--out");
+  write(file.stream());
+  file.commit();
+}
+
+std::string csvText(std::string_view text) {
+  std::string field = "\"";
+  for (const char c : text) {
+    if (c == '"') field += '"';
+    field += c;
+  }
+  return field + '"';
+}
+
 }  // namespace springtower

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <fstream>
+#include <functional>
 #include <iosfwd>
 #include <string>
+#include <string_view>
 
 namespace springtower {
 
@@ -31,5 +33,14 @@ class OutputFile {
   std::string partial_;  // empty when written directly
   std::ofstream stream_;
 };
+
+/// Makes the folder that option `--out` names, with those above it. Throws InputError where that cannot be.
+void makeOutputFolder(const std::string& folder);
+
+/// Writes a whole file of that folder. Throws InputError as OutputFile does.
+void writeOutputFile(const std::string& folder, const std::string& name, const std::function<void(std::ostream&)>& write);
+
+/// A text as a field of a CSV file (RFC 4180).
+std::string csvText(std::string_view text);
 
 }  // namespace springtower

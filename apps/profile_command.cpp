@@ -178,29 +178,14 @@ void printTable(const Profile& profile) {
   }
 }
 
-void makeFolder(const std::string& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error || !std::filesystem::is_directory(folder)) {
-    throw InputError(fmt::format("--out: cannot make the folder {}: {}", inQuotes(folder),
-                                 error ? error.message() : std::string("there is a file of that name")));
-  }
-}
-
-void writeFile(const std::string& folder, const std::string& name, const std::function<void(std::ostream&)>& write) {
-  OutputFile file((std::filesystem::path(folder) / name).string(), "--out");
-  write(file.stream());
-  file.commit();
-}
-
 void writeFolder(const std::string& folder, const Profile& profile, bool measured) {
-  if (measured) writeFile(folder, "profile.json", [&](std::ostream& stream) { writeProfileJson(stream, profile); });
-  writeFile(folder, "profile.csv", [&](std::ostream& stream) { writeProfileCsv(stream, profile); });
-  writeFile(folder, "culling.csv", [&](std::ostream& stream) { writeCulling(stream, profile); });
+  if (measured) writeOutputFile(folder, "profile.json", [&](std::ostream& stream) { writeProfileJson(stream, profile); });
+  writeOutputFile(folder, "profile.csv", [&](std::ostream& stream) { writeProfileCsv(stream, profile); });
+  writeOutputFile(folder, "culling.csv", [&](std::ostream& stream) { writeCulling(stream, profile); });
   const std::vector<NamedPlot> charts = profileCharts(profile);
   for (const NamedPlot& chart : charts) {
-    writeFile(folder, chart.first + ".svg", [&](std::ostream& stream) { writeSvg(stream, chart.second); });
-    writeFile(folder, chart.first + ".png", [&](std::ostream& stream) { writePng(stream, chart.second); });
+    writeOutputFile(folder, chart.first + ".svg", [&](std::ostream& stream) { writeSvg(stream, chart.second); });
+    writeOutputFile(folder, chart.first + ".png", [&](std::ostream& stream) { writePng(stream, chart.second); });
   }
   fmt::print("\n{} charts (SVG and PNG), profile.csv, culling.csv{} in {}\n", charts.size(), measured ? ", profile.json" : "",
              onOneLine(folder));
@@ -244,14 +229,14 @@ CLI::App* defineProfile(CLI::App& program, ProfileCommand& command) {
 int executeProfile(const ProfileCommand& command) {
   if (command.from) {
     const Profile profile = readProfileJson(*command.from);
-    makeFolder(*command.out);
+    makeOutputFolder(*command.out);
     printTable(profile);
     writeFolder(*command.out, profile, false);
     return 0;
   }
   const std::vector<ProfileCase> cases = casesOf(command);
   for (const ProfileCase& what : cases) checkScene(sceneOf(what), "profile");
-  if (command.out) makeFolder(*command.out);
+  if (command.out) makeOutputFolder(*command.out);
   const auto traceFile = command.trace ? std::make_unique<OutputFile>(*command.trace, "--trace") : nullptr;
 
   Profile profile;

@@ -1,5 +1,6 @@
 #include "apps/profile_files.h"
 
+#include "apps/output_file.h"
 #include "core/error.h"
 #include "core/limits.h"
 
@@ -92,16 +93,6 @@ ProfileResult resultFromJson(const Json& json) {
   json.at("bytes_per_block").at("all").get_to(result.allBytes);
   json.at("frame_ms").get_to(result.frame_ms);
   return result;
-}
-
-// A text as a field of a CSV file (RFC 4180).
-std::string csvText(std::string_view text) {
-  std::string field = "\"";
-  for (const char c : text) {
-    if (c == '"') field += '"';
-    field += c;
-  }
-  return field + '"';
 }
 
 }  // namespace

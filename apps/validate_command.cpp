@@ -42,20 +42,6 @@ std::vector<ValidationPart> partsOf(const ValidateCommand& command) {
   return parts;
 }
 
-void makeFolder(const std::string& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error || !std::filesystem::is_directory(folder)) {
-    throw InputError(fmt::format("--out: found {}, allowed is the name of a folder that can be made", inQuotes(folder)));
-  }
-}
-
-void writeFile(const std::string& folder, const std::string& name, const std::function<void(std::ostream&)>& write) {
-  OutputFile file((std::filesystem::path(folder) / name).string(), "--out");
-  write(file.stream());
-  file.commit();
-}
-
 void print(const ValidationSection& section) {
   fmt::print("{} ({:.1f} s)\n", section.title, section.wall_s);
   for (const Claim& claim : section.claims) {
@@ -96,7 +82,7 @@ int executeValidate(const ValidateCommand& command) {
   if (!std::filesystem::is_regular_file(std::filesystem::path(plan.oracle) / "shift.jsonl")) {
     throw InputError(fmt::format("--oracle: found {}, allowed is the folder that holds shift.jsonl", inQuotes(plan.oracle)));
   }
-  makeFolder(command.out);
+  makeOutputFolder(command.out);
   PhysicsOptions options;
   options.threads = command.threads;
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threadCount(options)));
@@ -111,13 +97,14 @@ int executeValidate(const ValidateCommand& command) {
   for (ValidationSection& section : sections) {
     for (ValidationFigure& figure : section.figures) {
       figure.plot.footnote = footnote(provenance);
-      writeFile(command.out, figure.name + ".svg", [&](std::ostream& stream) { writeSvg(stream, figure.plot); });
-      writeFile(command.out, figure.name + ".png", [&](std::ostream& stream) { writePng(stream, figure.plot); });
+      writeOutputFile(command.out, figure.name + ".svg", [&](std::ostream& stream) { writeSvg(stream, figure.plot); });
+      writeOutputFile(command.out, figure.name + ".png", [&](std::ostream& stream) { writePng(stream, figure.plot); });
     }
   }
-  writeFile(command.out, "validation.md", [&](std::ostream& stream) { writeValidationPage(stream, sections, plan, provenance); });
-  writeFile(command.out, "validation.json",
-            [&](std::ostream& stream) { writeValidationJson(stream, sections, plan, provenance); });
+  writeOutputFile(command.out, "validation.md",
+                  [&](std::ostream& stream) { writeValidationPage(stream, sections, plan, provenance); });
+  writeOutputFile(command.out, "validation.json",
+                  [&](std::ostream& stream) { writeValidationJson(stream, sections, plan, provenance); });
   const ClaimCounts counts = countClaims(sections);
   fmt::print("{} claims hold, {} fail, {} figures are only reported; validation.md in {}\n", counts.passed, counts.failed,
              counts.reported, onOneLine(command.out));

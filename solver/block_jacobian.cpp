@@ -2,6 +2,7 @@
 
 #include "solver/block_modes.h"
 #include "solver/inertia.h"
+#include "solver/spring_force.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
@@ -19,31 +20,6 @@ using Small = Eigen::Matrix<double, 12, 12>;
 double share(std::size_t corner, std::size_t m) {
   const double half = m >= 1 && m < kAffine ? 0.5 : 1.0;
   return half * sign(corner, kPattern[m]);
-}
-
-Full springStiffness(const BlockModel& model, std::size_t block) {
-  Full stiffness = Full::Zero();
-  const Vec3& size = model.dimensions[block];
-  for (std::size_t group = 1; group <= kSpringGroups; ++group) {
-    for (std::size_t p = 0; p < kCorners; ++p) {
-      const std::size_t q = p ^ group;
-      if (q < p) continue;
-      Vec3 along;
-      for (std::size_t a = 0; a < 3; ++a) {
-        const auto axis = static_cast<Eigen::Index>(a);
-        along[axis] = 0.5 * (cornerSide(q, a) - cornerSide(p, a)) * size[axis];
-      }
-      along.normalize();
-      const Eigen::Matrix3d k = model.springStiffness[group - 1][block] * along * along.transpose();
-      const auto i = static_cast<Eigen::Index>(3 * p);
-      const auto j = static_cast<Eigen::Index>(3 * q);
-      stiffness.block<3, 3>(i, i) += k;
-      stiffness.block<3, 3>(j, j) += k;
-      stiffness.block<3, 3>(i, j) -= k;
-      stiffness.block<3, 3>(j, i) -= k;
-    }
-  }
-  return stiffness;
 }
 
 Eigen::Index at(std::size_t vector, std::size_t component) {
@@ -66,7 +42,7 @@ BlockJacobian blockJacobian(const BlockModel& model, Inertia inertia, std::size_
     }
   }
   BlockJacobian result;
-  Full whole = springFactor * (basis.transpose() * springStiffness(model, block) * basis);
+  Full whole = springFactor * (basis.transpose() * springStiffnessMatrix(model, block) * basis);
   const double corner = model.mass[block] / inverseMass(inertia).own;  // of what differs from the mean
   for (std::size_t m = 0; m < kCorners; ++m) {
     result.mass[m] = m == 0 ? model.mass[block] : corner * static_cast<double>(kCorners) * (m < kAffine ? 0.25 : 1.0);

@@ -179,4 +179,29 @@ void setSprings(BlockModel& model, std::size_t block, double stiffness_n_m, doub
   }
 }
 
+Eigen::Matrix<double, 24, 24> springStiffnessMatrix(const BlockModel& model, std::size_t block) {
+  Eigen::Matrix<double, 24, 24> stiffness = Eigen::Matrix<double, 24, 24>::Zero();
+  const Vec3& size = model.dimensions[block];
+  for (std::size_t group = 1; group <= kSpringGroups; ++group) {
+    for (std::size_t p = 0; p < kCorners; ++p) {
+      const std::size_t q = p ^ group;
+      if (q < p) continue;
+      Vec3 along;
+      for (std::size_t a = 0; a < 3; ++a) {
+        const auto axis = static_cast<Eigen::Index>(a);
+        along[axis] = 0.5 * (cornerSide(q, a) - cornerSide(p, a)) * size[axis];
+      }
+      along.normalize();
+      const Eigen::Matrix3d k = model.springStiffness[group - 1][block] * along * along.transpose();
+      const auto i = static_cast<Eigen::Index>(3 * p);
+      const auto j = static_cast<Eigen::Index>(3 * q);
+      stiffness.block<3, 3>(i, i) += k;
+      stiffness.block<3, 3>(j, j) += k;
+      stiffness.block<3, 3>(i, j) -= k;
+      stiffness.block<3, 3>(j, i) -= k;
+    }
+  }
+  return stiffness;
+}
+
 }  // namespace springtower

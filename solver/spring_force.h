@@ -25,4 +25,7 @@ double springStrain(const BlockModel& model, const CornerArray& position, std::s
 /// that are `dampingTime_s` times the stiffness.
 void setSprings(BlockModel& model, std::size_t block, double stiffness_n_m, double referenceLength_m, double dampingTime_s);
 
+/// Stiffness of a block's springs at rest, in its own frame, N/m: 24 x 24, by corner and component.
+Eigen::Matrix<double, 24, 24> springStiffnessMatrix(const BlockModel& model, std::size_t block);
+
 }  // namespace springtower

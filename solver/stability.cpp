@@ -1,6 +1,7 @@
 #include "solver/stability.h"
 
 #include "solver/inertia.h"
+#include "solver/spring_force.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -93,26 +94,6 @@ double spectralBound(Simulation& simulation, std::span<const std::int32_t> block
 double blockSpectralRadius(const BlockModel& model, Inertia inertia, std::size_t block) {
   using Matrix24 = Eigen::Matrix<double, 24, 24>;
   const InverseMass inverse = inverseMass(inertia);
-  Matrix24 stiffness = Matrix24::Zero();
-  for (std::size_t group = 1; group <= kSpringGroups; ++group) {
-    for (std::size_t c = 0; c < kCorners; ++c) {
-      const std::size_t partner = c ^ group;
-      if (partner < c) continue;
-      Vec3 along;
-      for (std::size_t a = 0; a < 3; ++a) {
-        const auto axis = static_cast<Eigen::Index>(a);
-        along[axis] = 0.5 * (cornerSide(partner, a) - cornerSide(c, a)) * model.dimensions[block][axis];
-      }
-      along.normalize();
-      const Eigen::Matrix3d part = model.springStiffness[group - 1][block] * along * along.transpose();
-      const auto i = static_cast<Eigen::Index>(3 * c);
-      const auto j = static_cast<Eigen::Index>(3 * partner);
-      stiffness.block<3, 3>(i, i) += part;
-      stiffness.block<3, 3>(j, j) += part;
-      stiffness.block<3, 3>(i, j) -= part;
-      stiffness.block<3, 3>(j, i) -= part;
-    }
-  }
   // M^-1/2: one factor for the mean of a component, another for what differs from it.
   const double mass = model.mass[block];
   const double mean = std::sqrt((inverse.own - 8.0 * inverse.shared) / mass);
@@ -123,7 +104,7 @@ double blockSpectralRadius(const BlockModel& model, Inertia inertia, std::size_t
       for (Eigen::Index a = 0; a < 3; ++a) root(3 * c + a, 3 * d + a) = (mean - own) / 8.0 + (c == d ? own : 0.0);
     }
   }
-  const Matrix24 symmetric = root * stiffness * root;
+  const Matrix24 symmetric = root * springStiffnessMatrix(model, block) * root;
   return Eigen::SelfAdjointEigenSolver<Matrix24>(symmetric, Eigen::EigenvaluesOnly).eigenvalues()[23];
 }
 
