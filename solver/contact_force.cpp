@@ -11,6 +11,8 @@ namespace {
 
 // Stands for none: no branch, no lag.
 constexpr double kLeastRelaxingRatio = 1e-9;
+// Share of the friction that a point is left with while nothing presses it: it slides, and that must be seen.
+constexpr double kLeastShare = 1e-30;
 
 // Memory and force of up to four points.
 struct PointLanes {
@@ -117,8 +119,8 @@ SPRINGTOWER_INLINE void pointLaw(const LawStep& s, const Lanes& depth, const Lan
   const Lanes coefficient = p.sliding > zero ? zero + law.kineticFriction : zero + law.staticFriction;
   const Lanes sticking = coefficient * push;
   const LaneMask slides = squared > sticking * sticking;
-  p.sliding = slides & touching ? one : zero;
   if (!any(slides)) {
+    p.sliding = zero;
     for (int a = 0; a < 3; ++a) {
       p.stretch[a] = touching ? stretch[a] : zero;
       p.force[a] = push * normal[a] + friction[a];
@@ -128,6 +130,8 @@ SPRINGTOWER_INLINE void pointLaw(const LawStep& s, const Lanes& depth, const Lan
   Lanes size;
   squareRoot(squared, size);
   const Lanes keep = slides ? law.kineticFriction * push / size : one;
+  const Lanes shown = keep > kLeastShare ? keep : zero + kLeastShare;
+  p.sliding = slides & touching ? shown : zero;
   // What slips frees a little of the offset; friction's own loss pays for the work.
   const Lanes stretchSquared = stretch[0] * stretch[0] + stretch[1] * stretch[1] + stretch[2] * stretch[2];
   Lanes stretchSize;

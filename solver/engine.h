@@ -24,10 +24,11 @@ struct NearPair {
   std::int32_t a = 0;
   std::int32_t b = -1;
   Manifold manifold;
-  Vec3 witness = Vec3::UnitZ();   ///< apart: a direction that separated them last, from b to a
-  double margin = 0.0;            ///< apart: their gap along it when last measured, m
-  double checkedTravel = 0.0;     ///< sum of both blocks' travel when last looked at, m
-  Vec3 restForce = Vec3::Zero();  ///< N on the block that fell asleep, when it did; what its partner must keep up
+  Vec3 witness = Vec3::UnitZ();    ///< apart: a direction that separated them last, from b to a
+  double margin = 0.0;             ///< apart: their gap along it when last measured, m
+  double checkedTravel = 0.0;      ///< sum of both blocks' travel when last looked at, m
+  Vec3 restForce = Vec3::Zero();   ///< N on block a when the first of the two fell asleep; what its partner must keep up
+  Vec3 restTorque = Vec3::Zero();  ///< N m, its torque about the world's origin
 };
 
 /// One island's private record, kept by the island's smallest block so that it survives other islands' coming and going.
@@ -46,6 +47,17 @@ struct RestWindow {
   Vec3 velocity = Vec3::Zero();  ///< m/s
   Vec3 spin = Vec3::Zero();      ///< rad/s
   double age_s = 0.0;            ///< s since
+};
+
+/// How awake neighbours push a sleeping block otherwise than when it fell asleep, and what it could bear.
+struct PushChange {
+  Vec3 force = Vec3::Zero();   ///< N, change of all their forces
+  Vec3 torque = Vec3::Zero();  ///< N m, change of their torque about the block's centre
+  Vec3 shear = Vec3::Zero();   ///< N, their friction now
+  Vec3 side = Vec3::Zero();    ///< unit normals of their contacts, added up
+  double load_n = 0.0;         ///< N, what went through the block when it fell asleep
+  double hold_n = 0.0;         ///< N, most friction of its contacts with sleepers and the floor
+  bool begunOrLost = false;    ///< whether a contact has come or gone
 };
 
 /// Islands of at least this many blocks run their kernels on many threads; smaller ones fit one core's cache.
@@ -97,6 +109,8 @@ struct Engine {
   std::vector<std::int32_t> lostPartner;        ///< sleeping blocks whose awake neighbour went out of reach in this frame
   std::vector<std::int32_t> beginning;          ///< working space: pairs of each block that may begin to push in this frame
   std::vector<std::int32_t> toWake;             ///< working space
+  std::vector<std::int32_t> pushed;             ///< working space: sleeping blocks with awake neighbours
+  std::vector<PushChange> change;               ///< working space, [blocks]
   std::vector<std::int32_t> restless;           ///< working space
   std::vector<std::int32_t> parent;             ///< working space of connectedBlocks
   std::vector<std::uint8_t> joined;  ///< working space: 1 where a block touches a restless one, directly or through others

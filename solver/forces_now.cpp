@@ -60,14 +60,18 @@ PointForces forcesNow(const Simulation& simulation, const Manifold& manifold) {
   return ManifoldNow(simulation, manifold).points;
 }
 
-Vec3 forceOnUpper(const Simulation& simulation, const Manifold& manifold) {
-  Vec3 force = Vec3::Zero();
-  if (manifold.touch == Touch::apart) return force;
+Push pushOnUpper(const Simulation& simulation, const Manifold& manifold) {
+  Push push;
+  if (manifold.touch == Touch::apart) return push;
   const PointForces points = forcesNow(simulation, manifold);
+  push.direction = points.direction;
   for (std::size_t i = 0; i < static_cast<std::size_t>(manifold.count); ++i) {
-    force += points.normal[i] * points.direction + Vec3(points.friction[i][0], points.friction[i][1], points.friction[i][2]);
+    const Vec3 force =
+        points.normal[i] * points.direction + Vec3(points.friction[i][0], points.friction[i][1], points.friction[i][2]);
+    push.force += force;
+    push.torque += points.place[i].cross(force);
   }
-  return force;
+  return push;
 }
 
 std::vector<ContactForce> contactForces(const Simulation& simulation) {

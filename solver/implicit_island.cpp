@@ -69,6 +69,15 @@ void addContacts(const Coupling& normal, const Coupling& tangential, const Vec3&
   }
 }
 
+// Takes factor * (p (x) s) (q (x) s)^T from a block of the matrix: along `s` a sliding point resists no further.
+void takeAlong(double factor, const Weights& p, const Weights& q, const Vec3& s, float* block) {
+  for (std::size_t i = 0; i < kNodeSize; ++i) {
+    const double row = factor * p[i / 3] * s[static_cast<Eigen::Index>(i % 3)];
+    for (std::size_t k = 0; k < kNodeSize; ++k)
+      block[kNodeSize * i + k] -= static_cast<float>(row * q[k / 3] * s[static_cast<Eigen::Index>(k % 3)]);
+  }
+}
+
 void addProduct(double factor, const Weights& p, const Weights& q, Coupling& sum) {
   for (std::size_t i = 0; i < kAffine; ++i) {
     for (std::size_t k = 0; k < kAffine; ++k) sum[i][k] += factor * p[i] * q[k];
@@ -101,36 +110,44 @@ void addManifold(const IslandStep& step, ImplicitIsland& island, std::size_t at,
   const double normalFactor = 1.0 + relaxing + damping;
   const double tangentialFactor = step.law.tangentialRatio * (1.0 + damping);
   const PointMemory& memory = engine.trial[static_cast<std::size_t>(island.touching[at])];
-  Coupling upperNormal{}, upperTangential{}, lowerNormal{}, lowerTangential{}, crossNormal{}, crossTangential{};
-  for (std::size_t i = 0; i < static_cast<std::size_t>(m.count); ++i) {
-    if ((mask >> i & 1U) == 0) continue;
-    const double k = stiffness * std::max(1.0, memory.scale[i]);
-    const double normal = k * normalFactor;
-    const double tangential = (mask >> (8 + i) & 1U) != 0 ? 0.0 : k * tangentialFactor;
-    const Weights wu = weightsAt(frameUpper, points.place[i]);
-    addProduct(normal, wu, wu, upperNormal);
-    addProduct(tangential, wu, wu, upperTangential);
-    if (frameLower == nullptr) continue;
-    const Weights wl = weightsAt(*frameLower, points.lowerPlace[i]);
-    addProduct(normal, wl, wl, lowerNormal);
-    addProduct(tangential, wl, wl, lowerTangential);
-    addProduct(normal, wu, wl, crossNormal);
-    addProduct(tangential, wu, wl, crossTangential);
-  }
   BlockCholesky& matrix = island.matrix;
   const auto diagonalOf = [&](std::size_t block) {
     return matrix.diagonal.data() +
            kNodeMatrix * static_cast<std::size_t>(matrix.position[static_cast<std::size_t>(engine.nodeOf[block])]);
   };
   const std::vector<std::uint8_t>& asleep = step.simulation.asleep;
-  if (asleep[upper] == 0) addContacts(upperNormal, upperTangential, points.direction, false, 1.0, diagonalOf(upper));
-  if (m.lower < 0) return;
-  const auto lower = static_cast<std::size_t>(m.lower);
-  if (asleep[lower] == 0) addContacts(lowerNormal, lowerTangential, points.direction, false, 1.0, diagonalOf(lower));
+  float* ofUpper = asleep[upper] == 0 ? diagonalOf(upper) : nullptr;
+  float* ofLower = frameLower != nullptr && asleep[static_cast<std::size_t>(m.lower)] == 0
+                       ? diagonalOf(static_cast<std::size_t>(m.lower))
+                       : nullptr;
   const BlockSlot& slot = island.slot[at];
-  if (slot.at < 0) return;
-  addContacts(crossNormal, crossTangential, points.direction, !slot.firstIsRow, -1.0,
-              matrix.lower.data() + kNodeMatrix * static_cast<std::size_t>(slot.at));
+  float* ofBoth = slot.at >= 0 ? matrix.lower.data() + kNodeMatrix * static_cast<std::size_t>(slot.at) : nullptr;
+
+  Coupling upperNormal{}, upperTangential{}, lowerNormal{}, lowerTangential{}, crossNormal{}, crossTangential{};
+  for (std::size_t i = 0; i < static_cast<std::size_t>(m.count); ++i) {
+    if ((mask >> i & 1U) == 0) continue;
+    const double k = stiffness * std::max(1.0, memory.scale[i]);
+    const double normal = k * normalFactor;
+    const bool slides = (mask >> (8 + i) & 1U) != 0;
+    const double share = memory.sliding[i] > 0.0 ? memory.sliding[i] : m.sliding[i];  // nothing has moved yet: as it slid before
+    const double tangential = k * tangentialFactor * (slides ? share : 1.0);
+    const Vec3 along = slides ? Vec3(memory.stretchX[i], memory.stretchY[i], memory.stretchZ[i]).normalized() : Vec3::Zero();
+    const Weights wu = weightsAt(frameUpper, points.place[i]);
+    if (slides && ofUpper != nullptr) takeAlong(tangential, wu, wu, along, ofUpper);
+    addProduct(normal, wu, wu, upperNormal);
+    addProduct(tangential, wu, wu, upperTangential);
+    if (frameLower == nullptr) continue;
+    const Weights wl = weightsAt(*frameLower, points.lowerPlace[i]);
+    addProduct(normal, wl, wl, lowerNormal);
+    addProduct(tangential, wl, wl, lowerTangential);
+    if (slides && ofLower != nullptr) takeAlong(tangential, wl, wl, along, ofLower);
+    if (slides && ofBoth != nullptr) takeAlong(-tangential, slot.firstIsRow ? wu : wl, slot.firstIsRow ? wl : wu, along, ofBoth);
+    addProduct(normal, wu, wl, crossNormal);
+    addProduct(tangential, wu, wl, crossTangential);
+  }
+  if (ofUpper != nullptr) addContacts(upperNormal, upperTangential, points.direction, false, 1.0, ofUpper);
+  if (ofLower != nullptr) addContacts(lowerNormal, lowerTangential, points.direction, false, 1.0, ofLower);
+  if (ofBoth != nullptr) addContacts(crossNormal, crossTangential, points.direction, !slot.firstIsRow, -1.0, ofBoth);
 }
 
 void mix(std::uint64_t& hash, std::uint64_t value) {
@@ -196,6 +213,7 @@ void layOut(IslandStep& step, ImplicitIsland& island) {
   island.mask.assign(island.touching.size(), 0);
   island.axes.resize(count);
   island.residual.resize(count);
+  island.direction.resize(count);
   island.affine.resize(kNodeSize * count);
 }
 

@@ -18,13 +18,15 @@ struct ImplicitIsland {
   std::uint64_t pattern = 0;  ///< of which blocks touch which; what the matrix is laid out for
   bool tooDense = false;      ///< so many blocks touch one another that explicit steps cost less
   bool factorised = false;
+  bool moved = false;        ///< whether engine.trial holds a state after the step's start
   bool forcesKnown = false;  ///< engine.force holds the forces at the island's present state
   BlockCholesky matrix;
   std::vector<std::int32_t> touching;                      ///< touching pairs, as positions in engine.pairs
   std::vector<BlockSlot> slot;                             ///< of each of these; at = -1 where one side is the floor or asleep
-  std::vector<ContactMask> mask;                           ///< what each was assembled for
+  std::vector<ContactMask> mask;                           ///< what each of these was assembled for
   std::vector<std::array<std::array<double, 3>, 3>> axes;  ///< the frames the blocks were assembled in, [node][axis][component]
   std::vector<ModeVectors> residual;                       ///< N, in the blocks' frames, by node
+  std::vector<ModeVectors> direction;                      ///< m, the last correction, in the world's frame, by node
   std::vector<double> affine;                              ///< right-hand sides and solutions, [nodes][12]
   std::vector<std::int32_t> order;                         ///< working space of `layOut`
   std::vector<double> height;                              ///< working space of `layOut`, m

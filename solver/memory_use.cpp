@@ -51,7 +51,7 @@ MemoryUse memoryUse(const Simulation& simulation) {
                       engine.pairStart, engine.islandPairs, engine.blockPairStart, engine.blockPairs, engine.cursor,
                       engine.touchingEdges, engine.force, engine.frames, engine.motion, engine.carriedMotion, engine.contactForce,
                       engine.springRadius, engine.contactMetric, engine.previous, engine.carried, engine.pairForce, engine.clock,
-                      engine.lostPartner, engine.toWake, engine.beginning, engine.restless, engine.parent, engine.joined,
+                      engine.lostPartner, engine.toWake, engine.pushed, engine.change, engine.beginning, engine.restless, engine.parent, engine.joined,
                       engine.rest, engine.report, engine.frameStart, engine.frameStartClock, engine.frameStartPairs,
                       engine.chunkCounters, engine.islandCounters, engine.islandTimes, engine.islandOutcome);
   use.working += sumOf(engine.sweep.order, engine.sweep.place, engine.sweep.columns, engine.sweep.awake, engine.sweep.renewed,

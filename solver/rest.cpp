@@ -1,7 +1,7 @@
 #include "solver/rest.h"
 
-#include "solver/forces_now.h"
 #include "solver/inertia.h"
+#include "solver/pushes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,8 +10,6 @@ namespace springtower {
 
 namespace {
 
-// What a sleeping block's neighbours may push it otherwise than when it fell asleep, in its weights.
-constexpr double kWakeForce = 0.02;
 // What gravity may have turned since the last block fell asleep, in g.
 constexpr double kWakeGravity = 1e-4;
 
@@ -20,6 +18,10 @@ double timeScale(const Simulation& s) {
 }
 double speedScale(const Simulation& s) {
   return std::sqrt(s.lengths.blockHeight_m * s.scene.gravity.magnitude);
+}
+
+bool acts(const UserForce& user, double begin_s, double frame_s) {
+  return user.start_s < begin_s + frame_s && user.end_s > begin_s;
 }
 
 // A bound from above of the speed of a block's fastest corner in its rigid motion, m/s: that motion has no more kinetic energy
@@ -89,66 +91,42 @@ void fallAsleep(Simulation& simulation, std::size_t b) {
   if (!engine.report.contacts.empty()) engine.report.contacts[b].clear();
 }
 
-// Force on block a of a pair, as its contacts push now, N.
-Vec3 forceOnA(const Simulation& simulation, const NearPair& pair) {
-  const Vec3 onUpper = forceOnUpper(simulation, pair.manifold);
-  return pair.manifold.upper == pair.a ? onUpper : Vec3(-onUpper);
-}
-
-void wakePushed(Simulation& simulation) {
-  Engine& engine = *simulation.engine;
-  engine.toWake.clear();
-  for (const std::int32_t at : engine.islandPairs) {
-    const NearPair& pair = engine.pairs[static_cast<std::size_t>(at)];
-    if (pair.b < 0) continue;
-    const bool sleepsA = simulation.asleep[static_cast<std::size_t>(pair.a)] != 0;
-    const bool sleepsB = simulation.asleep[static_cast<std::size_t>(pair.b)] != 0;
-    if (sleepsA == sleepsB) continue;
-    const std::int32_t sleeper = sleepsA ? pair.a : pair.b;
-    const double weight = simulation.model.mass[static_cast<std::size_t>(sleeper)] * simulation.scene.gravity.magnitude;
-    if ((forceOnA(simulation, pair) - pair.restForce).norm() > kWakeForce * weight) engine.toWake.push_back(sleeper);
-  }
-  // A pair that the sweep has dropped pushes no more.
-  engine.toWake.insert(engine.toWake.end(), engine.lostPartner.begin(), engine.lostPartner.end());
-  for (const std::int32_t block : engine.toWake) wake(simulation, static_cast<std::size_t>(block));
-}
-
-void putGroupsToSleep(Simulation& simulation) {
+// Puts blocks to sleep that are at rest, each by itself: what awake neighbours do to it later is looked at in every frame. Method
+// `report` does not know from step to step who touches whom, so there nobody sleeps who is near a restless block, directly or
+// through others.
+void putToSleep(Simulation& simulation) {
   Engine& engine = *simulation.engine;
   const double needed = restNeeded(simulation);
-  engine.restless.clear();
-  bool anyReady = false;
-  for (const std::int32_t block : engine.awakeBlocks) {
-    const bool ready = simulation.restTime_s[static_cast<std::size_t>(block)] >= needed;
-    anyReady = anyReady || ready;
-    if (!ready) engine.restless.push_back(block);
-  }
-  if (!anyReady) return;
+  const auto ready = [&](std::int32_t block) {
+    if (simulation.restTime_s[static_cast<std::size_t>(block)] < needed) return false;
+    const double frame_s = simulation.scene.settings.frame_s;
+    return std::none_of(simulation.scene.forces.begin(), simulation.scene.forces.end(), [&](const UserForce& user) {
+      return user.block == block && acts(user, simulation.time_s - frame_s, frame_s);
+    });
+  };
+  if (std::none_of(engine.awakeBlocks.begin(), engine.awakeBlocks.end(), ready)) return;
 
-  // Sleep is decided by groups that touch: whoever is joined to a restless block stays awake. The report decides block by block.
-  // Method `report` does not know from step to step who touches whom: there whoever is near counts.
+  engine.restless.clear();
   engine.touchingEdges.clear();
-  const bool nearCounts = simulation.scene.settings.method == Method::report;
-  if (simulation.scene.settings.sleep == Sleep::on) {
+  for (const std::int32_t block : engine.awakeBlocks) {
+    if (!ready(block)) engine.restless.push_back(block);
+  }
+  const Settings& settings = simulation.scene.settings;
+  if (settings.method == Method::report && settings.sleep == Sleep::on) {
     for (const NearPair& pair : engine.pairs) {
-      if (pair.b < 0 || (pair.manifold.touch == Touch::apart && !nearCounts)) continue;
-      const bool bothAwake =
-          simulation.asleep[static_cast<std::size_t>(pair.a)] == 0 && simulation.asleep[static_cast<std::size_t>(pair.b)] == 0;
+      const bool bothAwake = pair.b >= 0 && simulation.asleep[static_cast<std::size_t>(pair.a)] == 0 &&
+                             simulation.asleep[static_cast<std::size_t>(pair.b)] == 0;
       if (bothAwake) engine.touchingEdges.push_back({pair.a, pair.b});
     }
   }
   engine.joined.resize(simulation.asleep.size());
   connectedBlocks(engine.touchingEdges, engine.restless, engine.parent, engine.joined);
-  for (NearPair& pair : engine.pairs) {
-    const auto falls = [&](std::int32_t block) {
-      return block >= 0 && simulation.asleep[static_cast<std::size_t>(block)] == 0 &&
-             engine.joined[static_cast<std::size_t>(block)] == 0;
-    };
-    if (falls(pair.a) || falls(pair.b)) pair.restForce = forceOnA(simulation, pair);
-  }
+  engine.toWake.clear();
+  rememberPushes(simulation, engine.joined);
   for (const std::int32_t block : engine.awakeBlocks) {
     if (engine.joined[static_cast<std::size_t>(block)] == 0) fallAsleep(simulation, static_cast<std::size_t>(block));
   }
+  for (const std::int32_t block : engine.toWake) wake(simulation, static_cast<std::size_t>(block));
   engine.gravitySlept = simulation.scene.gravity.at(simulation.time_s);
 }
 
@@ -173,8 +151,7 @@ void wakeForFrame(Simulation& simulation) {
     return;
   }
   for (const UserForce& user : simulation.scene.forces) {
-    const bool acts = user.start_s < simulation.time_s + frame_s && user.end_s > simulation.time_s;
-    if (acts) wake(simulation, static_cast<std::size_t>(user.block));
+    if (acts(user, simulation.time_s, frame_s)) wake(simulation, static_cast<std::size_t>(user.block));
   }
 }
 
@@ -186,8 +163,11 @@ void updateRest(Simulation& simulation) {
     sleep == Sleep::report ? judgeAsReported(simulation, b) : judge(simulation, b);
   }
   if (sleep == Sleep::off) return;
-  if (engine.awakeCount < simulation.asleep.size()) wakePushed(simulation);
-  putGroupsToSleep(simulation);
+  if (engine.awakeCount < simulation.asleep.size()) {
+    findBlocksToWake(simulation);
+    for (const std::int32_t block : engine.toWake) wake(simulation, static_cast<std::size_t>(block));
+  }
+  putToSleep(simulation);
 }
 
 bool atRest(const Simulation& simulation) {

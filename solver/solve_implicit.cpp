@@ -23,6 +23,14 @@ ImplicitIsland& islandOf(IslandStep& step) {
   return step.engine.implicitIslands[static_cast<std::size_t>(step.blocks.front())];
 }
 
+// Work along a correction that may be left over or undone, of that at its beginning.
+constexpr double kOvershoot = 0.5;
+constexpr int kMostShares = 6;
+// A residual that shrinks by less asks for new factors: friction has turned.
+constexpr double kSlow = 0.3;
+// A residual from which a step begins where the blocks are carried, not where they are: something moves.
+constexpr double kPredicted = 1.0;
+
 constexpr double kThird = 1.0 / 3.0;
 
 // Where each block ends without forces, and what of it is history: x = (4 x_n - x_(n-1)) / 3 + 2/3 h v at the end, and alike for
@@ -84,29 +92,42 @@ void foretellFromRest(IslandStep& step, double effective_s) {
   }
 }
 
-ContactMask maskOf(const PointMemory& live, const PointMemory& sliding, std::int32_t count) {
+// Until the blocks have moved what slides is what slid before.
+ContactMask maskOf(const PointMemory& trial, const Manifold& manifold, bool moved) {
+  const PointMemory& slid = moved ? trial : manifold;
   unsigned mask = 0;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
-    if (live.live[i] == 0.0) continue;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(manifold.count); ++i) {
+    if (trial.live[i] == 0.0) continue;
     mask |= 1U << i;
-    if (sliding.sliding[i] != 0.0) mask |= 0x100U << i;
+    if (slid.sliding[i] != 0.0) mask |= 0x100U << i;
   }
   return static_cast<ContactMask>(mask);
 }
 
-// Brings the masks up to date; returns whether any has changed. Before the first iteration nothing has moved yet, so what slides
-// is what slid before.
-bool updateMasks(IslandStep& step, ImplicitIsland& island, bool first) {
-  bool changed = false;
+// How the contacts stand now. Before the first iteration nothing has moved yet, so what slides is what slid before.
+struct ContactsNow {
+  bool changed = false;  // against what the factors are for
+  bool slides = false;   // whether any point slides
+};
+
+ContactsNow contactsNow(const IslandStep& step, const ImplicitIsland& island) {
+  ContactsNow now;
   for (std::size_t i = 0; i < island.touching.size(); ++i) {
     const auto at = static_cast<std::size_t>(island.touching[i]);
-    const Manifold& manifold = step.engine.pairs[at].manifold;
-    const PointMemory& trial = step.engine.trial[at];
-    const ContactMask mask = maskOf(trial, first ? static_cast<const PointMemory&>(manifold) : trial, manifold.count);
-    changed = changed || mask != island.mask[i];
-    island.mask[i] = mask;
+    const ContactMask mask = maskOf(step.engine.trial[at], step.engine.pairs[at].manifold, island.moved);
+    now.changed = now.changed || mask != island.mask[i];
+    now.slides = now.slides || mask > 0xFFU;
   }
-  return changed;
+  return now;
+}
+
+// New factors for contacts as they stand now.
+bool renewFactors(IslandStep& step, ImplicitIsland& island, double effective_s) {
+  for (std::size_t i = 0; i < island.touching.size(); ++i) {
+    const auto at = static_cast<std::size_t>(island.touching[i]);
+    island.mask[i] = maskOf(step.engine.trial[at], step.engine.pairs[at].manifold, island.moved);
+  }
+  return assemble(step, island, effective_s);
 }
 
 // Turns the first `count` vectors into the block's frame, or back.
@@ -163,9 +184,23 @@ SPRINGTOWER_INLINE void updateVelocities(IslandStep& step, std::size_t b, double
   }
 }
 
-// One solution with the factors at hand; moves the blocks.
+// Moves the blocks along the correction by this share of it.
 SPRINGTOWER_KERNEL
-void correct(IslandStep& step, ImplicitIsland& island, double effective_s) {
+void moveAlong(IslandStep& step, const ImplicitIsland& island, double share, double effective_s) {
+  for (std::size_t i = 0; i < step.blocks.size(); ++i) {
+    const auto b = static_cast<std::size_t>(step.blocks[i]);
+    ModeVectors part = island.direction[i];
+    for (auto& vector : part) {
+      for (double& d : vector) d *= share;
+    }
+    addModes(part, step.simulation.state.position, b);
+    updateVelocities(step, b, effective_s);
+  }
+}
+
+// One solution with the factors at hand: the correction.
+SPRINGTOWER_KERNEL
+void findCorrection(IslandStep& step, ImplicitIsland& island) {
   Engine& engine = step.engine;
   const std::size_t count = step.blocks.size();
   for (std::size_t i = 0; i < count; ++i) {
@@ -179,14 +214,24 @@ void correct(IslandStep& step, ImplicitIsland& island, double effective_s) {
   solve(island.matrix, island.affine);
   for (std::size_t i = 0; i < count; ++i) {
     const auto b = static_cast<std::size_t>(step.blocks[i]);
-    ModeVectors change{};
+    ModeVectors& change = island.direction[i];
     for (std::size_t m = 0; m < kAffine; ++m) std::copy_n(island.affine.data() + kNodeSize * i + 3 * m, 3, change[m].begin());
     turn(island.axes[i], false, kAffine, change);
     recoverWarps(engine.jacobian[b], island.residual[i], change);
     turn(island.axes[i], true, kCorners, change);
-    addModes(change, step.simulation.state.position, b);
-    updateVelocities(step, b, effective_s);
+    turn(island.axes[i], true, kCorners, island.residual[i]);
   }
+}
+
+// Work of the present residual along the correction, J.
+double workAlong(const ImplicitIsland& island) {
+  double work = 0.0;
+  for (std::size_t i = 0; i < island.residual.size(); ++i) {
+    for (std::size_t m = 0; m < kCorners; ++m) {
+      for (std::size_t k = 0; k < 3; ++k) work += island.residual[i][m][k] * island.direction[i][m][k];
+    }
+  }
+  return work;
 }
 
 SPRINGTOWER_INLINE void copyPoints(const PointMemory& from, std::int32_t count, PointMemory& to) {
@@ -261,24 +306,85 @@ void synchronise(IslandStep& step) {
   islandOf(step).forcesKnown = false;
 }
 
+// Forces and residual where the blocks are now.
+double evaluateResidual(IslandStep& step, ImplicitIsland& island, double effective_s, StageClock& clock) {
+  clock.lap(Stage::integration);
+  evaluateForces(step, step.simulation.state, step.engine.stepVelocity, step.drift_s, Memory::trial);
+  clock.skip();  // it counts its own
+  return findResidual(step, island, effective_s);
+}
+
+// Takes the correction as far as the residual still works along it: where contacts open or friction turns round on the way, the
+// whole of it would go too far, and back in the next iteration (Newton with line search; Nocedal & Wright 2006). Returns the
+// residual there.
+double takeCorrection(IslandStep& step, ImplicitIsland& island, double effective_s, StageClock& clock) {
+  const double work = workAlong(island);
+  island.moved = true;
+  double share = 1.0;
+  moveAlong(step, island, 1.0, effective_s);
+  double residual = evaluateResidual(step, island, effective_s, clock);
+  if (!std::isfinite(residual) || residual <= 1.0) return residual;
+  double far = workAlong(island);
+  if (far >= -kOvershoot * work) return residual;
+  double least = 0.0;  // share at which it still works forwards, and where it does no more
+  double most = 1.0;
+  double near = work;
+  for (int trial = 0; trial < kMostShares; ++trial) {
+    const double next = least + (most - least) * std::clamp(near / (near - far), 0.1, 0.9);
+    moveAlong(step, island, next - share, effective_s);
+    share = next;
+    residual = evaluateResidual(step, island, effective_s, clock);
+    const double here = workAlong(island);
+    if (std::abs(here) <= kOvershoot * work || residual <= 1.0) break;
+    (here > 0.0 ? least : most) = share;
+    (here > 0.0 ? near : far) = here;
+  }
+  return residual;
+}
+
+// Puts the blocks where their velocities and accelerations carry them. Returns the residual there.
+double predict(IslandStep& step, ImplicitIsland& island, double effective_s, StageClock& clock) {
+  Engine& engine = step.engine;
+  const double h = step.drift_s;
+  for (const std::int32_t block : step.blocks) {
+    const auto b = static_cast<std::size_t>(block);
+    for (std::size_t a = 0; a < 3; ++a) {
+      const double pull = effective_s * effective_s * step.gravity[static_cast<Eigen::Index>(a)];
+      const double* v = engine.previousVelocity.values(a, b);
+      const double* history = engine.history.values(a, b);
+      const double* target = engine.target.values(a, b);
+      double* x = step.simulation.state.position.values(a, b);
+      for (std::size_t c = 0; c < kCorners; ++c) {
+        const double change = 3.0 * ((target[c] - pull - history[c]) / effective_s - v[c]);  // of the velocity in the last step
+        x[c] += h * (v[c] + 0.5 * change);
+      }
+    }
+    updateVelocities(step, b, effective_s);
+  }
+  island.moved = true;
+  return evaluateResidual(step, island, effective_s, clock);
+}
+
 // Newton's iteration for the state at the step's end, from engine.target and engine.history.
 bool solveStep(IslandStep& step, double effective_s) {
   ImplicitIsland& island = islandOf(step);
-  MotionState& state = step.simulation.state;
   StageClock clock(step.times);
   layOut(step, island);
+  island.moved = false;
   double residual = island.tooDense ? 0.0 : findResidual(step, island, effective_s);
+  if (residual > kPredicted) residual = predict(step, island, effective_s, clock);
   bool converged = false;
   int most = island.tooDense ? 0 : kMostIterations;
+  bool slow = false;
   for (int iteration = 0; iteration < most; ++iteration) {
-    const bool changed = updateMasks(step, island, iteration == 0);
-    if (changed) most = std::min(kMostContactIterations, iteration + kMostIterations);
-    if ((changed || !island.factorised) && !assemble(step, island, effective_s)) break;
-    correct(step, island, effective_s);
-    clock.lap(Stage::integration);
-    evaluateForces(step, state, step.engine.stepVelocity, step.drift_s, Memory::trial);
-    clock.skip();  // it counts its own
-    residual = findResidual(step, island, effective_s);
+    const ContactsNow now = contactsNow(step, island);
+    if (now.changed) most = std::min(kMostContactIterations, iteration + kMostIterations);
+    const bool stale = slow && (now.changed || now.slides);
+    if ((stale || !island.factorised) && !renewFactors(step, island, effective_s)) break;
+    const double before = residual;
+    findCorrection(step, island);
+    residual = takeCorrection(step, island, effective_s, clock);
+    slow = residual > kSlow * before;
     ++step.counters.implicitIterations;
     converged = residual <= 1.0;
     if (converged || !std::isfinite(residual)) break;
