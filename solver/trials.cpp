@@ -25,6 +25,17 @@ UserForce forceNow(const Simulation& simulation, std::size_t block, const Vec3& 
 
 }  // namespace
 
+Scene scaled(Scene scene, double size, double density) {
+  for (BlockSpec& block : scene.blocks) {
+    block.centre *= size;
+    block.dimensions *= size;
+    block.mass *= size * size * size * density;
+  }
+  scene.settings.frame_s *= std::sqrt(size);
+  scene.seconds *= std::sqrt(size);
+  return scene;
+}
+
 double normalForceOn(const std::vector<ContactForce>& forces, BlockId block, bool fromAboveOnly) {
   double sum = 0.0;
   for (const ContactForce& force : forces) {
