@@ -91,9 +91,10 @@ SlipTrial pullUntilSlip(Simulation& simulation, std::size_t block, const Vec3& d
 }
 
 TiltTrial tiltUntilFall(Scene scene, const TiltRamp& ramp) {
-  scene.gravity.tilt_deg = 0.0;
+  scene.gravity.tilt_deg = ramp.most_deg;  // stiff enough for the loads of the farthest lean, not only upright
   scene.gravity.direction_deg = ramp.direction_deg;
   Simulation simulation(scene);
+  simulation.scene.gravity.tilt_deg = 0.0;
   const std::vector<FittedBox> start = fittedBoxes(simulation.state.position);
   TiltTrial trial;
   while (trial.standing.stands && simulation.scene.gravity.tilt_deg < ramp.most_deg) {
