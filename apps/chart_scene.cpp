@@ -78,7 +78,6 @@ Scene sceneOf(const ChartCase& what, const ChartLimits& limits) {
   scene.settings.sleep = Sleep::off;
   if (what.knob == Knob::tolerance) {
     scene.settings.tolerance_m = what.value;
-    scene.settings.toleranceGiven = true;
   } else {
     scene.settings.substeps = static_cast<int>(what.value);
   }

@@ -106,10 +106,7 @@ void wrapDescriptions(CLI::App& app) {
 void applyPhysicsOptions(const PhysicsOptions& options, Settings& settings) {
   if (options.method) settings.method = methodFromName(*options.method, "--method");
   if (options.inertia) settings.inertia = inertiaFromName(*options.inertia, "--inertia");
-  if (options.tolerance_m) {
-    settings.tolerance_m = *options.tolerance_m;
-    settings.toleranceGiven = true;
-  }
+  if (options.tolerance_m) settings.tolerance_m = options.tolerance_m;
   if (options.substeps) settings.substeps = static_cast<int>(*options.substeps);
   if (options.iterations) settings.iterations = static_cast<int>(*options.iterations);
   if (options.noSleep) settings.sleep = Sleep::off;

@@ -118,7 +118,7 @@ std::vector<ProfileCase> casesOf(const ProfileCommand& command) {
   const std::vector<double> rows = numbers(command.rows, kRowsRange, "--rows", true, usualRows);
   const std::vector<double> towers = numbers(command.towers, kTowersRange, "--towers", true, {1, 4, 16, 64});
   const std::vector<double> tolerances =
-      numbers(command.tolerances_m, kToleranceRange, "--tolerances", false, {Settings{}.tolerance_m});
+      numbers(command.tolerances_m, kToleranceRange, "--tolerances", false, {kBlockTolerance_m});
   const std::vector<double> threads = numbers(command.threads, kThreadsRange, "--threads", true, {1});
   const Inertia inertia = command.inertia ? inertiaFromName(*command.inertia, "--inertia") : Settings{}.inertia;
   std::vector<ProfileCase> cases;

@@ -124,7 +124,6 @@ Scene sceneOf(const ProfileCase& what) {
   settings.method = what.method;
   settings.inertia = what.inertia;
   settings.tolerance_m = what.tolerance_m;
-  settings.toleranceGiven = true;
   const bool sleeps = what.scene == ProfileScene::asleep || what.scene == ProfileScene::pullSleep;
   settings.sleep = sleeps ? Sleep::on : Sleep::off;
   return scene;

@@ -63,7 +63,7 @@ struct ValidationPart {
 /// All sections in the order of the page.
 const std::vector<ValidationPart>& validationParts();
 
-/// One requirement of the 2003 report (its section 3.6) and the tests or claims that show it; none where nothing does yet.
+/// One requirement of the 2003 report (its section 3.6) and the tests or claims that show it.
 struct Requirement {
   std::string_view number;
   std::string_view text;

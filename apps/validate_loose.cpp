@@ -29,7 +29,7 @@ struct Carried {
 
 struct UnevenTower {
   std::uint64_t seed = 1;
-  double tolerance_m = 5e-5;
+  double tolerance_m = kBlockTolerance_m;
   bool rested = false;
   double penetration_m = 0.0;
   std::vector<Carried> blocks = {};

@@ -1,6 +1,7 @@
 #include "apps/validate.h"
 #include "core/error.h"
 #include "solver/run.h"
+#include "solver/trials.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,33 +16,10 @@ constexpr double kSameRelative = 0.05;
 constexpr double kHeavy = 100.0;
 constexpr double kHeavyPenetration_m = 1e-4;
 
-// The same scene of blocks `size` times as large and `density` times as dense; the frame grows with the square root of the size,
-// as all times do.
-Scene scaled(Scene scene, double size, double density) {
-  for (BlockSpec& block : scene.blocks) {
-    block.centre *= size;
-    block.dimensions *= size;
-    block.mass *= size * size * size * density;
-  }
-  scene.settings.frame_s *= std::sqrt(size);
-  scene.seconds *= std::sqrt(size);
-  return scene;
-}
-
-// Whatever else has a length or a time, in proportion as well.
-Scene withScaledSettings(Scene scene, double size) {
-  scene.settings.tolerance_m *= size;
-  scene.settings.toleranceGiven = true;
-  scene.settings.viscoelasticTime_s *= std::sqrt(size);
-  scene.settings.dampingTime_s *= std::sqrt(size);
-  return scene;
-}
-
 struct Variant {
   std::string name;
   double size;
   double density;
-  bool settings;  // whether lengths and times of the settings are scaled as well
 };
 
 // What a variant gives: verdicts of some towers, and how far the tower gives way, over block heights.
@@ -60,10 +38,7 @@ RunResult runOf(const Scene& scene, double seconds) {
 }
 
 Outcome outcomeOf(const Variant& variant, const std::vector<Scene>& judged) {
-  const auto make = [&](const Scene& scene) {
-    Scene other = scaled(scene, variant.size, variant.density);
-    return variant.settings ? withScaledSettings(std::move(other), variant.size) : other;
-  };
+  const auto make = [&](const Scene& scene) { return scaled(scene, variant.size, variant.density); };
   const double time = std::sqrt(variant.size);
   Outcome outcome;
   for (const Scene& scene : judged) {
@@ -132,16 +107,13 @@ ValidationSection validateScale(const ValidationPlan& plan) {
   ValidationSection section{"Scale",
                             "The same towers at a tenth and at ten times the size, with the frame time scaled by the square "
                             "root, and of blocks ten times "
-                            "as dense or as light, with no setting changed: verdicts of six towers, and how far 9 rows give way. "
-                            "Beside it, size with every "
-                            "length and time of the settings scaled as well."};
-  const std::vector<Variant> variants = {{"the game's size", 1.0, 1.0, false},
-                                         {"1/10 of the size", 0.1, 1.0, false},
-                                         {"10 times the size", 10.0, 1.0, false},
-                                         {"10 times denser", 1.0, 10.0, false},
-                                         {"10 times lighter", 1.0, 0.1, false},
-                                         {"1/10 of the size, settings scaled", 0.1, 1.0, true},
-                                         {"10 times the size, settings scaled", 10.0, 1.0, true}};
+                            "as dense or as light, with no setting changed: verdicts of six towers, and how far 9 rows give "
+                            "way."};
+  const std::vector<Variant> variants = {{"the game's size", 1.0, 1.0},
+                                         {"1/10 of the size", 0.1, 1.0},
+                                         {"10 times the size", 10.0, 1.0},
+                                         {"10 times denser", 1.0, 10.0},
+                                         {"10 times lighter", 1.0, 0.1}};
   const std::vector<Scene> judged = judgedScenes();
   std::vector<Outcome> outcomes(variants.size());
   tbb::parallel_for(std::size_t{0}, variants.size(),

@@ -117,7 +117,7 @@ Session::Session(const Scene& given, int players)
 }
 
 Tuning tuningOf(const Scene& scene) {
-  return {scene.settings.method, scene.settings.sleep, scene.settings.tolerance_m, scene.staticFriction};
+  return {scene.settings.method, scene.settings.sleep, toleranceOf(scene), scene.staticFriction};
 }
 
 Scene withTuning(Scene scene, const Tuning& tuning) {
@@ -126,7 +126,6 @@ Scene withTuning(Scene scene, const Tuning& tuning) {
   scene.settings.sleep = tuning.sleep;
   if (tuning.tolerance_m != own.tolerance_m) {
     scene.settings.tolerance_m = tuning.tolerance_m;
-    scene.settings.toleranceGiven = true;
     scene.settings.substeps = 0;
   }
   // A scene may give two coefficients; they stay two until the user sets one.

@@ -17,7 +17,7 @@ namespace springtower {
 struct Tuning {
   Method method = Method::semiImplicitEuler;
   Sleep sleep = Sleep::on;
-  double tolerance_m = 5e-5;
+  double tolerance_m = kBlockTolerance_m;
   double friction = 0.4;
   bool operator==(const Tuning&) const = default;
 };

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstddef>
 #include <fmt/format.h>
+#include <limits>
 #include <numbers>
 #include <string>
 #include <system_error>
@@ -179,6 +180,17 @@ Vec3 Gravity::at(double time_s) const {
   const double lean = kRadians * (tilt_deg + sway_deg * std::sin(2.0 * std::numbers::pi * sway_hz * time_s));
   const double direction = kRadians * direction_deg;
   return magnitude * Vec3(std::sin(lean) * std::cos(direction), std::sin(lean) * std::sin(direction), -std::cos(lean));
+}
+
+double blockHeightOf(const Scene& scene) {
+  double least = std::numeric_limits<double>::max();
+  for (const BlockSpec& block : scene.blocks) least = std::min(least, block.dimensions.minCoeff());
+  return least;
+}
+
+double toleranceOf(const Scene& scene) {
+  if (scene.settings.tolerance_m) return *scene.settings.tolerance_m;
+  return kBlockTolerance_m * (blockHeightOf(scene) / kBlockHeight_m);
 }
 
 Scene towerScene(int rows, const TowerOptions& options) {

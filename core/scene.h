@@ -17,6 +17,8 @@ inline constexpr double kBlockWidth_m = 0.0267;
 inline constexpr double kBlockHeight_m = 0.0182;
 inline constexpr double kBlockMass_kg = 0.0196;
 inline constexpr double kStandardGravity_m_s2 = 9.81;
+/// The default tolerance for these blocks, m; others have it in proportion to their height.
+inline constexpr double kBlockTolerance_m = 5e-5;
 
 /// One block as it starts.
 struct BlockSpec {
@@ -109,6 +111,14 @@ Scene sceneFromToml(const std::string& path, const TowerOptions& options = {});
 
 /// A scene from what the command line names: `tower:R`, a bit code, or a TOML file. Throws InputError.
 Scene sceneFromName(const std::string& name, const TowerOptions& options = {});
+
+/// The height h in which thresholds and the default tolerance are measured, m: the least side of any block. Where heights vary
+/// it is that of the lowest, the block that a fault of one size matters most to. Precondition: there is a block.
+double blockHeightOf(const Scene& scene);
+
+/// The tolerance that a scene asks for, m: as its settings give it, else kBlockTolerance_m in proportion to blockHeightOf.
+/// Precondition: there is a block, or the settings give one.
+double toleranceOf(const Scene& scene);
 
 /// Checks what every scene must obey: values within the limits of core/limits.h and `settingTable`, unit orientations, forces on
 /// blocks that exist, no block inside another or in the floor by more than a millionth of the least dimension of the blocks

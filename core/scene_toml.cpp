@@ -224,13 +224,14 @@ void readSettings(const Table& table, Settings& settings) {
   for (const SettingRow& row : settingTable()) {
     if (const auto* number = std::get_if<double Settings::*>(&row.member)) {
       table.read(row.key, settings.**number, {row.least, row.most, row.unit});
+    } else if (const auto* optional = std::get_if<std::optional<double> Settings::*>(&row.member)) {
+      table.read(row.key, settings.**optional, {row.least, row.most, row.unit});
     } else if (const auto* whole = std::get_if<int Settings::*>(&row.member)) {
       table.readWhole(row.key, settings.**whole, static_cast<std::int64_t>(row.least), static_cast<std::int64_t>(row.most));
     } else {
       table.read(row.key, settings.*std::get<bool Settings::*>(row.member));
     }
   }
-  settings.toleranceGiven = table.has("tolerance_m");
 }
 
 std::vector<std::string_view> settingKeys() {

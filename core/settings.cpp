@@ -15,8 +15,9 @@ namespace {
 constexpr auto kSettingTable = std::to_array<SettingRow>({
     {"frame_s", "s", "simulated time between two pictures; a screen of 60 Hz shows one each", 1e-4, 0.1, &Settings::frame_s},
     {"tolerance_m", "m",
-     "no resting penetration and no row compression above it; a smaller one means stiffer blocks and more steps", 1e-7, 1e-2,
-     &Settings::tolerance_m},
+     "no resting penetration and no row compression above it; a smaller one means stiffer blocks and more steps; by default in "
+     "proportion to the block height",
+     1e-7, 1e-2, &Settings::tolerance_m},
     {"substeps", "", "steps in a frame; 0 takes as many as the tolerance needs", 0, 100000, &Settings::substeps},
     {"force_unstable", "", "runs a tolerance and substeps that do not fit together, to see what then happens", 0, 1,
      &Settings::forceUnstable},
@@ -27,10 +28,10 @@ constexpr auto kSettingTable = std::to_array<SettingRow>({
      0.01, 2, &Settings::tangentialRatio},
     {"viscoelastic_ratio", "", "stiffness of a contact's relaxing branch over its lasting one; damps the slow sway of a tower", 0,
      2, &Settings::viscoelasticRatio},
-    {"viscoelastic_time_s", "s", "relaxation time of that branch; near the period of the sway it damps most", 1e-4, 1,
-     &Settings::viscoelasticTime_s},
-    {"damping_time_s", "s", "dashpot over stiffness of springs and contacts; sets how high a dropped block rebounds", 0, 1e-2,
-     &Settings::dampingTime_s},
+    {"viscoelastic_time", "sqrt(h / g)", "relaxation time of that branch; near the period of the sway it damps most", 1e-3, 25,
+     &Settings::viscoelasticTime},
+    {"damping_time", "sqrt(h / g)", "dashpot over stiffness of springs and contacts; sets how high a dropped block rebounds", 0,
+     0.25, &Settings::dampingTime},
     {"impact_penetration", "", "largest penetration aimed at in an impact, in tolerances", 1, 1000, &Settings::impactPenetration},
     {"continuous_tests", "", "finds collisions by the cubic tests; off shows what a test at the ends of steps misses", 0, 1,
      &Settings::continuousTests},
@@ -88,10 +89,17 @@ std::span<const SettingRow> settingTable() {
   return kSettingTable;
 }
 
+std::optional<double> numberOf(const Settings& settings, const SettingRow& row) {
+  if (const auto* optional = std::get_if<std::optional<double> Settings::*>(&row.member)) return settings.**optional;
+  if (const auto* number = std::get_if<double Settings::*>(&row.member)) return settings.**number;
+  if (const auto* whole = std::get_if<int Settings::*>(&row.member)) return settings.**whole;
+  return settings.*std::get<bool Settings::*>(row.member) ? 1.0 : 0.0;
+}
+
 void checkSettings(const Settings& settings, std::string_view source) {
   for (const SettingRow& row : settingTable()) {
-    const double value = std::visit([&](auto member) { return static_cast<double>(settings.*member); }, row.member);
-    requireInRange(value, {row.least, row.most, row.unit}, fmt::format("{}: {}", source, row.key));
+    const std::optional<double> value = numberOf(settings, row);
+    if (value) requireInRange(*value, {row.least, row.most, row.unit}, fmt::format("{}: {}", source, row.key));
   }
 }
 

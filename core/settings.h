@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -31,18 +32,21 @@ struct Settings {
   Inertia inertia = Inertia::cuboid;
   Sleep sleep = Sleep::on;
   double frame_s = 1.0 / 60.0;  ///< s; one frame of a 60 Hz display
-  double tolerance_m = 5e-5;    ///< m; no resting penetration and no row compression above it
-  int substeps = 0;             ///< steps a frame; 0 takes them from the tolerance
-  bool toleranceGiven = false;  ///< whether the user named a tolerance; with substeps alone the largest stable stiffness is taken
-  bool forceUnstable = false;   ///< allow a tolerance and substeps that do not fit together
-  double stepMargin = 0.95;     ///< fraction of the stability limit that is used
-  double springRatio = 1.0;     ///< stiffness of an upright edge spring over that of a contact
+  /// m; no resting penetration and no row compression above it. Where none is given it is in proportion to the blocks
+  /// (core/scene.h, toleranceOf); with substeps alone the largest stable stiffness is taken.
+  std::optional<double> tolerance_m;
+  int substeps = 0;              ///< steps a frame; 0 takes them from the tolerance
+  bool forceUnstable = false;    ///< allow a tolerance and substeps that do not fit together
+  double stepMargin = 0.95;      ///< fraction of the stability limit that is used
+  double springRatio = 1.0;      ///< stiffness of an upright edge spring over that of a contact
   double tangentialRatio = 0.8;  ///< tangential over normal contact stiffness; wood's Mindlin ratio is 2(1-nu)/(2-nu), about 0.8
-  double viscoelasticRatio = 0.3;    ///< stiffness of the contact's relaxing branch over its lasting one; damps a tower's sway
-  double viscoelasticTime_s = 0.05;  ///< s; relaxation time of that branch
-  double dampingTime_s = 3e-5;       ///< s; dashpot over stiffness, of springs and contacts; sets the rebound and damps ringing
-  double impactPenetration = 8.0;    ///< largest penetration aimed at in an impact, in tolerances
-  bool continuousTests = true;       ///< find collisions by the cubic tests; off shows what a discrete method misses
+  double viscoelasticRatio = 0.3;   ///< stiffness of the contact's relaxing branch over its lasting one; damps a tower's sway
+  double viscoelasticTime = 1.161;  ///< in sqrt(h / g); relaxation time of that branch, 50 ms for the game's blocks
+  /// In sqrt(h / g); dashpot over stiffness, of springs and contacts: sets the rebound and damps ringing. 30 us for the game's
+  /// blocks.
+  double dampingTime = 6.965e-4;
+  double impactPenetration = 8.0;  ///< largest penetration aimed at in an impact, in tolerances
+  bool continuousTests = true;     ///< find collisions by the cubic tests; off shows what a discrete method misses
   double restSpeed =
       2.5e-4;              ///< in sqrt(g h); a block slower than this (corner speed of its rigid motion) is a candidate for sleep
   double restTime = 12.0;  ///< in sqrt(h / g); how long it must have been at rest
@@ -62,12 +66,14 @@ struct SettingRow {
   std::string_view reason;
   double least;
   double most;
-  std::variant<double Settings::*, int Settings::*, bool Settings::*> member;
+  std::variant<double Settings::*, int Settings::*, bool Settings::*, std::optional<double> Settings::*> member;
 };
 
 /// All settings that are numbers or on/off, in the order of `Settings`; the enumerations are read by the functions below.
-/// `toleranceGiven` is not among them: whoever reads a tolerance sets it.
 std::span<const SettingRow> settingTable();
+
+/// The value of a row as a number (0 and 1 for off and on); none where it is left to the scene.
+std::optional<double> numberOf(const Settings& settings, const SettingRow& row);
 
 /// Checks every setting against its row. Throws InputError naming the key, what was found and what is allowed.
 void checkSettings(const Settings& settings, std::string_view source);

@@ -20,7 +20,7 @@ struct ContactLaw {
   double staticFriction = 0.0;       ///< Coulomb's coefficient while it sticks
   double kineticFriction = 0.0;      ///< and while it slides
   double impactPenetration_m = 1.0;  ///< depth aimed at in an impact; decides how much a new contact is stiffened
-  double scaleTime_s = 0.01;         ///< s in which that stiffening fades; lowering a stiffness only takes energy out
+  double scaleTime_s = 1.0;          ///< s in which that stiffening fades
   double offsetPerSlip = 0.0;  ///< how much of the offset fades per length of slip; its work is paid by the slip's own friction
 };
 

@@ -11,6 +11,9 @@ namespace springtower {
 
 namespace {
 
+// In which the stiffening of a contact that is hit fades, in sqrt(h / g); lowering a stiffness only takes energy out.
+constexpr double kStiffeningTime = 0.2322;
+
 // A manifold as it stands at the positions now: frames of its blocks, and its memory brought up to date on a copy.
 struct ManifoldNow {
   Manifold manifold;
@@ -45,8 +48,9 @@ ContactLaw contactLaw(const Simulation& simulation) {
   law.stiffness_n_m = simulation.contactStiffness_n_m;
   law.floorStiffness_n_m = simulation.floorStiffness_n_m;
   law.relaxingRatio = settings.viscoelasticRatio;
-  law.relaxingTime_s = settings.viscoelasticTime_s;
-  law.dampingTime_s = settings.dampingTime_s;
+  law.relaxingTime_s = settings.viscoelasticTime * simulation.lengths.fallTime_s;
+  law.dampingTime_s = simulation.dampingTime_s;
+  law.scaleTime_s = kStiffeningTime * simulation.lengths.fallTime_s;
   law.tangentialRatio = settings.tangentialRatio;
   law.staticFriction = simulation.scene.staticFriction;
   law.kineticFriction = simulation.scene.kineticFriction;

@@ -115,13 +115,13 @@ int chooseSubsteps(IslandStep& step) {
   double allowed = 0.0;  // largest eigenvalue the step bears
   int substeps = simulation.fixedSubsteps;
   if (substeps > 0) {
-    allowed = stableSpectralRadius(settings.method, settings.frame_s / substeps, settings.dampingTime_s, settings.stepMargin);
+    allowed = stableSpectralRadius(settings.method, settings.frame_s / substeps, simulation.dampingTime_s, settings.stepMargin);
   } else {
     const double needed = standing + (approach.meeting || wanted > 1.0 ? std::max(together, wanted) * born : 0.0);
     const double margin = settings.stepMargin * (settings.method == Method::report ? kImpulseMargin : 1.0);
-    const double dt = stableStep(settings.method, needed, settings.dampingTime_s, margin);
+    const double dt = stableStep(settings.method, needed, simulation.dampingTime_s, margin);
     substeps = std::clamp(static_cast<int>(std::ceil(settings.frame_s / dt)), 1, kMostSubsteps);
-    allowed = stableSpectralRadius(settings.method, settings.frame_s / substeps, settings.dampingTime_s, settings.stepMargin);
+    allowed = stableSpectralRadius(settings.method, settings.frame_s / substeps, simulation.dampingTime_s, settings.stepMargin);
   }
   step.scaleMost = born > 0.0 ? std::clamp((allowed - standing) / (together * born), 1.0, std::max(1.0, wanted)) : 1.0;
   return substeps;

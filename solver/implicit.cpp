@@ -84,7 +84,7 @@ void prepareImplicit(Simulation& simulation) {
     const bool asBefore = b > 0 && model.dimensions[b] == model.dimensions[b - 1] && model.mass[b] == model.mass[b - 1];
     engine.jacobian[b] = asBefore ? engine.jacobian[b - 1]
                                   : blockJacobian(model, simulation.scene.settings.inertia, b, 1.0 / (step_s * step_s),
-                                                  1.0 + simulation.scene.settings.dampingTime_s / step_s);
+                                                  1.0 + simulation.dampingTime_s / step_s);
   }
 }
 

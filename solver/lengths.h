@@ -30,7 +30,8 @@ inline constexpr double kMostTravelPerStep = 0.5;
 
 /// The scene's own scale, and the sizes above in metres.
 struct Lengths {
-  double blockHeight_m = 0.0;  ///< least side of any block
+  double blockHeight_m = 0.0;  ///< h, least side of any block
+  double fallTime_s = 0.0;     ///< sqrt(h / g), in which times are measured; without gravity with that of Earth
   double contactError_m = 0.0;
   double partingGap_m = 0.0;
 };

@@ -63,13 +63,13 @@ void chooseStiffness(Simulation& simulation) {
   LoadEstimate loads = estimateLoads(simulation.scene);
   const bool stable = settings.method == Method::implicit || isRigid(settings.method);  // with any step
   simulation.fixedSubsteps = stable ? 0 : settings.substeps;
-  simulation.tolerance_m = settings.tolerance_m;
-  Stiffness stiffness = stiffnessForTolerance(loads, settings.tolerance_m);
+  simulation.tolerance_m = toleranceOf(simulation.scene);
+  Stiffness stiffness = stiffnessForTolerance(loads, simulation.tolerance_m);
   if (simulation.fixedSubsteps > 0) {
-    const double allowed =
-        stableSpectralRadius(settings.method, settings.frame_s / settings.substeps, settings.dampingTime_s, settings.stepMargin);
+    const double allowed = stableSpectralRadius(settings.method, settings.frame_s / settings.substeps, simulation.dampingTime_s,
+                                                settings.stepMargin);
     const double needed = foreseenSpectralRadius(simulation, stiffness);
-    if (!settings.toleranceGiven) {
+    if (!settings.tolerance_m) {
       loads.swayStiffness_n_m = 0.0;
       const double unit = foreseenSpectralRadius(simulation, stiffnessForTolerance(loads, 1.0));
       simulation.tolerance_m = unit / allowed;
@@ -78,9 +78,9 @@ void chooseStiffness(Simulation& simulation) {
       throw InputError(fmt::format(
           "settings: found tolerance_m = {:g} with substeps = {}, allowed: at least {} substeps for this tolerance, or "
           "force_unstable",
-          settings.tolerance_m, settings.substeps,
+          *settings.tolerance_m, settings.substeps,
           static_cast<int>(
-              std::ceil(settings.frame_s / stableStep(settings.method, needed, settings.dampingTime_s, settings.stepMargin)))));
+              std::ceil(settings.frame_s / stableStep(settings.method, needed, simulation.dampingTime_s, settings.stepMargin)))));
     }
   }
   simulation.contactStiffness_n_m = stiffness.contact_n_m;
@@ -103,16 +103,15 @@ Simulation::Simulation(const Scene& given) : scene(given), engine(std::make_uniq
   state.resize(count);
   asleep.assign(count, 0);
   restTime_s.assign(count, 0.0);
-  lengths.blockHeight_m = 1e300;
-  for (std::size_t b = 0; b < count; ++b) {
-    placeBlock(scene.blocks[b], b, *this);
-    lengths.blockHeight_m = std::min(lengths.blockHeight_m, scene.blocks[b].dimensions.minCoeff());
-  }
+  for (std::size_t b = 0; b < count; ++b) placeBlock(scene.blocks[b], b, *this);
+  lengths.blockHeight_m = blockHeightOf(scene);
+  lengths.fallTime_s =
+      std::sqrt(lengths.blockHeight_m / (scene.gravity.magnitude > 0.0 ? scene.gravity.magnitude : kStandardGravity_m_s2));
+  dampingTime_s = scene.settings.dampingTime * lengths.fallTime_s;
   lengths.contactError_m = kBornError * lengths.blockHeight_m;
   lengths.partingGap_m = kPartingGap * lengths.blockHeight_m;
   chooseStiffness(*this);
-  for (std::size_t b = 0; b < count; ++b)
-    setSprings(model, b, springStiffness_n_m, lengths.blockHeight_m, scene.settings.dampingTime_s);
+  for (std::size_t b = 0; b < count; ++b) setSprings(model, b, springStiffness_n_m, lengths.blockHeight_m, dampingTime_s);
 
   Engine& e = *engine;
   e.boxes.resize(count);

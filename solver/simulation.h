@@ -27,6 +27,7 @@ struct Simulation {
   double time_s = 0.0;                ///< simulated time, s
   std::uint64_t frame = 0;            ///< frames done
   double tolerance_m = 0.0;           ///< the tolerance in force: as given, or what the given substeps allow
+  double dampingTime_s = 0.0;         ///< s, dashpot over stiffness of springs and contacts
   double contactStiffness_n_m = 0.0;  ///< N/m, of one resting contact point, normal
   double floorStiffness_n_m = 0.0;    ///< N/m, of one on the floor
   double springStiffness_n_m = 0.0;   ///< N/m, of an upright edge of a block of the scene's least height

@@ -12,8 +12,8 @@ namespace {
 // yet settled is forgotten little by little rather than kept as jitter.
 constexpr double kContactRate = 0.125;  // in steps
 constexpr double kDampingRatio = 10.0;  // of the critical
-// Speed that blocks are pushed apart with at most, in block heights a second.
-constexpr double kPushSpeed = 20.0;
+// Speed that blocks are pushed apart with at most, in sqrt(g h).
+constexpr double kPushSpeed = 0.86;
 
 // A soft constraint: `rate` of the gap is closed in a second, `mass` and `impulse` are the shares of the rigid answer and of the
 // impulse so far.
@@ -64,7 +64,7 @@ void solveNormal(RigidIsland& island, RigidContact& contact, double least, const
 void stepRigidPgs(IslandStep& step, RigidIsland& island) {
   const Scene& scene = step.simulation.scene;
   const double step_s = step.drift_s;
-  const double most = kPushSpeed * step.simulation.lengths.blockHeight_m;
+  const double most = kPushSpeed * step.simulation.lengths.blockHeight_m / step.simulation.lengths.fallTime_s;
   applyForces(step);
   for (const RigidContact& contact : island.contacts) {
     applyImpulse(island, contact,

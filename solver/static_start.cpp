@@ -13,8 +13,9 @@ namespace springtower {
 
 namespace {
 
-constexpr double kFirstStep_s = 0.5e-3;
-constexpr double kLastStep_s = 0.2;  // in which a block without support falls by 20 times its height
+// The first and the last step, in sqrt(h / g); in the last a block without support falls by 20 times its height.
+constexpr double kFirstStep = 0.012;
+constexpr double kLastStep = 4.6;
 constexpr double kGrowth = 2.0;
 constexpr int kMostSteps = 60;
 constexpr int kMostRetries = 6;
@@ -51,7 +52,7 @@ void setJacobians(IslandStep& step, double effective_s) {
         last < model.blockCount() && model.dimensions[b] == model.dimensions[last] && model.mass[b] == model.mass[last];
     step.engine.jacobian[b] = asLast ? step.engine.jacobian[last]
                                      : blockJacobian(model, settings.inertia, b, 1.0 / (effective_s * effective_s),
-                                                     1.0 + settings.dampingTime_s / effective_s);
+                                                     1.0 + step.simulation.dampingTime_s / effective_s);
     last = b;
   }
 }
@@ -74,7 +75,8 @@ double stop(IslandStep& step) {
 // Steps until nothing moves any more; false where that does not come about.
 bool settle(IslandStep& step) {
   const double tolerance = step.simulation.tolerance_m;
-  double effective_s = kFirstStep_s;
+  const double fallTime_s = step.simulation.lengths.fallTime_s;
+  double effective_s = kFirstStep * fallTime_s;
   int retries = 0;
   for (int i = 0; i < kMostSteps; ++i) {
     setJacobians(step, effective_s);
@@ -85,8 +87,8 @@ bool settle(IslandStep& step) {
     }
     const double farthest = stop(step);
     if (!(farthest < kFarthest * tolerance) || !updateContacts(step)) return false;
-    if (effective_s >= kLastStep_s && farthest < kSettled * tolerance) return true;
-    effective_s = std::min(kLastStep_s, kGrowth * effective_s);
+    if (effective_s >= kLastStep * fallTime_s && farthest < kSettled * tolerance) return true;
+    effective_s = std::min(kLastStep * fallTime_s, kGrowth * effective_s);
   }
   return false;
 }

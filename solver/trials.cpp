@@ -25,6 +25,17 @@ UserForce forceNow(const Simulation& simulation, std::size_t block, const Vec3& 
 
 }  // namespace
 
+Scene scaled(Scene scene, double size, double density) {
+  for (BlockSpec& block : scene.blocks) {
+    block.centre *= size;
+    block.dimensions *= size;
+    block.mass *= size * size * size * density;
+  }
+  scene.settings.frame_s *= std::sqrt(size);
+  scene.seconds *= std::sqrt(size);
+  return scene;
+}
+
 double normalForceOn(const std::vector<ContactForce>& forces, BlockId block, bool fromAboveOnly) {
   double sum = 0.0;
   for (const ContactForce& force : forces) {
@@ -80,9 +91,10 @@ SlipTrial pullUntilSlip(Simulation& simulation, std::size_t block, const Vec3& d
 }
 
 TiltTrial tiltUntilFall(Scene scene, const TiltRamp& ramp) {
-  scene.gravity.tilt_deg = 0.0;
+  scene.gravity.tilt_deg = ramp.most_deg;  // stiff enough for the loads of the farthest lean, not only upright
   scene.gravity.direction_deg = ramp.direction_deg;
   Simulation simulation(scene);
+  simulation.scene.gravity.tilt_deg = 0.0;
   const std::vector<FittedBox> start = fittedBoxes(simulation.state.position);
   TiltTrial trial;
   while (trial.standing.stands && simulation.scene.gravity.tilt_deg < ramp.most_deg) {

@@ -47,6 +47,10 @@ struct TiltTrial {
 /// Turns a scene's gravity frame by frame until the scene does not stand any more. Throws DivergenceError.
 TiltTrial tiltUntilFall(Scene scene, const TiltRamp& ramp);
 
+/// The same scene of blocks `size` times as large and `density` times as dense, its frames and its duration longer by the root of
+/// the size, as all times are that gravity sets. Preconditions: both positive; no start gap, velocities or forces.
+Scene scaled(Scene scene, double size, double density);
+
 /// Sum over a block's contacts of the normal force, N: of all, or of those from above only.
 double normalForceOn(const std::vector<ContactForce>& forces, BlockId block, bool fromAboveOnly);
 

@@ -357,5 +357,16 @@ TEST(Gravity, SwaysAboutTheTilt) {
   EXPECT_NEAR(lean_deg(1.5), 0.5, 1e-12);
 }
 
+TEST(Tolerance, IsInProportionToTheLowestBlockUnlessGiven) {
+  Scene scene = towerScene(2);
+  EXPECT_EQ(toleranceOf(scene), kBlockTolerance_m);
+  for (BlockSpec& block : scene.blocks) block.dimensions *= 10.0;
+  EXPECT_DOUBLE_EQ(toleranceOf(scene), 10.0 * kBlockTolerance_m);
+  scene.blocks[3].dimensions.z() = 0.5 * kBlockHeight_m;
+  EXPECT_DOUBLE_EQ(toleranceOf(scene), 0.5 * kBlockTolerance_m);
+  scene.settings.tolerance_m = 2e-6;
+  EXPECT_EQ(toleranceOf(scene), 2e-6);
+}
+
 }  // namespace
 }  // namespace springtower

@@ -45,7 +45,7 @@ TEST(SceneFile, SetsEverythingASceneHas) {
   EXPECT_EQ(scene.settings.sleep, Sleep::report);
   EXPECT_EQ(scene.settings.substeps, 120);
   EXPECT_FALSE(scene.settings.continuousTests);
-  EXPECT_FALSE(scene.settings.toleranceGiven);
+  EXPECT_FALSE(scene.settings.tolerance_m);
   EXPECT_EQ(scene.settings.stepMargin, Settings{}.stepMargin);
 
   const BlockSpec& block = scene.blocks[6];
@@ -110,8 +110,8 @@ TEST(SceneFile, ReadsEverySettingOfTheTable) {
     std::string most = fmt::format("{}", row.most);
     if (std::holds_alternative<bool Settings::*>(row.member)) most = "true";
     const Settings settings = fromText(fmt::format("[tower]\nrows = 1\n[settings]\n{} = {}\n", row.key, most)).settings;
-    std::visit([&](auto member) { EXPECT_EQ(static_cast<double>(settings.*member), row.most) << row.key; }, row.member);
-    EXPECT_EQ(settings.toleranceGiven, row.key == "tolerance_m") << row.key;
+    EXPECT_EQ(numberOf(settings, row), row.most) << row.key;
+    EXPECT_EQ(settings.tolerance_m.has_value(), row.key == "tolerance_m") << row.key;
   }
   EXPECT_FALSE(fromText("[tower]\nrows = 1\n[settings]\ncontinuous_tests = false\n").settings.continuousTests);
 }
@@ -263,7 +263,7 @@ TEST(ExampleScenes, AnnotatedOneShowsEverySettingWithItsDefault) {
     ASSERT_FALSE(shown.value.empty()) << row.key;
     const bool isFlag = std::holds_alternative<bool Settings::*>(row.member);
     const double value = isFlag ? (shown.value.starts_with("true") ? 1.0 : 0.0) : std::stod(shown.value);
-    std::visit([&](auto member) { EXPECT_EQ(value, static_cast<double>(Settings{}.*member)) << row.key; }, row.member);
+    EXPECT_EQ(value, numberOf(Settings{}, row).value_or(kBlockTolerance_m)) << row.key;
     const std::string unit = row.unit.empty() ? "" : std::string(row.unit) + ",";
     EXPECT_THAT(shown.comment, testing::StartsWith(unit)) << row.key;
     EXPECT_FALSE(shown.comment.empty()) << row.key;
@@ -306,7 +306,7 @@ TEST(ExampleScenes, KeysThatAreCommentedOutAreKeysThatAreAllowed) {
   ASSERT_EQ(scene.forces.size(), 1U);
   EXPECT_EQ(scene.forces[0].block, 52);
   EXPECT_NEAR(scene.blocks[27].dimensions.z(), 0.0179, 1e-17);
-  EXPECT_TRUE(scene.settings.toleranceGiven);
+  EXPECT_EQ(scene.settings.tolerance_m, kBlockTolerance_m);
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ inline Scene asReported(Scene scene, Inertia inertia = Inertia::lumped) {
 /// A scene at its tolerance with this many steps a frame.
 inline Scene withSubsteps(Scene scene, int substeps) {
   scene.settings.substeps = substeps;
-  scene.settings.toleranceGiven = true;
+  scene.settings.tolerance_m = toleranceOf(scene);
   return scene;
 }
 

@@ -128,7 +128,7 @@ TEST_P(ReportInertiaTest, AnElasticCollisionKeepsEnergy) {
   Scene scene = twoThrownBlocks(GetParam());
   scene.settings.reportRestitution = 1.0;
   scene.settings.reportFrictionDrag = 0.0;
-  scene.settings.dampingTime_s = 0.0;
+  scene.settings.dampingTime = 0.0;
   scene.kineticFriction = scene.staticFriction = 0.0;
   Simulation simulation(withSubsteps(scene, 1000));
   simulation.scene.gravity.magnitude = 0.0;

@@ -122,7 +122,7 @@ TEST(SingleBlock, DroppedFlatKeepsItsBounds) {
   const RunResult result = runFor(simulation, 2.0);
   expectCleanImpact(result);
   // At rest on the floor: as high as its half height, but for the tolerance.
-  EXPECT_NEAR(centre(simulation.state.position, 0).z(), 0.5 * kBlockHeight_m, scene.settings.tolerance_m);
+  EXPECT_NEAR(centre(simulation.state.position, 0).z(), 0.5 * kBlockHeight_m, simulation.tolerance_m);
 }
 
 TEST(SingleBlock, DroppedOnACornerKeepsItsBounds) {
@@ -132,7 +132,7 @@ TEST(SingleBlock, DroppedOnACornerKeepsItsBounds) {
   expectCleanImpact(result);
   // The floor's own answer to a resting block stays within the tolerance.
   PenetrationWorkspace workspace;
-  EXPECT_LE(maxPenetration(simulation.state.position, true, workspace).depth, scene.settings.tolerance_m);
+  EXPECT_LE(maxPenetration(simulation.state.position, true, workspace).depth, simulation.tolerance_m);
 }
 
 TEST(TwoBlocks, ThrownAtEachOtherKeepTheirBounds) {
@@ -141,7 +141,7 @@ TEST(TwoBlocks, ThrownAtEachOtherKeepTheirBounds) {
   const RunResult result = runFor(simulation, 3.0);
   expectCleanImpact(result);
   PenetrationWorkspace workspace;
-  EXPECT_LE(maxPenetration(simulation.state.position, true, workspace).depth, scene.settings.tolerance_m);
+  EXPECT_LE(maxPenetration(simulation.state.position, true, workspace).depth, simulation.tolerance_m);
 }
 
 // Head on in flight, without floor or gravity's help: they must part again and keep their momentum, which is nil.
@@ -191,7 +191,7 @@ TEST(Divergence, IsCaughtInItsStepWithBlockAndTime) {
   scene.blocks[1].centre.z() += 0.001;
   scene.settings.method = Method::semiImplicitEuler;
   scene.settings.substeps = 60;
-  scene.settings.toleranceGiven = true;
+  scene.settings.tolerance_m = kBlockTolerance_m;
   scene.settings.forceUnstable = true;
   Simulation simulation(scene);
   int block = -1;

@@ -1,5 +1,6 @@
 #include "core/scene.h"
 #include "solver/run.h"
+#include "solver/statics.h"
 
 #include <array>
 #include <cmath>
@@ -147,6 +148,26 @@ INSTANTIATE_TEST_SUITE_P(Report, PublishedTest,
                                            Published{"(010)-(010)-(011)", 0.0, true, "T5"},
                                            Published{"(010)-(010)-(011)-(010)-(001)", 0.0, true, "T6"}),
                          [](const auto& tested) { return std::string(tested.param.name); });
+
+struct PlacedTest : ::testing::TestWithParam<double> {};
+
+// A block let down half a millimetre, crosswise, onto the end of a block that lies across another: the pair's centre of mass is
+// at half the distance, and the lower edge at half a block's width, so it stays where the distance is less than that width.
+TEST_P(PlacedTest, ABlockLaidOnTopStaysOrTipsWhatIsBelow) {
+  const double distance_m = GetParam();
+  const bool stays = distance_m < kBlockWidth_m;
+  Scene scene = bitCodeScene("(010)-(010)");
+  BlockSpec placed;
+  placed.centre = Vec3(0.0, distance_m, 2.5 * kBlockHeight_m);
+  scene.blocks.push_back(placed);
+  EXPECT_EQ(staticScene(scene).rest == Rest::stands, stays);
+  scene.blocks.back().centre.z() += 0.5 * kMillimetre;
+  const RunResult result = runFor(scene, 3.0);
+  EXPECT_EQ(result.standing.stands, stays) << describe(result.standing);
+  EXPECT_EQ(result.counters.contactsBornPenetrating, 0U);
+}
+
+INSTANTIATE_TEST_SUITE_P(Distances, PlacedTest, ::testing::Values(0.010, 0.018, 0.022, 0.031, 0.036));
 
 }  // namespace
 }  // namespace springtower

@@ -83,5 +83,48 @@ TEST(Tilt, WhatStandsIsNotSaidToFall) {
   EXPECT_NEAR(trial.tilt_deg, 5.0, 0.1);
 }
 
+struct ScaleTest : ::testing::TestWithParam<std::pair<double, double>> {};
+
+// Nothing but the blocks and the frame changes: every length of the engine is a multiple of the block height, every time of
+// sqrt(h / g), every force of a weight. What is left is rounding, and the residual of implicit steps, 1e-5 of a weight.
+TEST_P(ScaleTest, ATowerGivesWayByTheSameShareOfItsHeight) {
+  const auto [size, density] = GetParam();
+  const auto compressed = [](const Scene& scene) {
+    Simulation simulation(scene);
+    for (int frame = 0; frame < 120; ++frame) stepFrame(simulation);
+    const double top = simulation.lengths.blockHeight_m * 6.0;
+    return 1.0 - centre(simulation.state.position, 17).z() / (top - 0.5 * simulation.lengths.blockHeight_m);
+  };
+  const double own = compressed(towerScene(6));
+  EXPECT_GT(own, 1e-4);
+  EXPECT_NEAR(compressed(scaled(towerScene(6), size, density)), own, 1e-3 * own);
+}
+
+// Blocks that overhang by 10 mm stay, by 14.4 mm of the 13.35 mm that statics allows they fall, in as many frames.
+TEST_P(ScaleTest, WhatFallsFallsInAsManyFrames) {
+  const auto [size, density] = GetParam();
+  const auto framesUntilFall = [](const Scene& scene) {
+    Simulation simulation(scene);
+    const std::vector<FittedBox> start = fittedBoxes(simulation.state.position);
+    int frame = 0;
+    while (frame < 120 && standing(simulation.model, start, simulation.state.position).stands) {
+      stepFrame(simulation);
+      ++frame;
+    }
+    return frame;
+  };
+  for (const double overhang_m : {0.0100, 0.0144}) {
+    TowerOptions options;
+    options.offsets.push_back({1, 2, 0.0, overhang_m});
+    const Scene scene = bitCodeScene("(010)-(010)", options);
+    const int frames = framesUntilFall(scene);
+    EXPECT_EQ(frames == 120, overhang_m < 0.0133) << frames;
+    EXPECT_NEAR(framesUntilFall(scaled(scene, size, density)), frames, 1) << overhang_m;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Sizes, ScaleTest,
+                         ::testing::Values(std::pair{0.1, 1.0}, std::pair{10.0, 1.0}, std::pair{1.0, 10.0}, std::pair{1.0, 0.1}));
+
 }  // namespace
 }  // namespace springtower

@@ -32,7 +32,7 @@ inline void setSteps(Settings& settings, Method method, double step_s, int steps
   settings.method = method;
   settings.frame_s = step_s * steps;
   settings.substeps = steps;
-  settings.toleranceGiven = true;
+  settings.tolerance_m = kBlockTolerance_m;
   settings.forceUnstable = true;
 }
 
@@ -41,7 +41,7 @@ inline Simulation ringingBlock(Inertia inertia, Method method, double step_s, in
   Scene scene = oneBlockScene(false);
   scene.gravity.magnitude = 0.0;
   scene.settings.inertia = inertia;
-  scene.settings.dampingTime_s = 0.0;
+  scene.settings.dampingTime = 0.0;
   setSteps(scene.settings, method, step_s, steps);
   Simulation simulation(scene);
   setSprings(simulation.model, 0, 1.0, kBlockHeight_m, 0.0);
