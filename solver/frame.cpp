@@ -4,6 +4,7 @@
 #include "solver/inertia.h"
 #include "solver/island_step.h"
 #include "solver/near_pairs.h"
+#include "solver/plane.h"
 #include "solver/report_frame.h"
 #include "solver/rest.h"
 #include "solver/rigid_frame.h"
@@ -262,6 +263,7 @@ void stepFrame(Simulation& simulation) {
     simulation.counters.steps += static_cast<std::uint64_t>(simulation.substeps);
     simulation.time_s += simulation.scene.settings.frame_s;
     checkShapes(simulation, engine.awakeBlocks);
+    if (simulation.scene.plane) keepInPlane(simulation);
   } else {
     simulation.substeps = 0;
   }

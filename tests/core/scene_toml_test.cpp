@@ -92,6 +92,7 @@ TEST(SceneFile, HasTheDefaultsOfASceneWhereItIsSilent) {
   const Scene tower = towerScene(3);
   EXPECT_EQ(scene.blocks.size(), tower.blocks.size());
   EXPECT_EQ(scene.seconds, tower.seconds);
+  EXPECT_EQ(scene.plane, tower.plane);
   EXPECT_EQ(scene.staticFriction, tower.staticFriction);
   EXPECT_EQ(scene.gravity.magnitude, tower.gravity.magnitude);
   EXPECT_TRUE(scene.floor);
