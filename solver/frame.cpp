@@ -146,6 +146,7 @@ void stepIsland(Method method, IslandStep& step) {
     case Method::rigidPgs:  // these step through runRigidSteps
     case Method::rigidLcp:
     case Method::xpbd:
+    case Method::automatic:  // is another one by now
       return;
   }
 }
