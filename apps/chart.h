@@ -15,25 +15,35 @@ namespace springtower {
 
 /// What the blocks do while a method's speed and accuracy are measured.
 enum class ChartScene {
-  uniform,    ///< a tower of equal blocks
-  heights,    ///< heights vary by 0.2 mm
-  pull,       ///< a block is pulled out of the middle row at 4 cm/s
-  drop,       ///< three rows dropped together from 2 cm
-  collapse,   ///< the tower leans by a little more than it can stand
-  spin,       ///< one block tumbles without gravity
-  heavyLight  ///< every other row ten times as heavy
+  uniform,     ///< a tower of equal blocks
+  heights,     ///< heights vary by 0.2 mm
+  pull,        ///< a block is pulled out of the middle row at 4 cm/s
+  drop,        ///< three rows dropped together from 2 cm
+  collapse,    ///< the tower leans by a little more than it can stand
+  spin,        ///< one block tumbles without gravity
+  heavyLight,  ///< every other row ten times as heavy
+  // Not charted: on these the choice of method `auto` is judged, which was made without them.
+  holes,  ///< a tower of twelve rows, half of them with blocks missing
+  lean,   ///< nine rows, gravity 9 degrees from straight down
+  tall,   ///< a tower of 36 rows
+  slide,  ///< a block that slides over the floor until friction stops it
+  heap    ///< eight blocks dropped on one another askew
 };
 
 /// Names as the command line spells them, in the order of the enumeration.
-inline constexpr std::array<std::string_view, 7> kChartSceneNames = {"uniform",  "heights", "pull",       "drop",
-                                                                     "collapse", "spin",    "heavy-light"};
+inline constexpr std::array<std::string_view, 12> kChartSceneNames = {
+    "uniform", "heights", "pull", "drop", "collapse", "spin", "heavy-light", "holes", "lean", "tall", "slide", "heap"};
+inline constexpr std::size_t kChartedScenes = 7;
+constexpr bool isCharted(ChartScene scene) {
+  return static_cast<std::size_t>(scene) < kChartedScenes;
+}
 constexpr std::string_view nameOf(ChartScene scene) {
   return kChartSceneNames[static_cast<std::size_t>(scene)];
 }
 
 /// What is asked of a method's result; a small value is a good one.
-enum class ChartMeasure { penetration, compression, creep, jitter, energy };
-inline constexpr std::size_t kChartMeasures = 5;
+enum class ChartMeasure { penetration, compression, creep, jitter, imbalance, energy, error };
+inline constexpr std::size_t kChartMeasures = 7;
 
 /// How a measure is named in files, titled on an axis, and below what it makes no difference (drawn there).
 struct ChartMeasureRow {
@@ -46,7 +56,16 @@ inline constexpr std::array<ChartMeasureRow, kChartMeasures> kChartMeasureRows =
      {"compression_mm", "tower lower than rigid blocks would be, mm a row", 1e-6},
      {"creep_mm", "creep, mm", 1e-6},
      {"jitter_mm_s", "root mean square speed of corners at rest, mm/s", 1e-6},
-     {"energy_error", "energy gained, of the energy at the start", 1e-10}}};
+     {"imbalance", "largest force on a block at rest that nothing balances, block weights", 1e-10},
+     {"energy_error", "energy gained, of the energy at the start", 1e-10},
+     {"error_mm", "largest distance of a corner from a converged run of the same model, mm", 1e-6}}};
+
+/// Another engine, which runs in the same chart where its program is (bench/peers_*.cpp).
+enum class Peer { none, bullet, ode };
+inline constexpr std::array<std::string_view, 3> kPeerNames = {"", "bullet", "ode"};
+constexpr std::string_view nameOf(Peer peer) {
+  return kPeerNames[static_cast<std::size_t>(peer)];
+}
 
 /// The knob by which a method trades speed for accuracy.
 enum class Knob { tolerance, substeps };
@@ -57,6 +76,8 @@ struct ChartCase {
   Method method = Method::semiImplicitEuler;
   Knob knob = Knob::tolerance;
   double value = 0.0;  ///< m, or steps of a frame
+  Peer peer = Peer::none;
+  int iterations = 0;  ///< of another engine's solver; 0: its default
   bool operator==(const ChartCase&) const = default;
 };
 
@@ -98,6 +119,7 @@ struct PeerResult {
   std::string verdict;
   std::array<double, kChartMeasures> measured{};  ///< as above
   double frame_ms = 0.0;
+  double ratioToBullet = 0.0;  ///< of its time, to Bullet's with 16 steps on the machine it was measured on; NaN unknown
 };
 
 struct Chart {
@@ -107,13 +129,17 @@ struct Chart {
   std::vector<PeerResult> peers;
 };
 
-/// "implicit 0.05 mm", "rigid-pgs 64 steps".
+/// "implicit 0.05 mm", "rigid-pgs 64 steps", "bullet 4 steps, 50 iterations".
 std::string nameOf(const ChartCase& what);
+
+/// The method without its setting, or the other engine.
+inline std::string_view methodOf(const ChartCase& what) {
+  return what.peer == Peer::none ? nameOf(what.method) : nameOf(what.peer);
+}
 
 /// Whether a scene is one of the kind that comes to rest, so that a resting tolerance can be asked of it.
 constexpr bool comesToRest(ChartScene scene) {
-  return scene == ChartScene::uniform || scene == ChartScene::heights || scene == ChartScene::drop ||
-         scene == ChartScene::heavyLight;
+  return scene != ChartScene::pull && scene != ChartScene::collapse && scene != ChartScene::spin;
 }
 
 }  // namespace springtower

@@ -2,7 +2,9 @@
 
 #include "apps/chart_draw.h"
 #include "apps/chart_files.h"
+#include "apps/chart_maps.h"
 #include "apps/chart_measure.h"
+#include "apps/chart_peers.h"
 #include "apps/chart_scene.h"
 #include "apps/options.h"
 #include "apps/output_file.h"
@@ -36,12 +38,16 @@ that was broken off goes on where it was.
 examples:
   springtower chart --quick --out quick              a look in less than a minute
   springtower chart --out figures                    everything, in minutes
+  springtower chart --maps --out maps                where each method is stable
   springtower chart --scenes uniform --methods implicit,rigid-pgs --seconds 60 --case-limit 600)help";
 
 std::vector<ChartScene> scenesOf(const ChartCommand& command) {
   std::vector<ChartScene> scenes;
   if (command.scenes.empty()) {
-    for (std::size_t i = 0; i < kChartSceneNames.size(); ++i) scenes.push_back(static_cast<ChartScene>(i));
+    for (std::size_t i = 0; i < kChartSceneNames.size(); ++i) {
+      const auto scene = static_cast<ChartScene>(i);
+      if (isCharted(scene) != command.automatic) scenes.push_back(scene);
+    }
     return scenes;
   }
   for (const std::string& name : command.scenes) {
@@ -57,10 +63,30 @@ std::vector<ChartScene> scenesOf(const ChartCommand& command) {
 
 std::vector<Method> methodsOf(const ChartCommand& command) {
   std::vector<Method> methods;
-  for (const std::string& name : command.methods) methods.push_back(methodFromName(name, "--methods"));
-  if (!methods.empty()) return methods;
+  for (const std::string& name : command.methods) {
+    if (name != nameOf(Peer::bullet) && name != nameOf(Peer::ode)) methods.push_back(methodFromName(name, "--methods"));
+  }
+  if (!command.methods.empty()) return methods;
+  if (command.automatic) {
+    return {Method::automatic, Method::implicit, Method::semiImplicitEuler, Method::midpoint, Method::rungeKutta4,
+            Method::rigidPgs,  Method::xpbd};
+  }
   return {Method::implicit, Method::semiImplicitEuler, Method::midpoint, Method::rungeKutta4,
           Method::report,   Method::rigidPgs,          Method::rigidLcp, Method::xpbd};
+}
+
+// Those that are asked for must be there; those that are not there are else left out.
+std::vector<Peer> peersOf(const ChartCommand& command) {
+  std::vector<Peer> peers;
+  for (const Peer peer : {Peer::bullet, Peer::ode}) {
+    const std::vector<Peer> here = peersHere();
+    const bool isHere = std::find(here.begin(), here.end(), peer) != here.end();
+    const bool named = std::find(command.methods.begin(), command.methods.end(), nameOf(peer)) != command.methods.end();
+    if (named && !isHere)
+      throw InputError(fmt::format("--methods: found {0}, allowed where the program peers_{0} is beside this one", nameOf(peer)));
+    if (isHere && (named || (command.methods.empty() && !command.automatic))) peers.push_back(peer);
+  }
+  return peers;
 }
 
 ChartLimits limitsOf(const ChartCommand& command) {
@@ -71,6 +97,27 @@ ChartLimits limitsOf(const ChartCommand& command) {
   if (command.case_s) limits.case_s = *command.case_s;
   if (command.samples) limits.samples = static_cast<int>(*command.samples);
   return limits;
+}
+
+// What method `auto` took in a scene, and what that costs beside the best of the others.
+void printChoice(const Chart& chart, ChartScene scene) {
+  constexpr double kMostRatio = 1.5;
+  const auto chosen = std::find_if(chart.results.begin(), chart.results.end(), [&](const ChartResult& result) {
+    return result.what.scene == scene && result.what.method == Method::automatic;
+  });
+  if (chosen == chart.results.end()) return;
+  const double tolerance_mm = 1e3 * kAutoTolerance_m;
+  const ChartResult* best = fastestWithin(chart, scene, tolerance_mm);
+  const bool within = meets(*chosen, tolerance_mm);
+  fmt::print("  auto {}, {:.3g} ms: {} {:g} mm", chosen->note, chosen->frame_ms, within ? "meets" : "does not meet",
+             tolerance_mm);
+  if (best == nullptr) {
+    fmt::print("; no other does\n");
+    return;
+  }
+  const double ratio = chosen->frame_ms / best->frame_ms;
+  fmt::print("; best {}, {:.3g} ms; ratio {:.2f}, {}\n", nameOf(best->what), best->frame_ms, ratio,
+             within && ratio <= kMostRatio ? "pass" : "fail");
 }
 
 // Everything measured so far, and what an earlier run has measured beside it.
@@ -84,29 +131,53 @@ void writeResume(const std::string& folder, const Chart& chart, const std::vecto
   writeOutputFile(folder, "chart.json", [&](std::ostream& stream) { writeChartJson(stream, all); });
 }
 
-// The table, the charts and the index, of what there is so far. Returns the number of charts.
-std::size_t writeAll(const std::string& folder, const Chart& chart) {
-  writeOutputFile(folder, "chart.csv", [&](std::ostream& stream) { writeChartCsv(stream, chart); });
+// The plots of a folder, as SVG and PNG. Returns their names.
+std::vector<std::string> writePlots(const std::string& folder, const std::vector<std::pair<std::string, Plot>>& plots) {
   std::vector<std::string> names;
-  for (const auto& [name, plot] : chartPlots(chart)) {
+  for (const auto& [name, plot] : plots) {
     const Plot& drawn = plot;
     writeOutputFile(folder, name + ".svg", [&](std::ostream& stream) { writeSvg(stream, drawn); });
     writeOutputFile(folder, name + ".png", [&](std::ostream& stream) { writePng(stream, drawn); });
     names.push_back(name);
   }
+  return names;
+}
+
+// The table, the charts and the index, of what there is so far. Returns the number of charts.
+std::size_t writeAll(const std::string& folder, const Chart& chart) {
+  writeOutputFile(folder, "chart.csv", [&](std::ostream& stream) { writeChartCsv(stream, chart); });
+  const std::vector<std::string> names = writePlots(folder, chartPlots(chart));
   writeOutputFile(folder, "index.md", [&](std::ostream& stream) { writeChartIndex(stream, chart, names); });
   return names.size();
 }
 
 void printScene(const Chart& chart, ChartScene scene) {
-  fmt::print("{}\n  {:<30}{:>10}{:>13}{:>13}{:>13}{:>13}{:>13}  {}\n", nameOf(scene), "method", "ms/frame", "depth mm",
-             "lower mm/row", "creep mm", "jitter mm/s", "energy", "outcome");
+  fmt::print("{}\n  {:<30}{:>10}{:>13}{:>13}{:>13}{:>13}{:>13}{:>13}{:>13}  {}\n", nameOf(scene), "method", "ms/frame",
+             "depth mm", "lower mm/row", "creep mm", "jitter mm/s", "imbalance", "energy", "error mm", "outcome");
   for (const ChartResult& result : chart.results) {
     if (result.what.scene != scene) continue;
     fmt::print("  {:<30}{:>10.3g}", nameOf(result.what), result.frame_ms);
     for (const double value : result.measured) fmt::print("{:>13.3g}", value);
     fmt::print("  {}{}{}\n", nameOf(result.outcome), result.note.empty() ? "" : ": ", result.note);
   }
+}
+
+int executeMaps(const ChartCommand& command) {
+  MapLimits limits;
+  if (command.quick) limits = {{2, 8, 32, 128}, {5e-4, 1e-4}, {1, 3}, 0.25};
+  if (command.seconds) limits.seconds = *command.seconds;
+  makeOutputFolder(command.out);
+  const Provenance provenance = provenanceNow();
+  Progress progress(mapRows(limits), "rows of the maps");
+  int done = 0;
+  const std::vector<StabilityMap> maps =
+      measureMaps(limits, [&](const StabilityMap& map) { progress.update(++done, nameOf(map.method)); });
+  progress.clear();
+  writeOutputFile(command.out, "maps.csv", [&](std::ostream& stream) { writeMapsCsv(stream, maps, provenance); });
+  const std::vector<std::string> names = writePlots(command.out, mapPlots(maps, provenance));
+  writeOutputFile(command.out, "maps.md", [&](std::ostream& stream) { writeMapsIndex(stream, maps, names, provenance); });
+  fmt::print("{} maps (SVG and PNG), maps.csv and maps.md in {}\n", names.size(), onOneLine(command.out));
+  return 0;
 }
 
 }  // namespace
@@ -116,7 +187,9 @@ CLI::App* defineChart(CLI::App& program, ChartCommand& command) {
   chart->add_option("--scenes", command.scenes, "what the blocks do (default all; see below)")
       ->delimiter(',')
       ->type_name("NAME,...");
-  chart->add_option("--methods", command.methods, "as in `run` (default all)")->delimiter(',')->type_name("NAME,...");
+  chart->add_option("--methods", command.methods, "as in `run`, or bullet and ode where their programs are (default all)")
+      ->delimiter(',')
+      ->type_name("NAME,...");
   addWholeNumber(*chart, "--rows", command.rows, kRowsRange, "rows of the towers (default 18)");
   addNumber(*chart, "--seconds", command.seconds, kSimulatedRange, "S",
             "simulated; the second half counts for rest (default 10)");
@@ -127,6 +200,9 @@ CLI::App* defineChart(CLI::App& program, ChartCommand& command) {
       ->type_name("FILE.csv");
   chart->add_option("--out", command.out, "writes into this folder (default chart)")->type_name("DIR");
   chart->add_flag("--quick", command.quick, "small towers, few cases and short samples: less than a minute");
+  chart->add_flag("--maps", command.maps, "instead: where each method is stable, over step and stiffness and over step and rows");
+  chart->add_flag("--auto", command.automatic,
+                  "instead: what method auto takes in five scenes that are not charted, and its cost beside the best's");
   chart->add_flag("--fresh", command.fresh, "measures everything again, also what an earlier run has left in the folder");
   wrapDescriptions(*chart);
   chart->footer(std::string(kExamples));
@@ -134,8 +210,10 @@ CLI::App* defineChart(CLI::App& program, ChartCommand& command) {
 }
 
 int executeChart(const ChartCommand& command) {
+  if (command.maps) return executeMaps(command);
   const std::vector<ChartScene> scenes = scenesOf(command);
   const std::vector<Method> methods = methodsOf(command);
+  const std::vector<Peer> peers = peersOf(command);
   Chart chart;
   chart.provenance = provenanceNow();
   chart.limits = limitsOf(command);
@@ -152,7 +230,7 @@ int executeChart(const ChartCommand& command) {
   std::vector<std::vector<ChartCase>> work;
   int steps = 0;
   for (const ChartScene scene : scenes) {
-    work.push_back(casesOf(scene, methods, command.quick));
+    work.push_back(casesOf(scene, methods, peers, command.quick));
     steps += static_cast<int>(work.back().size()) * (1 + chart.limits.samples);
   }
   int done = 0;
@@ -174,6 +252,7 @@ int executeChart(const ChartCommand& command) {
     progress.clear();
     if (cases.empty()) continue;
     printScene(chart, cases.front().scene);
+    printChoice(chart, cases.front().scene);
     std::fflush(stdout);
     charts = writeAll(command.out, chart);
   }

@@ -1,5 +1,7 @@
 #include "apps/chart_draw.h"
 
+#include "apps/chart_files.h"
+
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -37,6 +39,16 @@ std::string describe(ChartScene scene, int rows) {
       return "one block tumbling without gravity";
     case ChartScene::heavyLight:
       return fmt::format("a tower of {} rows, every other row ten times as heavy, at rest", rows);
+    case ChartScene::holes:
+      return "a tower of twelve rows, half of them with blocks missing";
+    case ChartScene::lean:
+      return "a tower of nine rows, gravity 9 degrees from straight down";
+    case ChartScene::tall:
+      return "a tower of 36 rows at rest";
+    case ChartScene::slide:
+      return "a block that slides over the floor until friction stops it";
+    case ChartScene::heap:
+      return "eight blocks dropped on one another askew";
   }
   return "";
 }
@@ -44,6 +56,20 @@ std::string describe(ChartScene scene, int rows) {
 // Beside a point: only what went wrong.
 std::string labelOf(const ChartResult& result) {
   return result.outcome == ChartOutcome::right ? "" : result.note;
+}
+
+// The methods' colours are in their order; those of other engines follow.
+int styleOf(const ChartCase& what) {
+  constexpr int kFirstPeerStyle = 8;
+  return what.peer == Peer::none ? static_cast<int>(what.method) : kFirstPeerStyle - 1 + static_cast<int>(what.peer);
+}
+
+bool measuredHere(const Chart& chart, const PeerResult& peer) {
+  return std::any_of(chart.results.begin(), chart.results.end(), [&](const ChartResult& result) {
+    const std::string_view name = nameOf(result.what.peer);
+    return std::equal(name.begin(), name.end(), peer.engine.begin(), peer.engine.end(),
+                      [](char a, char b) { return a == std::tolower(static_cast<unsigned char>(b)); });
+  });
 }
 
 std::string listed(const std::vector<const ChartResult*>& front) {
@@ -68,10 +94,11 @@ Plot plotOf(const Chart& chart, ChartScene scene, ChartMeasure measure) {
                              result.note.empty() ? "not measured" : result.note);
       continue;
     }
-    const auto style = static_cast<int>(result.what.method);
-    if (plot.lines.empty() || plot.lines.back().style != style) {
-      plot.lines.push_back({std::string(nameOf(result.what.method)), {}, Marker::filled});
-      plot.lines.back().style = style;
+    const std::string name(methodOf(result.what));
+    if (plot.lines.empty() || plot.lines.back().name != name) {
+      plot.lines.push_back({name, {}, Marker::filled});
+      plot.lines.back().style = styleOf(result.what);
+      plot.lines.back().joined = result.what.peer == Peer::none;  // two knobs make no line
     }
     plot.lines.back().points.push_back({shown(result, measure), result.frame_ms});
     plot.lines.back().labels.push_back(labelOf(result));
@@ -79,13 +106,14 @@ Plot plotOf(const Chart& chart, ChartScene scene, ChartMeasure measure) {
   if (scene == ChartScene::uniform) {
     for (const PeerResult& peer : chart.peers) {
       const double value = peer.measured[static_cast<std::size_t>(measure)];
-      if (!std::isfinite(value) || !(peer.frame_ms > 0.0)) continue;
+      const double frame_ms = carriedOver_ms(chart, peer);
+      if (!std::isfinite(value) || !(frame_ms > 0.0) || measuredHere(chart, peer)) continue;
       const std::string name = peer.engine + " (elsewhere)";
       if (plot.lines.empty() || plot.lines.back().name != name) {
         plot.lines.push_back({name, {}, Marker::hollow});
         plot.lines.back().style = static_cast<int>(plot.lines.size());
       }
-      plot.lines.back().points.push_back({std::max(value, row.floor), peer.frame_ms});
+      plot.lines.back().points.push_back({std::max(value, row.floor), frame_ms});
       plot.lines.back().labels.push_back(peer.verdict.starts_with("yes") ? "" : peer.verdict);
     }
   }
@@ -98,7 +126,8 @@ Plot plotOf(const Chart& chart, ChartScene scene, ChartMeasure measure) {
   plot.footnote = fmt::format("Pareto front: {}. Values below {:g} are drawn there. ", listed(front), row.floor);
   if (!missing.empty()) plot.footnote += "Not drawn: " + missing + ". ";
   if (scene == ChartScene::uniform && !chart.peers.empty()) {
-    plot.footnote += "Hollow: other engines, measured elsewhere, on another machine. ";
+    plot.footnote +=
+        "Hollow: other engines, measured elsewhere and carried over by their ratio to Bullet where that was measured here. ";
   }
   plot.footnote += fmt::format("One thread; mean over up to {} frames, of each the least of {} samples. {}", chart.limits.frames,
                                chart.limits.samples, footnote(chart.provenance));
@@ -136,12 +165,16 @@ std::vector<const ChartResult*> paretoFront(const Chart& chart, ChartScene scene
   return front;
 }
 
+bool meets(const ChartResult& result, double tolerance_mm) {
+  if (result.outcome != ChartOutcome::right || !std::isfinite(result.frame_ms)) return false;
+  const auto within = [&](ChartMeasure measure) { return !(result.of(measure) > tolerance_mm); };  // what was not measured does
+  return within(ChartMeasure::penetration) && within(ChartMeasure::compression) && within(ChartMeasure::creep);
+}
+
 const ChartResult* fastestWithin(const Chart& chart, ChartScene scene, double tolerance_mm) {
   const ChartResult* fastest = nullptr;
   for (const ChartResult& result : chart.results) {
-    if (result.what.scene != scene || result.outcome != ChartOutcome::right || !std::isfinite(result.frame_ms)) continue;
-    const auto within = [&](ChartMeasure measure) { return result.of(measure) <= tolerance_mm; };
-    if (!within(ChartMeasure::penetration) || !within(ChartMeasure::compression) || !within(ChartMeasure::creep)) continue;
+    if (result.what.scene != scene || result.what.method == Method::automatic || !meets(result, tolerance_mm)) continue;
     if (fastest == nullptr || result.frame_ms < fastest->frame_ms) fastest = &result;
   }
   return fastest;

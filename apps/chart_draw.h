@@ -14,8 +14,11 @@ namespace springtower {
 /// order of cost, dearest first.
 std::vector<const ChartResult*> paretoFront(const Chart& chart, ChartScene scene, ChartMeasure measure);
 
-/// The fastest right result of a scene that comes to rest within a tolerance: no penetration, no compression of a row and no
-/// creep above it. Null where there is none.
+/// Whether a result of a scene that comes to rest is right and within a tolerance: no penetration, no compression of a row and no
+/// creep above it.
+bool meets(const ChartResult& result, double tolerance_mm);
+
+/// The fastest result of a scene that meets a tolerance, method `auto` left out. Null where there is none.
 const ChartResult* fastestWithin(const Chart& chart, ChartScene scene, double tolerance_mm);
 
 /// One chart for each scene and measure that has results, with a file name without extension.

@@ -39,9 +39,10 @@ Json limitsJson(const ChartLimits& limits) {
 Json resultJson(const ChartResult& result) {
   Json json;
   json["scene"] = springtower::nameOf(result.what.scene);
-  json["method"] = springtower::nameOf(result.what.method);
+  json["method"] = methodOf(result.what);
   json["knob"] = nameOf(result.what.knob);
   json["value"] = result.what.value;
+  json["iterations"] = result.what.iterations;
   json["outcome"] = springtower::nameOf(result.outcome);
   json["note"] = result.note;
   json["simulated_s"] = result.simulated_s;
@@ -61,7 +62,15 @@ Value valueNamed(const std::array<std::string_view, N>& names, const std::string
 ChartResult resultFromJson(const Json& json) {
   ChartResult result;
   result.what.scene = valueNamed<ChartScene>(kChartSceneNames, json.at("scene").get<std::string>());
-  result.what.method = methodFromName(json.at("method").get<std::string>(), "method");
+  const auto method = json.at("method").get<std::string>();
+  const auto* const peer = std::find(kPeerNames.begin() + 1, kPeerNames.end(), method);
+  if (peer != kPeerNames.end()) {
+    result.what.peer = static_cast<Peer>(peer - kPeerNames.begin());
+    result.what.method = Method::rigidPgs;
+  } else {
+    result.what.method = methodFromName(method, "method");
+  }
+  json.at("iterations").get_to(result.what.iterations);
   result.what.knob = json.at("knob").get<std::string>() == nameOf(Knob::tolerance) ? Knob::tolerance : Knob::substeps;
   json.at("value").get_to(result.what.value);
   result.outcome = valueNamed<ChartOutcome>(kChartOutcomeNames, json.at("outcome").get<std::string>());
@@ -126,27 +135,36 @@ std::vector<ChartResult> readChartJson(const std::string& path, const Chart& now
 }
 
 void writeChartCsv(std::ostream& stream, const Chart& chart) {
-  stream << "measured,scene,rows,method,knob,value,outcome,note,simulated_s,settled_from_s,cpu_ms_per_frame,"
+  stream << "measured,scene,rows,method,knob,value,iterations,outcome,note,simulated_s,settled_from_s,cpu_ms_per_frame,"
             "cpu_s_per_simulated_s";
   for (const ChartMeasureRow& row : kChartMeasureRows) stream << ',' << row.key;
   stream << ",commit,compiler,flags,cpu,date\n";
   const Provenance& from = chart.provenance;
   constexpr double kFramesInASecond = 60.0;
   for (const ChartResult& r : chart.results) {
-    stream << fmt::format("here,{},{},{},{},{:g},{},{},{:.6g},{:.6g},{},{}", nameOf(r.what.scene), chart.limits.rows,
-                          nameOf(r.what.method), nameOf(r.what.knob), r.what.value, csvText(nameOf(r.outcome)), csvText(r.note),
-                          r.simulated_s, r.from_s, csvNumber(r.frame_ms), csvNumber(1e-3 * kFramesInASecond * r.frame_ms));
+    stream << fmt::format("here,{},{},{},{},{:g},{},{},{},{:.6g},{:.6g},{},{}", nameOf(r.what.scene), chart.limits.rows,
+                          methodOf(r.what), nameOf(r.what.knob), r.what.value, r.what.iterations, csvText(nameOf(r.outcome)),
+                          csvText(r.note), r.simulated_s, r.from_s, csvNumber(r.frame_ms),
+                          csvNumber(1e-3 * kFramesInASecond * r.frame_ms));
     for (const double value : r.measured) stream << ',' << csvNumber(value);
     stream << fmt::format(",{},{},{},{},{}\n", from.commit, csvText(from.compiler), csvText(from.flags), csvText(from.processor),
                           from.date);
   }
   for (const PeerResult& peer : chart.peers) {
-    stream << fmt::format("elsewhere,uniform,{},{},settings,{},{},,,,{},{}", chart.limits.rows, csvText(peer.engine),
-                          csvText(peer.settings), csvText(peer.verdict), csvNumber(peer.frame_ms),
-                          csvNumber(1e-3 * kFramesInASecond * peer.frame_ms));
+    stream << fmt::format("elsewhere,uniform,{},{},settings,{},,{},,,,{},{}", chart.limits.rows, csvText(peer.engine),
+                          csvText(peer.settings), csvText(peer.verdict), csvNumber(carriedOver_ms(chart, peer)),
+                          csvNumber(1e-3 * kFramesInASecond * carriedOver_ms(chart, peer)));
     for (const double value : peer.measured) stream << ',' << csvNumber(value);
     stream << ",,,,,\n";
   }
+}
+
+double carriedOver_ms(const Chart& chart, const PeerResult& peer) {
+  const ChartCase bullet{ChartScene::uniform, Method::rigidPgs, Knob::substeps, 16.0, Peer::bullet, 0};
+  const auto found =
+      std::find_if(chart.results.begin(), chart.results.end(), [&](const ChartResult& result) { return result.what == bullet; });
+  const bool known = found != chart.results.end() && std::isfinite(found->frame_ms) && std::isfinite(peer.ratioToBullet);
+  return known ? peer.ratioToBullet * found->frame_ms : peer.frame_ms;
 }
 
 std::vector<PeerResult> readPeers(const std::string& path, int rows) {
@@ -158,7 +176,7 @@ std::vector<PeerResult> readPeers(const std::string& path, int rows) {
   const std::vector<std::string> names = fieldsOf(line);
   for (std::size_t i = 0; i < names.size(); ++i) column[names[i]] = i;
   for (const char* needed : {"engine", "version", "settings", "scene", "rows", "threads", "stands_60_s", "worst_penetration_mm",
-                             "top_height_error_mm", "creep_mm", "jitter_mm_s", "ms_per_frame"}) {
+                             "top_height_error_mm", "creep_mm", "jitter_mm_s", "ms_per_frame", "ratio_to_bullet_16_substeps"}) {
     if (!column.contains(needed)) throw InputError(fmt::format("{}: found no column {}", onOneLine(path), inQuotes(needed)));
   }
   std::vector<PeerResult> peers;
@@ -175,9 +193,15 @@ std::vector<PeerResult> readPeers(const std::string& path, int rows) {
     peer.engine = text("engine");
     peer.settings = text("version") + ", " + text("settings");
     peer.verdict = text("stands_60_s");
-    peer.measured = {value("worst_penetration_mm"), std::abs(value("top_height_error_mm")) / rows, value("creep_mm"),
-                     value("jitter_mm_s"), std::nan("")};
+    peer.measured = {value("worst_penetration_mm"),
+                     std::abs(value("top_height_error_mm")) / rows,
+                     value("creep_mm"),
+                     value("jitter_mm_s"),
+                     std::nan(""),
+                     std::nan(""),
+                     std::nan("")};
     peer.frame_ms = value("ms_per_frame");
+    peer.ratioToBullet = value("ratio_to_bullet_16_substeps");
     peers.push_back(peer);
   }
   return peers;

@@ -1,5 +1,6 @@
 #include "apps/chart_measure.h"
 
+#include "apps/chart_peers.h"
 #include "apps/chart_scene.h"
 #include "apps/profile_scene.h"
 #include "core/error.h"
@@ -33,7 +34,8 @@ double processorTime_s() {
 // Returns the seconds that a frame of kFewRows rows takes where one of all rows would take longer than a case may, else 0.
 constexpr int kFewRows = 6;
 double tooSlowAtFewRows(const ChartCase& what, const ChartLimits& limits) {
-  if (limits.rows <= kFewRows || what.scene == ChartScene::drop || what.scene == ChartScene::spin) return 0.0;
+  const bool ofThoseRows = what.scene != ChartScene::drop && what.scene != ChartScene::spin && isCharted(what.scene);
+  if (what.peer != Peer::none || limits.rows <= kFewRows || !ofThoseRows) return 0.0;
   ChartLimits few = limits;
   few.rows = kFewRows;
   Simulation simulation(sceneOf(what, few));
@@ -50,6 +52,43 @@ double tooSlowAtFewRows(const ChartCase& what, const ChartLimits& limits) {
   return frame_s * ratio * ratio * ratio > limits.case_s ? frame_s : 0.0;
 }
 
+// Where the corners are at the end of a smooth scene when its model is stepped so finely that the steps no longer show: springs
+// of the case's stiffness, or rigid blocks.
+CornerArray convergedEnd(const ChartCase& what, const ChartLimits& limits) {
+  constexpr double kFinerSteps = 8.0;     // of a method of fourth order
+  constexpr double kRigidSteps = 5000.0;  // of methods of first order, which chart with up to 200
+  ChartCase finest = what;
+  finest.peer = Peer::none;
+  if (what.knob == Knob::substeps) {
+    finest.method = Method::rigidPgs;
+    finest.value = kRigidSteps;
+  } else {
+    finest.method = Method::rungeKutta4;
+  }
+  Scene scene = sceneOf(finest, limits);
+  if (what.knob == Knob::tolerance) scene.settings.stepMargin /= kFinerSteps;
+  Simulation simulation(scene);
+  const double end_s = timesOf(what.scene, limits).end_s - 0.5 * scene.settings.frame_s;
+  while (simulation.time_s < end_s) stepFrame(simulation);
+  return simulation.state.position;
+}
+
+// Largest force on any block that contacts and gravity leave, in weights of the block.
+double imbalance(const Simulation& simulation) {
+  const Vec3 gravity = simulation.scene.gravity.at(simulation.time_s);
+  std::vector<Vec3> force;
+  for (const double mass : simulation.model.mass) force.push_back(mass * gravity);
+  for (const ContactForce& contact : contactForces(simulation)) {
+    const Vec3 push = contact.normalForce * contact.normal + contact.frictionForce;
+    force[index(contact.upper)] += push;
+    if (contact.lower != kFloor) force[index(contact.lower)] -= push;
+  }
+  double largest = 0.0;
+  for (std::size_t b = 0; b < force.size(); ++b)
+    largest = std::max(largest, force[b].norm() / (simulation.model.mass[b] * gravity.norm()));
+  return largest;
+}
+
 // A case on its way: its simulation, what is known of its accuracy so far, and its times.
 class ChartRun {
  public:
@@ -62,6 +101,8 @@ class ChartRun {
     for (const BlockSpec& block : scene.blocks) row_.push_back(block.row);
     closed_ = closedRows(start_, row_, scene.floor);
     reference_ = fittedBoxes(closed_);
+    if (what.method == Method::automatic) result.note = fmt::format("took {}", nameOf(scene.settings.method));
+    if (what.peer != Peer::none) peer_ = std::make_unique<PeerProcess>(what, scene);
     pulled_ = pulledBlock(what.scene, scene, limits.rows);
     if (pulled_ >= 0) {
       leftOut_.assign(scene.blocks.size(), 0);
@@ -80,10 +121,8 @@ class ChartRun {
     double gained_j = 0.0;
     try {
       while (simulation_.time_s < times_.end_s - halfFrame()) {
-        if (!snapshot_ && simulation_.time_s > times_.keep_s - halfFrame()) keep();
-        const double begin_s = processorTime_s();
-        step();
-        spent_s_ += processorTime_s() - begin_s;
+        if (!kept_ && simulation_.time_s > times_.keep_s - halfFrame()) keep();
+        spent_s_ += timedStep();
         observe();
         const double now_j = energy(simulation_).total();
         gained_j = std::max(gained_j, result.what.scene == ChartScene::spin ? std::abs(now_j - start_j_) : now_j - least_j);
@@ -100,17 +139,13 @@ class ChartRun {
 
   // One sample: back to the kept state, a frame that is not timed, then the timed ones.
   void sample() {
-    if (result.outcome == ChartOutcome::diverged || !snapshot_) return;
+    if (result.outcome == ChartOutcome::diverged || !kept_) return;
     restoreSnapshot(simulation_, *snapshot_);
     hand_ = handKept_;
     double spent_s = 0.0;
     std::size_t frame = 0;
-    const auto timedStep = [&] {
-      const double begin_s = processorTime_s();
-      step();
-      return processorTime_s() - begin_s;
-    };
     try {
+      if (peer_) peer_->restore();
       spent_s = timedStep();
       // A method so slow that one frame is more than a sample may take has been timed by it.
       if (spent_s > limits_.sample_s && frame_ms_.size() < 2) keepLeast(frame++, spent_s);
@@ -146,6 +181,8 @@ class ChartRun {
   }
 
   void keep() {
+    kept_ = true;
+    if (peer_) peer_->keep();
     snapshot_ = takeSnapshot(simulation_);
     if (pulled_ < 0) return;
     hand_.block = pulled_;
@@ -153,9 +190,17 @@ class ChartRun {
     handKept_ = hand_;
   }
 
-  void step() {
+  // One frame; returns the processor time of its step, s.
+  double timedStep() {
+    if (peer_) {
+      const double step_s = peer_->step(simulation_.state);
+      simulation_.time_s = static_cast<double>(++simulation_.frame) * simulation_.scene.settings.frame_s;
+      return step_s;
+    }
+    const double begin_s = processorTime_s();
     if (hand_.block >= 0) pull(hand_, simulation_);
     stepFrame(simulation_);
+    return processorTime_s() - begin_s;
   }
 
   void keepLeast(std::size_t frame, double step_s) {
@@ -170,7 +215,7 @@ class ChartRun {
   void observe() {
     const CornerArray& position = simulation_.state.position;
     const ChartScene scene = result.what.scene;
-    if (fall_.empty() && scene != ChartScene::spin) {
+    if (fall_.empty() && expectedToStand(scene)) {
       const Standing now = standing(simulation_.model, reference_, position, leftOut_);
       if (!now.stands) fall_ = fmt::format("fell at {:.2f} s", simulation_.time_s);
     }
@@ -192,7 +237,7 @@ class ChartRun {
 
   void finish(double gained_j) {
     const ChartScene scene = result.what.scene;
-    if (!snapshot_) keep();
+    if (!kept_) keep();
     const bool complete = simulation_.time_s > times_.end_s - halfFrame();
     const std::optional<bool> expected = expectedToStand(scene);
     if (!fall_.empty()) result.note = fall_;
@@ -205,12 +250,17 @@ class ChartRun {
     }
     const auto set = [&](ChartMeasure measure, double value) { result.measured[static_cast<std::size_t>(measure)] = value; };
     if (start_j_ != 0.0) set(ChartMeasure::energy, gained_j / std::abs(start_j_));
-    if (scene == ChartScene::spin) return;
+    if (scene == ChartScene::spin) {
+      if (complete)
+        set(ChartMeasure::error, 1e3 * largestCornerMove(convergedEnd(result.what, limits_), simulation_.state.position));
+      return;
+    }
     if (penetration_m_ >= 0.0) set(ChartMeasure::penetration, 1e3 * penetration_m_);
     if (!comesToRest(scene) || counted_ == 0) return;
     const int rows = 1 + *std::max_element(row_.begin(), row_.end());
-    set(ChartMeasure::compression, 1e3 * std::abs(topHeightError(closed_, simulation_.state.position)) / rows);
+    if (rows > 0) set(ChartMeasure::compression, 1e3 * std::abs(topHeightError(closed_, simulation_.state.position)) / rows);
     set(ChartMeasure::creep, 1e3 * creep_m_);
+    if (!peer_) set(ChartMeasure::imbalance, imbalance(simulation_));
     set(ChartMeasure::jitter, 1e3 * std::sqrt(squares_ / counted_));
   }
 
@@ -225,6 +275,8 @@ class ChartRun {
   int pulled_ = -1;
   Hand hand_;
   Hand handKept_;
+  std::unique_ptr<PeerProcess> peer_;  // instead of our own steps
+  bool kept_ = false;
   std::shared_ptr<const Snapshot> snapshot_;
   PenetrationWorkspace workspace_;
   CornerArray settledPosition_;

@@ -15,11 +15,33 @@ constexpr int kDropRows = 3;
 constexpr double kBeyond_deg = 0.6;
 constexpr double kMostTilt_deg = 30.0;
 constexpr double kHeavy = 10.0;
+constexpr int kLeanRows = 9;
+constexpr double kLean_deg = 9.0;
+constexpr int kTallRows = 36;
 constexpr double kMotion_s = 2.0;  // of scenes that do not come to rest
 
 double collapseTilt_deg(int rows) {
   const double standing = std::atan(kBlockLength_m / (rows * kBlockHeight_m)) * 180.0 / std::numbers::pi;
   return std::min(standing + kBeyond_deg, kMostTilt_deg);
+}
+
+// One block that slides until friction stops it, or eight that fall askew and come to lie in a heap.
+Scene looseBlocks(bool heap) {
+  constexpr int kHeap = 8;
+  Scene scene;
+  scene.name = heap ? "heap" : "slide";
+  for (int i = 0; i < (heap ? kHeap : 1); ++i) {
+    BlockSpec block;
+    if (heap) {
+      block.centre = Vec3(0.02 * std::cos(2.0 * i), 0.02 * std::sin(2.0 * i), 0.04 + 0.04 * i);
+      block.orientation = Eigen::AngleAxisd(1.1 * i, Vec3::UnitZ()) * Eigen::AngleAxisd(0.15 + 0.05 * i, Vec3::UnitY());
+    } else {
+      block.centre.z() = 0.5 * kBlockHeight_m;
+      block.velocity.x() = 0.7;
+    }
+    scene.blocks.push_back(block);
+  }
+  return scene;
 }
 
 Scene blocksOf(ChartScene scene, int rows) {
@@ -33,6 +55,10 @@ Scene blocksOf(ChartScene scene, int rows) {
     one.gravity.magnitude = 0.0;
     return one;
   }
+  if (scene == ChartScene::slide || scene == ChartScene::heap) return looseBlocks(scene == ChartScene::heap);
+  if (scene == ChartScene::holes) return bitCodeScene("(111)-(101)-(111)-(010)-(111)-(101)-(111)-(101)-(111)-(010)-(111)-(111)");
+  if (scene == ChartScene::lean) rows = kLeanRows;
+  if (scene == ChartScene::tall) rows = kTallRows;
   TowerOptions options;
   if (scene == ChartScene::heights) options.heightsSigma_m = kHeightsSigma_m;
   Scene tower = towerScene(scene == ChartScene::drop ? std::min(rows, kDropRows) : rows, options);
@@ -41,6 +67,7 @@ Scene blocksOf(ChartScene scene, int rows) {
     if (scene == ChartScene::heavyLight && block.row % 2 == 1) block.mass *= kHeavy;
   }
   if (scene == ChartScene::collapse) tower.gravity.tilt_deg = collapseTilt_deg(rows);
+  if (scene == ChartScene::lean) tower.gravity.tilt_deg = kLean_deg;
   return tower;
 }
 
@@ -60,21 +87,31 @@ const std::vector<Sweep>& sweeps() {
       {Method::report, Knob::tolerance, {1e-3, 2e-4, 5e-5}, {1e-3}},
       {Method::rigidPgs, Knob::substeps, {4, 8, 16, 32, 64, 128}, {16, 64}},
       {Method::rigidLcp, Knob::substeps, {1, 2, 4}, {1}},
+      {Method::automatic, Knob::tolerance, {kAutoTolerance_m}, {kAutoTolerance_m}},
       {Method::xpbd, Knob::substeps, {12, 25, 50, 100, 200}, {25, 100}},
   };
   return all;
 }
 
+// Other engines: as they come, then their own knobs.
+struct PeerKnobs {
+  double substeps;
+  int iterations;
+};
+const std::vector<PeerKnobs> kPeerKnobs = {{1, 0}, {1, 200}, {4, 0}, {4, 50}, {8, 0}, {16, 0}, {32, 0}};
+const std::vector<PeerKnobs> kQuickPeerKnobs = {{1, 0}, {16, 0}};
+
 }  // namespace
 
 std::string nameOf(const ChartCase& what) {
-  if (what.knob == Knob::tolerance) return fmt::format("{} {:g} mm", nameOf(what.method), 1e3 * what.value);
-  return fmt::format("{} {:g} step{}", nameOf(what.method), what.value, what.value == 1.0 ? "" : "s");
+  if (what.knob == Knob::tolerance) return fmt::format("{} {:g} mm", methodOf(what), 1e3 * what.value);
+  const std::string steps = fmt::format("{} {:g} step{}", methodOf(what), what.value, what.value == 1.0 ? "" : "s");
+  return what.iterations == 0 ? steps : fmt::format("{}, {} iterations", steps, what.iterations);
 }
 
 Scene sceneOf(const ChartCase& what, const ChartLimits& limits) {
   Scene scene = blocksOf(what.scene, limits.rows);
-  scene.settings.method = what.method;
+  scene.settings.method = what.peer == Peer::none ? what.method : Method::rigidPgs;  // whose blocks are rigid as well
   scene.settings.sleep = Sleep::off;
   if (what.knob == Knob::tolerance) {
     scene.settings.tolerance_m = what.value;
@@ -84,11 +121,17 @@ Scene sceneOf(const ChartCase& what, const ChartLimits& limits) {
   return scene;
 }
 
-std::vector<ChartCase> casesOf(ChartScene scene, const std::vector<Method>& methods, bool quick) {
+std::vector<ChartCase> casesOf(ChartScene scene, const std::vector<Method>& methods, const std::vector<Peer>& peers, bool quick) {
   std::vector<ChartCase> cases;
   for (const Sweep& sweep : sweeps()) {
     if (std::find(methods.begin(), methods.end(), sweep.method) == methods.end()) continue;
     for (const double value : quick ? sweep.quick : sweep.values) cases.push_back({scene, sweep.method, sweep.knob, value});
+  }
+  if (scene == ChartScene::pull) return cases;  // a hand feels how its block moves, in our engine
+  for (const Peer peer : peers) {
+    for (const PeerKnobs& knobs : quick ? kQuickPeerKnobs : kPeerKnobs) {
+      cases.push_back({scene, Method::rigidPgs, Knob::substeps, knobs.substeps, peer, knobs.iterations});
+    }
   }
   return cases;
 }
@@ -99,10 +142,15 @@ ChartTimes timesOf(ChartScene scene, const ChartLimits& limits) {
     case ChartScene::uniform:
     case ChartScene::heights:
     case ChartScene::heavyLight:
+    case ChartScene::holes:
+    case ChartScene::lean:
+    case ChartScene::tall:
       return {half_s, half_s, limits.seconds};
     case ChartScene::pull:
       return {0.2 * limits.seconds, 0.2 * limits.seconds, 0.2 * limits.seconds + std::min(kMotion_s, half_s)};
     case ChartScene::drop:
+    case ChartScene::slide:
+    case ChartScene::heap:
       return {0.0, half_s, limits.seconds};
     case ChartScene::collapse:
     case ChartScene::spin:
@@ -112,7 +160,7 @@ ChartTimes timesOf(ChartScene scene, const ChartLimits& limits) {
 }
 
 std::optional<bool> expectedToStand(ChartScene scene) {
-  if (scene == ChartScene::spin) return {};
+  if (scene == ChartScene::spin || scene == ChartScene::slide || scene == ChartScene::heap) return {};
   return scene != ChartScene::collapse;
 }
 

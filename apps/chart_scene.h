@@ -7,11 +7,14 @@
 
 namespace springtower {
 
+/// The tolerance, m, at which the method `auto` is compared with the others.
+inline constexpr double kAutoTolerance_m = 5e-5;
+
 /// The scene of a case, awake throughout. Throws InputError for rows that are not allowed.
 Scene sceneOf(const ChartCase& what, const ChartLimits& limits);
 
-/// All cases of a scene for these methods, each method with its own knob; fewer of them if `quick`.
-std::vector<ChartCase> casesOf(ChartScene scene, const std::vector<Method>& methods, bool quick);
+/// All cases of a scene for these methods and other engines, each with its own knob; fewer of them if `quick`.
+std::vector<ChartCase> casesOf(ChartScene scene, const std::vector<Method>& methods, const std::vector<Peer>& peers, bool quick);
 
 /// When, in s of simulated time: the state is kept that samples start from, resting figures begin, and all ends.
 struct ChartTimes {
@@ -21,7 +24,7 @@ struct ChartTimes {
 };
 ChartTimes timesOf(ChartScene scene, const ChartLimits& limits);
 
-/// Whether the blocks have to stand at the end; empty for the block that flies.
+/// Whether the blocks have to stand at the end; empty for blocks on their own.
 std::optional<bool> expectedToStand(ChartScene scene);
 
 /// The block that is pulled in scene `pull`: the middle one of the middle row. -1 in other scenes.

@@ -71,7 +71,7 @@ void addPhysicsOptions(CLI::App& app, PhysicsOptions& options) {
          "--method", options.method,
          "how a frame is stepped: implicit (default), semi-implicit-euler, midpoint, runge-kutta-4, report (the impulses of "
          "the 2003 report, for comparison), or rigid blocks: rigid-pgs (sequential impulses), rigid-lcp (pivoting), xpbd "
-         "(position-based)")
+         "(position-based); or auto, which takes the one that suits the scene")
       ->type_name("NAME");
   app.add_option("--inertia", options.inertia,
                  "how corners carry the mass: cuboid (default, a uniform cuboid's) or lumped (eight equal masses)")

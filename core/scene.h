@@ -61,6 +61,7 @@ struct Scene {
   std::vector<UserForce> forces;
   Gravity gravity;
   bool floor = true;             ///< the plane z = 0
+  bool plane = false;            ///< all that moves stays in the plane y = 0: a scene of rectangles (see checkScene)
   double staticFriction = 0.4;   ///< Coulomb's coefficient for contacts that stick
   double kineticFriction = 0.4;  ///< and for contacts that slide; equal unless a scene gives two
   double seconds = 10.0;         ///< s; how long to simulate unless the command line says otherwise
@@ -122,7 +123,8 @@ double toleranceOf(const Scene& scene);
 
 /// Checks what every scene must obey: values within the limits of core/limits.h and `settingTable`, unit orientations, forces on
 /// blocks that exist, no block inside another or in the floor by more than a millionth of the least dimension of the blocks
-/// concerned (touching is fine). The scenes above have been checked; check again after changing one. Throws InputError naming
+/// concerned (touching is fine); in a plane: blocks whose centres and gravity lie in y = 0, with an axis along y, that neither
+/// move nor are pushed out of it. The scenes above have been checked; check again after changing one. Throws InputError naming
 /// `source`, the block (or both blocks and how deep they overlap), what was found and what is allowed.
 void checkScene(const Scene& scene, std::string_view source);
 

@@ -117,6 +117,29 @@ void checkFloor(const Scene& scene, const std::vector<Box>& boxes, std::string_v
   }
 }
 
+// Whether everything about a scene is its own mirror image in the plane y = 0.
+void checkPlane(const Scene& scene, std::string_view source) {
+  constexpr double kRounding = 1e-9;  // m, m/s, rad/s, N, m/s2 and cosines
+  const auto require = [&](double found, const std::string& where) {
+    requireInRange(found, {-kRounding, kRounding, "for a motion in the plane y = 0"}, fmt::format("{}: {}", source, where));
+  };
+  for (std::size_t b = 0; b < scene.blocks.size(); ++b) {
+    const BlockSpec& block = scene.blocks[b];
+    const std::string where = nameOfBlock(scene, b);
+    require(block.centre.y(), where + ": centre y");
+    require(1.0 - block.orientation.toRotationMatrix().row(1).cwiseAbs().maxCoeff(), where + ": turn out of the plane");
+    require(block.velocity.y(), where + ": velocity y");
+    require(block.spin.x(), where + ": spin x");
+    require(block.spin.z(), where + ": spin z");
+  }
+  for (std::size_t f = 0; f < scene.forces.size(); ++f) {
+    const UserForce& force = scene.forces[f];
+    require(force.force.y(), fmt::format("force {}: force y", f));
+    require(force.corner + 1.0, fmt::format("force {}: corner, counted from 1,", f));
+  }
+  require(scene.gravity.at(0.0).y(), "gravity: y");
+}
+
 // The axis along which the blocks are spread most, which leaves the fewest neighbours in a sweep.
 Eigen::Index widestAxis(const std::vector<Box>& boxes) {
   Vec3 sum = Vec3::Zero();
@@ -173,6 +196,7 @@ void checkScene(const Scene& scene, std::string_view source) {
   for (std::size_t f = 0; f < scene.forces.size(); ++f) {
     checkForce(scene.forces[f], scene.blocks.size(), fmt::format("{}: force {}", source, f));
   }
+  if (scene.plane) checkPlane(scene, source);
   if (scene.floor) checkFloor(scene, boxes, source);
   checkPairs(scene, boxes, source);
 }

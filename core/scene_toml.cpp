@@ -300,6 +300,7 @@ Scene readScene(const Table& top, const TowerOptions& given, const std::string& 
   scene.name = file;
   top.read("name", scene.name);
   top.read("seconds", scene.seconds, kSecondsRange);
+  top.read("plane", scene.plane);
   if (!top.has("tower")) refuseTowerOptions(given, file);
   top.readTable("tower", {"rows", "code", "heights_sigma_m", "mass_sigma_kg", "seed", "start_gap_m", "offset", "loose"},
                 [&](const Table& table) { scene.blocks = readTower(table, given); });
@@ -347,9 +348,10 @@ Scene sceneFromToml(const std::string& path, const TowerOptions& options) {
     const toml::source_position& place = error.source().begin;
     throw InputError(fmt::format("{}:{}:{}: {}", file, place.line, place.column, onOneLine(error.description())));
   }
-  Scene scene = readScene(
-      Table(parsed, "", file, {"name", "seconds", "tower", "block", "force", "floor", "friction", "gravity", "settings"}),
-      options, file);
+  Scene scene =
+      readScene(Table(parsed, "", file,
+                      {"name", "seconds", "plane", "tower", "block", "force", "floor", "friction", "gravity", "settings"}),
+                options, file);
   checkScene(scene, file);
   return scene;
 }

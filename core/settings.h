@@ -9,8 +9,9 @@
 
 namespace springtower {
 
-/// How a frame is stepped. Each is one file solve_*.cpp of solver/.
-enum class Method { implicit, semiImplicitEuler, midpoint, rungeKutta4, report, rigidPgs, rigidLcp, xpbd };
+/// How a frame is stepped. Each is one file solve_*.cpp of solver/; `automatic` is replaced by the one that suits the scene when
+/// its simulation is set up.
+enum class Method { implicit, semiImplicitEuler, midpoint, rungeKutta4, report, rigidPgs, rigidLcp, xpbd, automatic };
 
 /// Whether a method takes blocks as rigid: it has no stiffness, and its knobs are substeps and iterations.
 constexpr bool isRigid(Method method) {

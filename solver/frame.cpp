@@ -4,6 +4,7 @@
 #include "solver/inertia.h"
 #include "solver/island_step.h"
 #include "solver/near_pairs.h"
+#include "solver/plane.h"
 #include "solver/report_frame.h"
 #include "solver/rest.h"
 #include "solver/rigid_frame.h"
@@ -145,6 +146,7 @@ void stepIsland(Method method, IslandStep& step) {
     case Method::rigidPgs:  // these step through runRigidSteps
     case Method::rigidLcp:
     case Method::xpbd:
+    case Method::automatic:  // is another one by now
       return;
   }
 }
@@ -262,6 +264,7 @@ void stepFrame(Simulation& simulation) {
     simulation.counters.steps += static_cast<std::uint64_t>(simulation.substeps);
     simulation.time_s += simulation.scene.settings.frame_s;
     checkShapes(simulation, engine.awakeBlocks);
+    if (simulation.scene.plane) keepInPlane(simulation);
   } else {
     simulation.substeps = 0;
   }

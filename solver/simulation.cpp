@@ -1,6 +1,7 @@
 #include "solver/simulation.h"
 
 #include "core/error.h"
+#include "solver/choose_method.h"
 #include "solver/engine.h"
 #include "solver/implicit.h"
 #include "solver/inertia.h"
@@ -92,6 +93,7 @@ void chooseStiffness(Simulation& simulation) {
 
 Simulation::Simulation(const Scene& given) : scene(given), engine(std::make_unique<Engine>()) {
   checkScene(scene, scene.name);
+  if (scene.settings.method == Method::automatic) scene.settings = chooseMethod(scene);
   const std::size_t count = scene.blocks.size();
   model.dimensions.resize(count);
   model.mass.resize(count);

@@ -86,6 +86,16 @@ double unevenness(const std::vector<Bounds>& bounds, const std::vector<std::size
   return highest - lowest;
 }
 
+// How far a block is above the highest of its supports, or the floor, if none of its sides is level; else 0.
+double askewFall(const Scene& scene, const std::vector<Bounds>& bounds, std::size_t b, const std::vector<std::size_t>& supports) {
+  constexpr double kLevel = 0.9998;  // cosine of one degree
+  if (scene.blocks[b].orientation.toRotationMatrix().row(2).cwiseAbs().maxCoeff() > kLevel) return 0.0;
+  if (supports.empty() && !scene.floor) return 0.0;
+  double top = supports.empty() ? 0.0 : -1e300;
+  for (const std::size_t s : supports) top = std::max(top, bounds[s].upper[2]);
+  return std::max(0.0, bounds[b].lower[2] - top);
+}
+
 constexpr double kPointsPerOverlap = 4.0;
 constexpr double kLoadedPoints = 2.0;  // a share that lies off centre rests on one side of the overlap
 // A block on tops that differ by more than this share of its height rests on two of them, and the paths of the load through
@@ -121,6 +131,7 @@ LoadEstimate estimateLoads(const Scene& scene) {
     const double own = scene.blocks[b].mass * weighing;
     load[b] += own;
     weight += own;
+    estimate.askewFall_m = std::max(estimate.askewFall_m, askewFall(scene, bounds, b, below[b]));
     const double spread = unevenness(bounds, below[b]);
     const bool uneven = spread > kUnevenHeight * (bounds[b].upper[2] - bounds[b].lower[2]);
     anyUneven = anyUneven || uneven;
@@ -141,6 +152,7 @@ LoadEstimate estimateLoads(const Scene& scene) {
     for (const std::size_t s : below[*b]) level[*b] = std::max(level[*b], level[s] + 1);
     levels = std::max(levels, level[*b] + 1);
   }
+  estimate.layers = static_cast<int>(levels);
   std::vector<LevelMoments> moments(levels);
   std::array<double, 3> lower{1e300, 1e300, 1e300};
   std::array<double, 3> upper{-1e300, -1e300, -1e300};

@@ -12,7 +12,9 @@ struct LoadEstimate {
   double floorLoad_n = 0.0;    ///< N, largest load of one contact point on the floor
   double blockLoad_n = 0.0;    ///< N, largest load of one of a block's four upright edges
   double swayStiffness_n_m =
-      0.0;  ///< N/m, least contact stiffness at which the scene's tower does not sway over under its own weight
+      0.0;                   ///< N/m, least contact stiffness at which the scene's tower does not sway over under its own weight
+  int layers = 0;            ///< most blocks on top of one another
+  double askewFall_m = 0.0;  ///< m, furthest that a block which does not lie flat falls onto what is below it
 };
 
 /// Estimates loads from geometry: every block hands its weight and what it bears in equal shares to the highest blocks below it

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 namespace springtower {
 namespace {
@@ -78,9 +79,11 @@ TEST_F(ChartFiles, HoldEveryCaseWithItsFigures) {
     SCOPED_TRACE(one.dump());
     EXPECT_GT(one.at("cpu_ms_per_frame").get<double>(), 0.0);
     const bool tower = one.at("scene") == "uniform";
-    for (const char* key : {"penetration_mm", "compression_mm", "creep_mm", "jitter_mm_s"})
+    for (const char* key : {"penetration_mm", "compression_mm", "creep_mm", "jitter_mm_s", "imbalance"})
       EXPECT_EQ(one.at(key).is_number(), tower) << key;
+    EXPECT_EQ(one.at("error_mm").is_number(), !tower);
     if (!tower) continue;
+    EXPECT_LT(one.at("imbalance").get<double>(), 1e-3) << "of a block's weight";
     EXPECT_EQ(one.at("outcome"), "right") << one.at("note");
     EXPECT_LT(one.at("penetration_mm").get<double>(), 1.0);
     EXPECT_LT(one.at("creep_mm").get<double>(), 1.0);
@@ -111,7 +114,22 @@ TEST_F(ChartFiles, IndexNamesEveryChart) {
     EXPECT_THAT(contentOf(picture), HasSubstr("PNG"));
     EXPECT_GT(contentOf(entry.path()).size(), 10000U);
   }
-  EXPECT_EQ(charts, 6U);  // five measures of the tower, the energy of the block that flies
+  EXPECT_EQ(charts, 8U);  // six measures of the tower; the energy of the block that flies, and its error
+}
+
+// A finer step is nearer to the converged run of its own model.
+TEST_F(ChartFiles, ErrorAgainstAConvergedRunFallsWithTheStep) {
+  const Json file = json();
+  double coarse_mm = 0.0;
+  for (const Json& one : file.at("cases")) {
+    if (one.at("scene") != "spin" || one.at("method") != "rigid-pgs") continue;
+    const auto error_mm = one.at("error_mm").get<double>();
+    if (coarse_mm > 0.0) {
+      EXPECT_LT(error_mm, 0.5 * coarse_mm) << "four times the steps of a method of first order";
+    }
+    coarse_mm = error_mm;
+  }
+  EXPECT_GT(coarse_mm, 0.0);
 }
 
 // What has been measured is not measured again; with another limit it is.
@@ -129,6 +147,39 @@ TEST_F(ChartFiles, AnotherRunGoesOnFromThem) {
   fresh.emplace_back("--fresh");
   ASSERT_EQ(chart(fresh).exitCode, 0);
   EXPECT_NE(withoutDates(contentOf(path("out/chart.csv"))), withoutDates(before)) << "no two timings are the same";
+}
+
+// Other engines run beside ours, where their programs have been built.
+TEST(Chart, RunsOtherEnginesAndCarriesOverThoseMeasuredElsewhere) {
+  const std::filesystem::path programs = std::filesystem::path(SPRINGTOWER_BINARY_DIR) / "bin";
+  if (!exists(programs / "peers_bullet") || !exists(programs / "peers_ode")) GTEST_SKIP() << "Bullet or ODE is not installed";
+  const ScratchFolder scratch;
+  const std::string records = scratch.file("records.csv");
+  std::ofstream(records) << "engine,version,settings,scene,rows,threads,stands_60_s,worst_penetration_mm,top_height_error_mm,"
+                            "creep_mm,jitter_mm_s,ms_per_frame,ratio_to_bullet_16_substeps\n"
+                            "Other,1,default,uniform,3,1,yes,0.1,-0.3,0,0,1000,0.5\n";
+  const ProgramResult result = chart({"--quick", "--rows", "3", "--scenes", "uniform,drop", "--methods", "bullet,ode", "--peers",
+                                      records, "--out", scratch.file("out")});
+  ASSERT_EQ(result.exitCode, 0) << result.error;
+  double bullet_ms = 0.0;
+  int right = 0;
+  const Json file = Json::parse(contentOf(scratch.file("out/chart.json")));
+  for (const Json& one : file.at("cases")) {
+    SCOPED_TRACE(one.dump());
+    EXPECT_GT(one.at("cpu_ms_per_frame").get<double>(), 0.0);
+    EXPECT_LT(one.at("penetration_mm").get<double>(), 20.0);
+    if (one.at("outcome") == "right") ++right;
+    if (one.at("method") == "bullet" && one.at("value") == 16.0 && one.at("scene") == "uniform")
+      bullet_ms = one.at("cpu_ms_per_frame").get<double>();
+  }
+  EXPECT_GE(right, 4) << "three rows stand with any engine that takes 16 steps";
+  const std::vector<std::string> lines = linesOf(contentOf(scratch.file("out/chart.csv")));
+  EXPECT_THAT(lines.back(), StartsWith("elsewhere,uniform,3,\"Other\","));
+  ASSERT_GT(bullet_ms, 0.0);
+  std::istringstream carried(lines.back().substr(lines.back().find(",,,,") + 4));
+  double ms = 0.0;
+  carried >> ms;
+  EXPECT_NEAR(ms, 0.5 * bullet_ms, 1e-3 * bullet_ms);
 }
 
 }  // namespace

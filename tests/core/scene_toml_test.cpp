@@ -92,6 +92,7 @@ TEST(SceneFile, HasTheDefaultsOfASceneWhereItIsSilent) {
   const Scene tower = towerScene(3);
   EXPECT_EQ(scene.blocks.size(), tower.blocks.size());
   EXPECT_EQ(scene.seconds, tower.seconds);
+  EXPECT_EQ(scene.plane, tower.plane);
   EXPECT_EQ(scene.staticFriction, tower.staticFriction);
   EXPECT_EQ(scene.gravity.magnitude, tower.gravity.magnitude);
   EXPECT_TRUE(scene.floor);
@@ -179,7 +180,7 @@ TEST(BadSceneFile, IsNamedInOneLine) {
       {"inside_the_floor", ": block 0 starts 1 mm inside the floor z = 0, allowed is touching it"},
       {"unknown_method",
        ":5:10: settings.method: found 'euler', allowed implicit, semi-implicit-euler, midpoint, runge-kutta-4, report, "
-       "rigid-pgs, rigid-lcp or xpbd"},
+       "rigid-pgs, rigid-lcp, xpbd or auto"},
       {"setting_out_of_range", ":5:15: settings.step_margin: found 1.5, allowed 0.05 to 1"},
       {"force_on_no_block", ":5:9: force[0].block: found 1, allowed a whole number from 0 to 0"},
       {"force_ends_first", ":8:9: force[0].end_s: found 1, allowed 2 to 10000000 s"},

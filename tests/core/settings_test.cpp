@@ -82,7 +82,7 @@ TEST(Settings, NamesReadBackAsTheyAreWritten) {
 TEST(Settings, UnknownNamesListWhatIsAllowed) {
   EXPECT_THAT([] { methodFromName("euler", "--method"); },
               ThrowsMessage<InputError>("--method: found 'euler', allowed implicit, semi-implicit-euler, midpoint, "
-                                        "runge-kutta-4, report, rigid-pgs, rigid-lcp or xpbd"));
+                                        "runge-kutta-4, report, rigid-pgs, rigid-lcp, xpbd or auto"));
   EXPECT_THAT([] { inertiaFromName("", "--inertia"); },
               ThrowsMessage<InputError>("--inertia: found '', allowed cuboid or lumped"));
   EXPECT_THAT([] { sleepFromName("o\nn", "s.toml"); },
