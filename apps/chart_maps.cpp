@@ -29,7 +29,6 @@ Scene sceneOf(Method method, int rows, double tolerance_m, int steps) {
   scene.settings.method = method;
   scene.settings.sleep = Sleep::off;
   scene.settings.tolerance_m = tolerance_m;
-  scene.settings.toleranceGiven = true;
   scene.settings.substeps = steps;
   scene.settings.forceUnstable = true;
   scene.settings.dampingTime_s = 0.0;

@@ -20,11 +20,12 @@ constexpr double kRigidSag = 2.4;
 Settings chooseMethod(const Scene& scene) {
   Settings settings = scene.settings;
   const LoadEstimate loads = estimateLoads(scene);
+  const double tolerance_m = toleranceOf(scene);
   const double gravity = scene.gravity.magnitude;
   double mass = 0.0;
   for (const BlockSpec& block : scene.blocks) mass = std::max(mass, block.mass);
-  const double depth = settings.impactPenetration * settings.tolerance_m;
-  const double stiffness = stiffnessForTolerance(loads, settings.tolerance_m).contact_n_m;
+  const double depth = settings.impactPenetration * tolerance_m;
+  const double stiffness = stiffnessForTolerance(loads, tolerance_m).contact_n_m;
   const double squaredSpeed = 2.0 * gravity * loads.askewFall_m;
   const double stiffening = mass * squaredSpeed / (depth * depth * stiffness);
   if (stiffening < kHardImpact) {
@@ -33,7 +34,7 @@ Settings chooseMethod(const Scene& scene) {
   }
   settings.method = Method::rigidPgs;
   if (settings.substeps == 0) {
-    const double step_s = std::sqrt(settings.tolerance_m / (kRigidSag * gravity * std::max(1, loads.layers)));
+    const double step_s = std::sqrt(tolerance_m / (kRigidSag * gravity * std::max(1, loads.layers)));
     settings.substeps = static_cast<int>(std::ceil(settings.frame_s / step_s));
   }
   return settings;
