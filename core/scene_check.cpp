@@ -173,6 +173,7 @@ void checkScene(const Scene& scene, std::string_view source) {
   for (std::size_t f = 0; f < scene.forces.size(); ++f) {
     checkForce(scene.forces[f], scene.blocks.size(), fmt::format("{}: force {}", source, f));
   }
+  checkMoves(scene, source);
   if (scene.floor) checkFloor(scene, boxes, source);
   checkPairs(scene, boxes, source);
 }
