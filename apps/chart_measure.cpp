@@ -223,8 +223,8 @@ class ChartRun {
   std::vector<int> row_;
   std::vector<std::uint8_t> leftOut_;
   int pulled_ = -1;
-  Hand hand_;
-  Hand handKept_;
+  SteadyPull hand_;
+  SteadyPull handKept_;
   std::shared_ptr<const Snapshot> snapshot_;
   PenetrationWorkspace workspace_;
   CornerArray settledPosition_;
