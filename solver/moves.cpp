@@ -7,6 +7,7 @@
 #include <cmath>
 #include <iterator>
 #include <numbers>
+#include <span>
 
 namespace springtower {
 namespace {
@@ -180,6 +181,13 @@ bool isThere(const Simulation& simulation, BlockId block, const Vec3& goal) {
   return (motion.centre - goal).norm() < kThere_m && motion.velocity.norm() < kThere_m_s;
 }
 
+// Whether a block touches another; the floor does not keep it in the tower.
+bool touchesBlocks(std::span<const ContactForce> contacts, BlockId block) {
+  return std::any_of(contacts.begin(), contacts.end(), [&](const ContactForce& contact) {
+    return contact.lower != kFloor && (contact.upper == block || contact.lower == block) && contact.normalForce > 0.0;
+  });
+}
+
 // How far a block reaches along a direction from its centre, both ways together.
 double extentAlong(const Simulation& simulation, std::size_t block, const Vec3& direction) {
   double least = 1e300;
@@ -265,7 +273,7 @@ void follow(MoveRun& run, const Simulation& simulation, std::span<const ContactF
       break;
     case MovePhase::draw: {
       const double moved = (centre(simulation.state.position, b) - centre(run.before, b)).dot(move.towards);
-      if (moved < extentAlong(simulation, b, move.towards) + kClear_m || holdOf(contacts, hand.block) != Hold::free) break;
+      if (moved < extentAlong(simulation, b, move.towards) + kClear_m || touchesBlocks(contacts, hand.block)) break;
       hand.place = centre(simulation.state.position, b);
       enter(run, MovePhase::lift);
       break;
@@ -281,7 +289,7 @@ void follow(MoveRun& run, const Simulation& simulation, std::span<const ContactF
       const double left = hand.turn.angularDistance(run.goalTurn);
       hand.turn = left > kTurn_rad_s * frame_s ? hand.turn.slerp(kTurn_rad_s * frame_s / left, run.goalTurn) : run.goalTurn;
       const Vec3 over{run.goal.x(), run.goal.y(), hand.place.z()};
-      if (leadTo(hand, over, kCarry_m_s, frame_s) && left == 0.0 && isThere(simulation, hand.block, over)) {
+      if (leadTo(hand, over, kCarry_m_s, frame_s) && left <= kTurn_rad_s * frame_s && isThere(simulation, hand.block, over)) {
         enter(run, MovePhase::lower);
       }
       break;
@@ -291,7 +299,8 @@ void follow(MoveRun& run, const Simulation& simulation, std::span<const ContactF
       const bool last = !drops && hand.place.z() < run.goal.z() + kLayFrom_m;
       const Vec3 below = drops ? run.goal : Vec3(run.goal - kLayFrom_m * Vec3::UnitZ());
       const bool there = leadTo(hand, below, last ? kLay_m_s : kLower_m_s, frame_s);
-      if (!drops && holdOf(contacts, hand.block) != Hold::free) enter(run, MovePhase::press);
+      // A block that bounces may be off the ground whenever a frame ends.
+      if (!drops && (there || holdOf(contacts, hand.block) != Hold::free)) enter(run, MovePhase::press);
       if (drops && there && isThere(simulation, hand.block, below)) enter(run, MovePhase::still);
       break;
     }

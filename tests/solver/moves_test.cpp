@@ -91,6 +91,17 @@ TEST(Moves, APutAsideBlockLiesOnTheFloor) {
   EXPECT_GT(place.head<2>().norm(), 0.2);
 }
 
+// A block of the bottom row touches the floor to the end; it comes free all the same.
+TEST(Moves, ABlockIsDrawnAlongTheFloor) {
+  Scene scene = towerScene(3);
+  scene.moves = {take(0, 3, Vec3::UnitY()), put(3, 2)};
+  Simulation simulation(scene);
+  const RunResult result = play(simulation);
+  ASSERT_EQ(result.moves.size(), 2U);
+  EXPECT_TRUE(result.moves[1].done);
+  EXPECT_TRUE(result.standing.stands);
+}
+
 // What a weak hand cannot draw stays, and the sequence ends there.
 TEST(Moves, AWeakHandGivesUp) {
   Scene scene = towerScene(6);
