@@ -61,7 +61,7 @@ void addSequence(const ValidationPlan& plan, ValidationSection& section) {
   }
 }
 
-// One sequence of removals by pulling: outer blocks sideways, middle ones along their length.
+// One sequence of removals by pulling, along the blocks' length.
 struct RemovalSequence {
   std::string id;
   Scene scene;
@@ -87,9 +87,7 @@ std::vector<RemovalSequence> removalSequences(const ValidationPlan& plan) {
       Move take;
       take.row = place.at("row").get<int>();
       take.position = place.at("position").get<int>();
-      const bool alongX = (take.row % 2 == 0) == (take.position == 2);
-      const double outwards = take.position == 1 ? -1.0 : 1.0;
-      take.towards = alongX ? Vec3(outwards, 0.0, 0.0) : Vec3(0.0, outwards, 0.0);
+      take.towards = take.row % 2 == 0 ? Vec3::UnitX() : Vec3::UnitY();
       Move away;
       away.kind = MoveKind::putAside;
       take.limit_n = away.limit_n = kStrongHand_n;
@@ -142,8 +140,8 @@ ValidationSection validateMoves(const ValidationPlan& plan) {
       "Moves",
       "The report's sequence of moves (its section 6.1.2, scenes/moves.toml) by a hand of at most 5 N, slow at "
       "4 cm/s and quick at 40 cm/s; allowed is what the real tower did. Then blocks are pulled out of a full "
-      "tower of 18 rows one by one, at 4 cm/s, and put aside: outer ones sideways, middle ones along their "
-      "length. After a state that differs a sequence is not counted further."};
+      "tower of 18 rows one by one, at 4 cm/s, along their length, and put aside. "
+      "After a state that differs a sequence is not counted further."};
   addSequence(plan, section);
   addRemovals(plan, section);
   return section;
