@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 #include <string>
+#include <utility>
 
 namespace springtower {
 namespace {
@@ -114,6 +115,26 @@ TEST(Moves, AWeakHandGivesUp) {
   EXPECT_FALSE(isWithin(scene.moves[0], result.moves[0]));
   EXPECT_LT(result.moves[0].moved_m, 1e-4);
   EXPECT_TRUE(result.standing.stands);
+}
+
+// The removals `removal-0-2` of the reference set, by pulling: statics lets the tower stand after five of them, and not after the
+// sixth.
+TEST(Moves, BlocksPulledOutOneByOneLeaveWhatStaticsSays) {
+  Scene scene = towerScene(18);
+  Move away;
+  away.kind = MoveKind::putAside;
+  const std::pair<int, int> places[] = {{5, 1}, {13, 1}, {3, 2}, {15, 2}, {0, 2}, {15, 1}};
+  for (const auto& [row, position] : places) {
+    scene.moves.push_back(take(row, position, row % 2 == 0 ? Vec3::UnitX() : Vec3::UnitY()));
+    scene.moves.push_back(away);
+  }
+  for (Move& move : scene.moves) move.limit_n = 20.0;
+  Simulation simulation(scene);
+  const RunResult result = play(simulation);
+  EXPECT_GE(result.moves.size(), 10U);
+  EXPECT_LT(result.moves.size(), 12U);
+  for (const MoveResult& move : result.moves) EXPECT_TRUE(move.done);
+  EXPECT_FALSE(result.standing.stands);
 }
 
 // The report's sequence 6.1.2 (scenes/moves.toml) to its end: every block comes to its place and the tower stands.
