@@ -273,8 +273,8 @@ class ChartRun {
   std::vector<int> row_;
   std::vector<std::uint8_t> leftOut_;
   int pulled_ = -1;
-  Hand hand_;
-  Hand handKept_;
+  SteadyPull hand_;
+  SteadyPull handKept_;
   std::unique_ptr<PeerProcess> peer_;  // instead of our own steps
   bool kept_ = false;
   std::shared_ptr<const Snapshot> snapshot_;

@@ -85,7 +85,7 @@ void startPulling(PreparedScene& scene, int rows, const Deadline& deadline) {
 
 }  // namespace
 
-void pull(Hand& hand, Simulation& simulation) {
+void pull(SteadyPull& hand, Simulation& simulation) {
   // Gains per frame, as shares of what would give the block the missing speed within one frame.
   constexpr double kProportional = 0.5;
   constexpr double kIntegral = 0.2;

@@ -13,14 +13,14 @@ namespace springtower {
 
 /// A hand that pulls one block at a steady speed: a force on its centre, set before each frame from how fast the block moves
 /// (proportional and integral control).
-struct Hand {
+struct SteadyPull {
   int block = -1;  ///< -1: nobody pulls
   Vec3 direction = Vec3::UnitX();
   double held_n = 0.0;  ///< what the last frames have shown to be needed, N
 };
 
 /// Sets the hand's force in the scene for the coming frame.
-void pull(Hand& hand, Simulation& simulation);
+void pull(SteadyPull& hand, Simulation& simulation);
 
 /// The scene of a case. Throws InputError for a tower that is not allowed.
 Scene sceneOf(const ProfileCase& what);
@@ -30,9 +30,9 @@ struct PreparedScene {
   explicit PreparedScene(const ProfileCase& what) : simulation(sceneOf(what)) {}
 
   Simulation simulation;
-  Hand hand;
+  SteadyPull hand;
   std::shared_ptr<const Snapshot> snapshot;
-  Hand handKept;                      ///< the hand of the snapshot
+  SteadyPull handKept;                ///< the hand of the snapshot
   std::vector<std::uint8_t> leftOut;  ///< 1 for the pulled block, [blocks] or empty
   std::string failure;                ///< why the scene does not come to what is to be timed; empty when it does
 

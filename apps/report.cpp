@@ -1,5 +1,6 @@
 #include "apps/report.h"
 
+#include "apps/moves_report.h"
 #include "core/limits.h"
 #include "core/version.h"
 
@@ -121,6 +122,7 @@ Json reportJson(const Simulation& simulation, const RunResult& result, int threa
   report["asleep_blocks"] = result.asleepBlocks;
   report["awake_blocks"] = result.awakeBlocks;
   report["counters"] = countersJson(result.counters);
+  if (!simulation.scene.moves.empty()) report["moves"] = movesJson(simulation, result);
   report["state_hash"] = fmt::format("{:016x}", result.stateHash);
   return report;
 }
@@ -159,6 +161,7 @@ void printResult(const Simulation& simulation, const RunResult& result, int thre
   row("frame, wall time",
       fmt::format("{:.3g} ms median, {:.3g} ms 99th percentile, {:.3g} ms longest", times.median, times.p99, times.max));
   row("state", fmt::format("{:016x}", result.stateHash));
+  printMoves(simulation, result);
 }
 
 }  // namespace springtower

@@ -37,6 +37,7 @@ struct ValidationSection {
 struct ValidationPlan {
   bool longForm = false;  ///< every scene of every set; else a part that takes seconds
   std::string oracle;     ///< folder with the sets of towers and what statics says of them
+  std::string scenes;     ///< folder with the scenes of the repository
 };
 
 /// Verdicts against the reference sets, with sleep and without.
@@ -51,6 +52,8 @@ ValidationSection validateTilts(const ValidationPlan& plan);
 ValidationSection validateLoose(const ValidationPlan& plan);
 /// Other sizes, densities and a tower of very different weights.
 ValidationSection validateScale(const ValidationPlan& plan);
+/// The report's sequence of moves, and blocks pulled out one by one.
+ValidationSection validateMoves(const ValidationPlan& plan);
 /// How many blocks wake, and that what must fall falls.
 ValidationSection validateSleep(const ValidationPlan& plan);
 

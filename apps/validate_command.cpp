@@ -22,7 +22,7 @@ constexpr std::string_view kExamples = R"help(examples:
   springtower validate --out validation                 the short form, in less than two minutes
   springtower validate --out validation --long          every tower of every set
   springtower validate --out validation --only pull,tilt --check
-parts: verdicts, forces, pull, tilt, loose, scale, sleep. A claim that fails is reported and is no error of the program; with
+parts: verdicts, forces, pull, tilt, loose, scale, sleep, moves. A claim that fails is reported and is no error of the program; with
 --check the exit code is then 1.)help";
 
 std::vector<ValidationPart> partsOf(const ValidateCommand& command) {
@@ -55,8 +55,8 @@ void print(const ValidationSection& section) {
 
 const std::vector<ValidationPart>& validationParts() {
   static const std::vector<ValidationPart> parts = {
-      {"verdicts", validateVerdicts}, {"forces", validateForces}, {"pull", validatePulls}, {"tilt", validateTilts},
-      {"loose", validateLoose},       {"scale", validateScale},   {"sleep", validateSleep}};
+      {"verdicts", validateVerdicts}, {"forces", validateForces}, {"pull", validatePulls},  {"tilt", validateTilts},
+      {"loose", validateLoose},       {"scale", validateScale},   {"sleep", validateSleep}, {"moves", validateMoves}};
   return parts;
 }
 
@@ -69,6 +69,7 @@ CLI::App* defineValidate(CLI::App& program, ValidateCommand& command) {
   validate->add_flag("--long", command.longForm, "every tower of every set, more seeds: many minutes");
   validate->add_option("--only", command.only, "some parts only (see below)")->delimiter(',')->type_name("NAME,...");
   validate->add_option("--oracle", command.oracle, "folder of the reference sets (default tests/data/oracle)")->type_name("DIR");
+  validate->add_option("--scenes", command.scenes, "folder of the scene files (default scenes)")->type_name("DIR");
   validate->add_flag("--check", command.check, "exit code 1 if a claim fails");
   addWholeNumber(*validate, "--threads", command.threads, kValidateThreads, "threads to use (default: one for each processor)");
   wrapDescriptions(*validate);
@@ -78,9 +79,12 @@ CLI::App* defineValidate(CLI::App& program, ValidateCommand& command) {
 
 int executeValidate(const ValidateCommand& command) {
   const std::vector<ValidationPart> parts = partsOf(command);
-  const ValidationPlan plan{command.longForm, command.oracle};
+  const ValidationPlan plan{command.longForm, command.oracle, command.scenes};
   if (!std::filesystem::is_regular_file(std::filesystem::path(plan.oracle) / "shift.jsonl")) {
     throw InputError(fmt::format("--oracle: found {}, allowed is the folder that holds shift.jsonl", inQuotes(plan.oracle)));
+  }
+  if (!std::filesystem::is_regular_file(std::filesystem::path(plan.scenes) / "moves.toml")) {
+    throw InputError(fmt::format("--scenes: found {}, allowed is the folder that holds moves.toml", inQuotes(plan.scenes)));
   }
   makeOutputFolder(command.out);
   PhysicsOptions options;

@@ -13,6 +13,7 @@ struct ValidateCommand {
   std::string out;
   std::vector<std::string> only;
   std::string oracle = "tests/data/oracle";
+  std::string scenes = "scenes";
   std::optional<std::int64_t> threads;
   bool longForm = false;
   bool check = false;

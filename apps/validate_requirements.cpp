@@ -9,10 +9,10 @@ const std::vector<Requirement>& reportRequirements() {
        "`ViewerWindow.APlayerDrawsTheLooseBlockAndLaysItOnTop` (mouse and wheel in a real window), "
        "`ViewerGame.DrawingPlacingAndUndoing`; Sleep above (a block drawn out at 4 cm/s)"},
       {"1.2", "A player should be able to place a block back on top of the tower.",
-       "`ViewerWindow.APlayerDrawsTheLooseBlockAndLaysItOnTop`, `ViewerGame.DrawingPlacingAndUndoing`"},
+       "Moves above; `ViewerWindow.APlayerDrawsTheLooseBlockAndLaysItOnTop`, `ViewerGame.DrawingPlacingAndUndoing`"},
       {"1.3", "Input should be analogue to simulate a player's movement in the real game.",
-       "`ViewerControls.DragsInThePlaneOfTheScreenAndAlongTheView`, `ViewerGrip.ABlockInTheAirFollowsCriticallyDamped`, "
-       "`ViewerGrip.FrictionAnswersTheHand`: a force of at most 5 N that follows the mouse"},
+       "`ViewerControls.DragsInThePlaneOfTheScreenAndAlongTheView`, `Grip.ABlockInTheAirFollowsCriticallyDamped`, "
+       "`Grip.FrictionAnswersTheHand`: a force of at most 5 N that follows the mouse"},
       {"1.4", "The camera should allow for full view of all sides of the tower.",
        "`ViewerCamera.GoesAllTheWayRoundAndOverTheTop`, `ViewerCamera.ShowsTheWholeTower`, "
        "`ViewerControls.ADragBesideTheBlocksGoesRound`"},
@@ -27,7 +27,8 @@ const std::vector<Requirement>& reportRequirements() {
       {"2.5", "The tower should behave as 'expected' when a block is removed from it.",
        "Verdicts above (removal); `Statics.RemovalsBringDownWhatTheyCarry`"},
       {"2.6", "The tower should behave as 'expected' when a block is placed on top of it.",
-       "`PlacedTest.ABlockLaidOnTopStaysOrTipsWhatIsBelow`, `ViewerWindow.APlayerDrawsTheLooseBlockAndLaysItOnTop` (no other "
+       "Moves above; `PlacedTest.ABlockLaidOnTopStaysOrTipsWhatIsBelow`, `ViewerWindow.APlayerDrawsTheLooseBlockAndLaysItOnTop` "
+       "(no other "
        "block moves by 5 mm)"},
       {"2.7", "Blocks should not be able to pass through other blocks.",
        "`ThinWall.IsHitWithCubicTests`, `QuerySet.NoneMissedNoneLateNoneFalse`"},

@@ -1,5 +1,5 @@
-#include "apps/profile_scene.h"
 #include "apps/validate.h"
+#include "solver/grip.h"
 #include "solver/run.h"
 #include "solver/statics.h"
 #include "solver/trials.h"
@@ -13,7 +13,9 @@ namespace springtower {
 namespace {
 
 constexpr double kSlides_m = 1e-3;  // moved by this it slides
+constexpr double kPullSpeed_m_s = 0.04;
 constexpr double kLongestPull_s = 8.0;
+constexpr double kHeld_s = 1.0;  // after that the tower has to stand
 constexpr double kLongestSettling_s = 10.0;
 constexpr double kOverhang_m = 2e-5;
 constexpr std::size_t kLoadedAwake = 12;
@@ -48,21 +50,28 @@ void drawOut(SleepPull& what) {
   what.slept = awakeBlocks(simulation) == 0;
   std::size_t block = 0;
   while (what.scene.blocks[block].row != what.row || what.scene.blocks[block].position != 2) ++block;
-  Hand hand;
-  hand.block = static_cast<int>(block);
-  hand.direction = what.scene.blocks[block].orientation * Vec3::UnitX();
+  const Vec3 direction = what.scene.blocks[block].orientation * Vec3::UnitX();
+  Draw draw{handOn(simulation, blockId(block)), {}, direction, kPullSpeed_m_s};
   std::vector<std::uint8_t> leftOut(what.scene.blocks.size(), 0);
   leftOut[block] = 1;
   const std::vector<FittedBox> start = fittedBoxes(simulation.state.position);
   const Vec3 before = centre(simulation.state.position, block);
   const double begin_s = simulation.time_s;
   while (!what.freed && simulation.time_s < begin_s + kLongestPull_s) {
-    pull(hand, simulation);
+    simulation.scene.forces.clear();
+    drawOn(draw, contactForces(simulation), simulation);
     stepFrame(simulation);
-    const double moved = (centre(simulation.state.position, block) - before).dot(hand.direction);
+    const double moved = (centre(simulation.state.position, block) - before).dot(direction);
     if (moved < kSlides_m) continue;
     what.awake.push_back(static_cast<double>(awakeBlocks(simulation)));
-    what.freed = moved > 0.25 * kBlockLength_m && !touchesAnything(simulation, blockId(block));
+    what.freed = moved > kBlockLength_m && !touchesAnything(simulation, blockId(block));
+  }
+  const double end_s = simulation.time_s + kHeld_s;
+  draw.hand.place = centre(simulation.state.position, block);
+  while (what.freed && simulation.time_s < end_s) {
+    simulation.scene.forces.clear();
+    applyGrip(simulation, blockId(block), gripForce(simulation, contactForces(simulation), draw.hand, draw.grip));
+    stepFrame(simulation);
   }
   what.stands = standing(simulation.model, start, simulation.state.position, leftOut).stands;
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "apps/viewer_grip.h"
+#include "solver/grip.h"
 #include "solver/statics_model.h"
 
 #include <cstdint>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "apps/viewer_game.h"
-#include "apps/viewer_grip.h"
+#include "solver/grip.h"
 
 #include <algorithm>
 #include <cstdint>

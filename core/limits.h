@@ -39,6 +39,12 @@ inline constexpr Range kOffsetRange{-1.0, 1.0, "m"};
 inline constexpr Range kLooseRange{0.0, 0.009, "m"};
 inline constexpr int kMostRows = 2000;
 
+// What a scripted hand may do.
+inline constexpr Range kMoveSpeedRange{1e-3, 2.0, "m/s"};
+inline constexpr Range kDropRange{0.0, 1.0, "m"};
+inline constexpr Range kHandForceRange{1e-3, 1e3, "N"};
+inline constexpr Range kAllowedMoveRange{0.0, 1.0, "m"};
+
 /// Text between single quotes, fit for one line: control characters and bytes beyond ASCII become \xNN, and what follows the
 /// first 80 characters becomes "...".
 std::string inQuotes(std::string_view text);

@@ -41,6 +41,23 @@ struct UserForce {
   double end_s = 0.0;         ///< s
 };
 
+/// What a scripted hand does in a move: draws a block of the tower out, lays down or drops the block it holds on a place of the
+/// tower, or lays it on the floor beside the tower.
+enum class MoveKind : std::uint8_t { take, put, putAside };
+
+/// One move of a scripted sequence (solver/moves.h). Places are those of a bit code: rows from 0, positions from 1.
+struct Move {
+  MoveKind kind = MoveKind::take;
+  int row = 0;                   ///< take: where the block lies; put: where it goes
+  int position = 1;              ///< 1, 2, 3
+  Vec3 towards = Vec3::UnitX();  ///< take: the level direction it is drawn in, unit, along one of the world's axes
+  double speed_m_s = 0.04;       ///< take: how fast it is drawn
+  double drop_m = 0.0;           ///< put: the height above its place at which it is let go; 0 lays it down
+  double limit_n = 5.0;          ///< N, most force of the hand
+  std::optional<double> allowed_m =
+      {};  ///< m, how far the move may shift any other block beyond rigid settlement; judged if given
+};
+
 /// Gravity: a magnitude, tilted from straight down by an angle towards a direction, and perhaps swaying. Tilting a scene means
 /// turning gravity; the floor stays.
 struct Gravity {
@@ -59,6 +76,7 @@ struct Scene {
   std::string name;
   std::vector<BlockSpec> blocks;
   std::vector<UserForce> forces;
+  std::vector<Move> moves;  ///< one after the other; empty: nobody touches the tower
   Gravity gravity;
   bool floor = true;             ///< the plane z = 0
   bool plane = false;            ///< all that moves stays in the plane y = 0: a scene of rectangles (see checkScene)
@@ -121,11 +139,16 @@ double blockHeightOf(const Scene& scene);
 /// Precondition: there is a block, or the settings give one.
 double toleranceOf(const Scene& scene);
 
+/// Checks the scene's moves as a sequence: a block is taken where there is one and with an empty hand, put where there is none,
+/// and all numbers are within limits. Throws InputError naming `source`, the move, what was found and what is allowed.
+void checkMoves(const Scene& scene, std::string_view source);
+
 /// Checks what every scene must obey: values within the limits of core/limits.h and `settingTable`, unit orientations, forces on
-/// blocks that exist, no block inside another or in the floor by more than a millionth of the least dimension of the blocks
-/// concerned (touching is fine); in a plane: blocks whose centres and gravity lie in y = 0, with an axis along y, that neither
-/// move nor are pushed out of it. The scenes above have been checked; check again after changing one. Throws InputError naming
-/// `source`, the block (or both blocks and how deep they overlap), what was found and what is allowed.
+/// blocks that exist, moves that can be made (checkMoves), no block inside another or in the floor by more than a millionth of
+/// the least dimension of the blocks concerned (touching is fine); in a plane: blocks whose centres and gravity lie in y = 0,
+/// with an axis along y, that neither move nor are pushed out of it. The scenes above have been checked; check again after
+/// changing one. Throws InputError naming `source`, the block (or both blocks and how deep they overlap), what was found and what
+/// is allowed.
 void checkScene(const Scene& scene, std::string_view source);
 
 }  // namespace springtower

@@ -197,6 +197,7 @@ void checkScene(const Scene& scene, std::string_view source) {
     checkForce(scene.forces[f], scene.blocks.size(), fmt::format("{}: force {}", source, f));
   }
   if (scene.plane) checkPlane(scene, source);
+  checkMoves(scene, source);
   if (scene.floor) checkFloor(scene, boxes, source);
   checkPairs(scene, boxes, source);
 }

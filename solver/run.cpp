@@ -52,10 +52,10 @@ class Recorder {
   }
 
   // `unchanged`: nothing moved in this frame, so that the measures of the frame before still hold.
-  void frame(const Simulation& simulation, bool unchanged, double wall_s, double processor_s) {
+  void frame(const Simulation& simulation, const MoveRun& moves, bool unchanged, double wall_s, double processor_s) {
     wall_ms_.push_back(1e3 * wall_s);
     processor_ms_.push_back(1e3 * processor_s);
-    if (!unchanged && !result_.fallTime_s) judge(simulation);
+    if (!unchanged && !result_.fallTime_s) judge(simulation, moves);
     if (simulation.substeps > 0) result_.substeps = simulation.substeps;
     const bool resting = atRest(simulation);
     const bool firstRest = resting && !result_.restTime_s;
@@ -81,7 +81,7 @@ class Recorder {
     timeFrames(simulation);
     if (settled_) {
       result_.maxPenetration_m = std::max(settledPenetration_m_, now_.penetration.depth);
-      result_.creep_m = creep_m_;
+      if (simulation.scene.moves.empty()) result_.creep_m = creep_m_;
     }
     result_.bottomRowCompression_m = meanRowCompression(simulation.model, startPosition_, simulation.state.position,
                                                         bottomRow(simulation.model, startPosition_, row_));
@@ -98,8 +98,12 @@ class Recorder {
   }
 
  private:
-  void judge(const Simulation& simulation) {
-    const Standing now = standing(simulation.model, reference_, simulation.state.position, options_.leftOut);
+  void judge(const Simulation& simulation, const MoveRun& moves) {
+    for (; laid_ < moves.laid.size(); ++laid_) {
+      reference_[moves.laid[laid_]] = fittedBox(simulation.state.position, moves.laid[laid_]);
+    }
+    const std::vector<std::uint8_t>& leftOut = simulation.scene.moves.empty() ? options_.leftOut : moves.leftOut;
+    const Standing now = standing(simulation.model, reference_, simulation.state.position, leftOut);
     if (now.stands) return;
     result_.standing = now;
     result_.fallTime_s = simulation.time_s;
@@ -155,6 +159,7 @@ class Recorder {
   std::vector<int> row_;              // of each block, or -1
   CornerArray closed_;                // the start without gaps between rows
   std::vector<FittedBox> reference_;  // of closed_
+  std::size_t laid_ = 0;              // blocks whose new place is known
   PenetrationWorkspace workspace_;
   FrameMeasures now_;
   double largestRise_j_ = 0.0;
@@ -173,16 +178,21 @@ class Recorder {
 RunResult runScene(Simulation& simulation, const RunOptions& options, const FrameCallback& afterFrame) {
   const Clock::time_point start = Clock::now();
   Recorder recorder(simulation, options);
+  MoveRun moves = beginMoves(simulation);
   if (afterFrame) afterFrame(simulation);
   const long frames = std::max(1L, std::lround(options.seconds / simulation.scene.settings.frame_s));
   for (long frame = 0; frame < frames; ++frame) {
+    if (!simulation.scene.moves.empty()) {
+      guideHand(moves, simulation);
+      if (moves.finished || recorder.soFar().fallTime_s) break;
+    }
     const bool slept = allAsleep(simulation);
     const double processorStart_s = processorTime_s();
     const Clock::time_point frameStart = Clock::now();
     stepFrame(simulation);
     const double wall_s = secondsSince(frameStart);
     const double processor_s = processorTime_s() - processorStart_s;
-    recorder.frame(simulation, slept && allAsleep(simulation), wall_s, processor_s);
+    recorder.frame(simulation, moves, slept && allAsleep(simulation), wall_s, processor_s);
     if (afterFrame) afterFrame(simulation);
     const RunResult& soFar = recorder.soFar();
     if (options.stopWhenFallen && soFar.fallTime_s) break;
@@ -193,6 +203,7 @@ RunResult runScene(Simulation& simulation, const RunOptions& options, const Fram
     }
   }
   RunResult result = recorder.finish(simulation);
+  result.moves = std::move(moves.results);
   result.wall_s = secondsSince(start);
   return result;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "solver/measures.h"
+#include "solver/moves.h"
 #include "solver/penetration.h"
 #include "solver/simulation.h"
 
@@ -61,6 +62,7 @@ struct RunResult {
   std::size_t asleepBlocks = 0;         ///< at the end
   std::size_t awakeBlocks = 0;          ///< at the end
   std::uint64_t stateHash = 0;          ///< at the end
+  std::vector<MoveResult> moves;        ///< of the scene's moves that have ended
 };
 
 /// Called once before the first frame and after every frame.
@@ -69,7 +71,9 @@ using FrameCallback = std::function<void(const Simulation&)>;
 /// Runs a scene for a time and measures it. Rest, fall and penetration are judged against the state in which the simulation is
 /// handed over; times are simulated times. A frame in which every block sleeps is not measured again: nothing has changed. While
 /// all blocks are at rest the energy is not measured in every frame, as it would cost more than the frame; a rise over such a
-/// time counts as one. Throws DivergenceError from the frame that diverges; the simulation is then left as that frame left it.
+/// time counts as one. A scene with moves is run until the last of them has ended or it has fallen; blocks in the hand and those
+/// put aside are left out of `standing`, blocks laid down are judged against their new place, and there is no creep. Throws
+/// DivergenceError from the frame that diverges; the simulation is then left as that frame left it.
 RunResult runScene(Simulation& simulation, const RunOptions& options, const FrameCallback& afterFrame = {});
 
 /// The q-quantile (0 < q <= 1) of some values by nearest rank: the least value that at least q of them do not exceed. 0 for none.

@@ -17,7 +17,8 @@ using ::testing::StartsWith;
 using Json = nlohmann::json;
 
 ProgramResult validate(std::vector<std::string> arguments) {
-  arguments.insert(arguments.begin(), {"validate", "--oracle", std::string(SPRINGTOWER_TEST_DATA_DIR) + "/oracle"});
+  arguments.insert(arguments.begin(), {"validate", "--oracle", std::string(SPRINGTOWER_TEST_DATA_DIR) + "/oracle", "--scenes",
+                                       std::string(SPRINGTOWER_SOURCE_DIR) + "/scenes"});
   return runProgram("springtower", arguments);
 }
 
@@ -102,6 +103,11 @@ TEST(Validate, RefusesWhatItDoesNotKnow) {
   EXPECT_THAT(part.error, HasSubstr("'magic'"));
   const ProgramResult folder =
       runProgram("springtower", {"validate", "--out", scratch.file("page"), "--oracle", scratch.file("no")});
+  const ProgramResult scenes =
+      runProgram("springtower", {"validate", "--out", scratch.file("page"), "--scenes", scratch.file("no"), "--oracle",
+                                 std::string(SPRINGTOWER_TEST_DATA_DIR) + "/oracle"});
+  EXPECT_EQ(scenes.exitCode, 2);
+  EXPECT_THAT(scenes.error, HasSubstr("--scenes"));
   EXPECT_EQ(folder.exitCode, 2);
   EXPECT_THAT(folder.error, HasSubstr("--oracle"));
   EXPECT_EQ(validate({}).exitCode, 2) << "--out is needed";

@@ -19,11 +19,7 @@ inline void wait(Session& session, int frames) {
 
 /// A hand that takes a block as it lies.
 inline Hand handOn(const Session& session, std::size_t block) {
-  Hand hand;
-  hand.block = blockId(block);
-  hand.place = centre(session.simulation.state.position, block);
-  hand.turn = orientationOf(session.simulation.state.position, block);
-  return hand;
+  return handOn(session.simulation, blockId(block));
 }
 
 /// Leads the hand in a straight line by `way` at a speed, then holds it still for a time.

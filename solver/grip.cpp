@@ -1,4 +1,4 @@
-#include "apps/viewer_grip.h"
+#include "solver/grip.h"
 
 #include "solver/inertia.h"
 
@@ -36,13 +36,21 @@ Eigen::Matrix3d momentsOf(const Simulation& simulation, std::size_t block, const
   return axes * own.asDiagonal() * axes.transpose();
 }
 
-// Vertical part of what all contacts together put on a block, N.
-double support(std::span<const ContactForce> contacts, BlockId block) {
-  double sum = 0.0;
+// What all contacts together put on a block: force, N, and torque about its centre, N m.
+struct ContactSum {
+  Vec3 force = Vec3::Zero();
+  Vec3 torque = Vec3::Zero();
+};
+
+ContactSum sumOf(std::span<const ContactForce> contacts, BlockId block, const Vec3& middle) {
+  ContactSum sum;
   for (const ContactForce& contact : contacts) {
-    const double force = contact.normalForce * contact.normal.z() + contact.frictionForce.z();
-    if (contact.upper == block) sum += force;
-    if (contact.lower == block) sum -= force;
+    if (contact.upper != block && contact.lower != block) continue;
+    const bool upper = contact.upper == block;
+    const Vec3 onUpper = contact.normalForce * contact.normal + contact.frictionForce;
+    const Vec3 force = upper ? onUpper : Vec3(-onUpper);
+    sum.force += force;
+    sum.torque += ((upper ? contact.point : contact.lowerPoint) - middle).cross(force);
   }
   return sum;
 }
@@ -72,14 +80,17 @@ GripForce gripForce(const Simulation& simulation, std::span<const ContactForce> 
   const double mass = simulation.model.mass[b];
   const Vec3 gravity = simulation.scene.gravity.at(simulation.time_s);
   const double weight = mass * std::max(-gravity.z(), 0.0);
-  const double missing = weight > 0.0 ? std::clamp(1.0 - support(contacts, hand.block) / weight, 0.0, 1.0) : 0.0;
+  const RigidMotion motion = rigidMotion(simulation.state, b);
+  const ContactSum onBlock = sumOf(contacts, hand.block, motion.centre);
+  const double missing = weight > 0.0 ? std::clamp(1.0 - onBlock.force.z() / weight, 0.0, 1.0) : 0.0;
   if (grip.block != hand.block) {
-    grip = {hand.block, missing};
+    grip = {hand.block, missing, Vec3::Zero()};
   } else {
-    grip.carried += (1.0 - std::exp(-frame_s / kCarryTime_s)) * (missing - grip.carried);
+    const double share = 1.0 - std::exp(-frame_s / kCarryTime_s);
+    grip.carried += share * (missing - grip.carried);
+    grip.levelling += share * (-onBlock.torque - grip.levelling);
   }
 
-  const RigidMotion motion = rigidMotion(simulation.state, b);
   const FollowGains gains = followGains(kFollowRate_hz, frame_s);
   GripForce result;
   // The distance is cut where the pull alone would reach the limit: a far hand draws at full force up to the speed from which
@@ -97,8 +108,11 @@ GripForce gripForce(const Simulation& simulation, std::span<const ContactForce> 
   Vec3 sides = simulation.model.dimensions[b];
   std::sort(sides.data(), sides.data() + 3);
   const double limit = 0.5 * sides[1] * hand.limit_n;
+  // As much as the block's weight at its end would need: the hand holds a block level, it does not force it against its
+  // neighbours.
+  grip.levelling = within(grip.levelling, std::min(limit, 0.5 * sides[2] * weight));
   const Vec3 pull = within(gains.place * (moments * (turn.angle() * turn.axis())), limit);
-  result.torque = within(pull - gains.speed * (moments * motion.spin), limit);
+  result.torque = within(pull - gains.speed * (moments * motion.spin) + grip.levelling, limit);
   return result;
 }
 
@@ -121,6 +135,32 @@ void applyGrip(Simulation& simulation, BlockId block, const GripForce& grip) {
     force.end_s = simulation.time_s + simulation.scene.settings.frame_s;
     simulation.scene.forces.push_back(force);
   }
+}
+
+double drawOn(Draw& draw, std::span<const ContactForce> contacts, Simulation& simulation) {
+  constexpr double kGain = 0.5;  // share of the missing speed that the block is given in a frame
+  const std::size_t b = index(draw.hand.block);
+  const double frame_s = simulation.scene.settings.frame_s;
+  const double mass = simulation.model.mass[b];
+  const Vec3 middle = centre(simulation.state.position, b);
+  const double speed = centre(simulation.state.velocity, b).dot(draw.direction);
+  // What held the block back in the last frame, and a push. A block that sticks answers a push with as much friction, so the
+  // force grows until it slips; one that comes free is not thrown.
+  const double held_n = -sumOf(contacts, draw.hand.block, middle).force.dot(draw.direction);
+  const double push_n = kGain * mass / frame_s * (draw.speed_m_s - speed);
+  const double force_n = std::clamp(std::max(held_n, 0.0) + push_n, 0.0, draw.hand.limit_n);
+  // The hand is where its follow gives that force.
+  const FollowGains gains = followGains(kFollowRate_hz, frame_s);
+  const double ahead = (force_n / mass + gains.speed * speed) / gains.place;
+  draw.hand.place += (ahead - (draw.hand.place - middle).dot(draw.direction)) * draw.direction;
+  const GripForce force = gripForce(simulation, contacts, draw.hand, draw.grip);
+  applyGrip(simulation, draw.hand.block, force);
+  return force.force.dot(draw.direction);
+}
+
+Hand handOn(const Simulation& simulation, BlockId block, double limit_n) {
+  const std::size_t b = index(block);
+  return {block, centre(simulation.state.position, b), orientationOf(simulation.state.position, b), limit_n};
 }
 
 Hold holdOf(std::span<const ContactForce> contacts, BlockId block) {

@@ -1,0 +1,150 @@
+#include "apps/moves_report.h"
+#include "apps/validate.h"
+#include "core/error.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/task_arena.h>
+
+namespace springtower {
+namespace {
+
+constexpr double kLongest_s = 600.0;
+constexpr double kStrongHand_n = 20.0;     // a block that bears the whole tower has to come as well
+constexpr std::size_t kShortRemovals = 3;  // of the first sequence
+
+RunResult play(const Scene& scene) {
+  RunOptions options;
+  options.seconds = kLongest_s;
+  options.measureEveryFrame = false;
+  Simulation simulation(scene);
+  return runScene(simulation, options);
+}
+
+// The report's sequence, once a seed.
+void addSequence(const ValidationPlan& plan, ValidationSection& section) {
+  const std::size_t seeds = plan.longForm ? 10 : 1;
+  std::vector<Scene> scenes;
+  for (std::size_t seed = 1; seed <= seeds; ++seed) {
+    TowerOptions options;
+    options.seed = seed;
+    scenes.push_back(sceneFromName(plan.scenes + "/moves.toml", options));
+  }
+  std::vector<RunResult> results(seeds);
+  tbb::parallel_for(std::size_t{0}, seeds,
+                    [&](std::size_t i) { tbb::this_task_arena::isolate([&] { results[i] = play(scenes[i]); }); });
+  const std::vector<Move>& moves = scenes.front().moves;
+  const auto finished = std::count_if(results.begin(), results.end(), [&](const RunResult& result) {
+    return result.standing.stands && result.moves.size() == moves.size() && result.moves.back().done &&
+           result.moves.back().rested;
+  });
+  section.claims.push_back({"the report's sequence is played to its end and the tower stands", fmt::format("all {}", seeds),
+                            fmt::format("{} of {}", finished, seeds), finished == std::ssize(results)});
+  for (std::size_t step = 0; step < moves.size(); ++step) {
+    std::size_t within = 0;
+    double worst_m = 0.0;
+    double slide_m = 0.0;
+    for (const RunResult& result : results) {
+      if (step >= result.moves.size()) continue;
+      within += isWithin(moves[step], result.moves[step]) ? 1 : 0;
+      worst_m = std::max(worst_m, result.moves[step].moved_m - result.moves[step].settlement_m);
+      slide_m = std::max(slide_m, result.moves[step].slide_m);
+    }
+    std::string measured = fmt::format("{:.3f} mm at most, {} of {} seeds", 1e3 * worst_m, within, seeds);
+    if (moves[step].kind == MoveKind::put) measured += fmt::format("; the block itself {:.2f} mm", 1e3 * slide_m);
+    section.claims.push_back({fmt::format("step {}, {}: other blocks move", step + 1, describe(moves[step])),
+                              fmt::format("{:g} mm beyond rigid settlement", 1e3 * moves[step].allowed_m.value_or(0.0)), measured,
+                              within == seeds});
+  }
+}
+
+// One sequence of removals by pulling, along the blocks' length.
+struct RemovalSequence {
+  std::string id;
+  Scene scene;
+  std::vector<bool> standsAfter;  // the first of them before any removal
+  std::size_t statesRight = 0;    // of those after a removal
+  std::string note;
+};
+
+std::vector<RemovalSequence> removalSequences(const ValidationPlan& plan) {
+  const std::string path = plan.oracle + "/removal.jsonl";
+  std::ifstream file(path);
+  if (!file) throw InputError(fmt::format("--oracle: found no file {}, allowed is the folder of the reference sets", path));
+  std::vector<RemovalSequence> sequences;
+  for (std::string text; std::getline(file, text);) {
+    if (text.empty()) continue;
+    const nlohmann::json line = nlohmann::json::parse(text);
+    RemovalSequence sequence;
+    sequence.id = line.at("id").get<std::string>();
+    sequence.scene = bitCodeScene(line.at("config").get<std::string>());
+    sequence.standsAfter = line.at("stands_after").get<std::vector<bool>>();
+    for (const nlohmann::json& place : line.at("remove")) {
+      if (!plan.longForm && sequence.scene.moves.size() >= 2 * kShortRemovals) break;
+      Move take;
+      take.row = place.at("row").get<int>();
+      take.position = place.at("position").get<int>();
+      take.towards = take.row % 2 == 0 ? Vec3::UnitX() : Vec3::UnitY();
+      Move away;
+      away.kind = MoveKind::putAside;
+      take.limit_n = away.limit_n = kStrongHand_n;
+      sequence.scene.moves.insert(sequence.scene.moves.end(), {take, away});
+    }
+    sequences.push_back(sequence);
+    if (!plan.longForm) break;
+  }
+  return sequences;
+}
+
+// After each removal the tower stands or not as statics says, the product's and the reference's.
+void pullAll(RemovalSequence& sequence) {
+  const RunResult result = play(sequence.scene);
+  const std::size_t removals = sequence.scene.moves.size() / 2;
+  for (std::size_t i = 0; i < removals; ++i) {
+    const bool expected = sequence.standsAfter[i + 1];
+    const bool played = 2 * i + 1 < result.moves.size() && result.moves[2 * i + 1].done;
+    const bool right = expected ? played && result.moves[2 * i].statics != Rest::falls
+                                : !result.standing.stands && (result.moves.size() == 2 * i || result.moves.size() == 2 * i + 1);
+    if (!right) {
+      const Move& move = sequence.scene.moves[2 * i];
+      sequence.note = fmt::format("{}: removal {} ({}): statics says it {}; {}", sequence.id, i + 1, describe(move),
+                                  expected ? "stands" : "falls", describe(result.standing));
+      return;
+    }
+    ++sequence.statesRight;
+  }
+}
+
+void addRemovals(const ValidationPlan& plan, ValidationSection& section) {
+  std::vector<RemovalSequence> sequences = removalSequences(plan);
+  tbb::parallel_for(std::size_t{0}, sequences.size(),
+                    [&](std::size_t i) { tbb::this_task_arena::isolate([&] { pullAll(sequences[i]); }); });
+  std::size_t right = 0;
+  std::size_t all = 0;
+  for (const RemovalSequence& sequence : sequences) {
+    right += sequence.statesRight;
+    all += sequence.scene.moves.size() / 2;
+    if (!sequence.note.empty()) section.notes.push_back(sequence.note);
+  }
+  section.claims.push_back({"blocks pulled out of 18 rows one by one: simulation and statics agree after each", "all",
+                            fmt::format("{} of {}", right, all), right == all});
+}
+
+}  // namespace
+
+ValidationSection validateMoves(const ValidationPlan& plan) {
+  ValidationSection section{
+      "Moves",
+      "The report's sequence of moves (its section 6.1.2, scenes/moves.toml) by a hand of at most 5 N, slow at "
+      "4 cm/s and quick at 40 cm/s; allowed is what the real tower did. Then blocks are pulled out of a full "
+      "tower of 18 rows one by one, at 4 cm/s, along their length, and put aside. "
+      "After a state that differs a sequence is not counted further."};
+  addSequence(plan, section);
+  addRemovals(plan, section);
+  return section;
+}
+
+}  // namespace springtower

@@ -1,0 +1,281 @@
+#include "solver/grip.h"
+
+#include "solver/measures.h"
+#include "solver/penetration.h"
+#include "tests/support/block_scenes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <gtest/gtest.h>
+
+namespace springtower {
+namespace {
+
+constexpr double kFrame_s = 1.0 / 60.0;
+constexpr double kStep_m = 0.1;
+constexpr int kSettled = 9;  // frames in 0.15 s
+
+Scene blockInTheAir() {
+  Scene scene = oneBlockScene(false);
+  scene.blocks[0].centre.z() = 1.0;
+  return scene;
+}
+
+// A simulation and the hand that acts on it.
+struct Held {
+  explicit Held(const Scene& scene) : simulation(scene) {}
+  Simulation simulation;
+  Grip grip;
+  GripForce force;
+};
+
+void step(Held& held, const Hand& hand) {
+  held.simulation.scene.forces.clear();
+  held.force = gripForce(held.simulation, contactForces(held.simulation), hand, held.grip);
+  applyGrip(held.simulation, hand.block, held.force);
+  stepFrame(held.simulation);
+}
+
+void wait(Held& held, int frames) {
+  for (int i = 0; i < frames; ++i) stepFrame(held.simulation);
+}
+
+// Leads the hand in a straight line by `way` at a speed, then holds it still for a time.
+void lead(Held& held, Hand& hand, const Vec3& way, double speed_m_s, double still_s = 0.2) {
+  const int frames = std::max(1, static_cast<int>(std::ceil(way.norm() / (speed_m_s * kFrame_s))));
+  const Vec3 from = hand.place;
+  for (int i = 1; i <= frames; ++i) {
+    hand.place = from + way * (static_cast<double>(i) / frames);
+    step(held, hand);
+  }
+  for (int i = 0; i < std::lround(still_s / kFrame_s); ++i) step(held, hand);
+}
+
+Hold holdOf(const Held& held, BlockId block) {
+  return holdOf(contactForces(held.simulation), block);
+}
+
+// Depths of both kinds over a run.
+double deepest(Held& held, const Hand& hand, int frames) {
+  PenetrationWorkspace workspace;
+  double depth = 0.0;
+  for (int i = 0; i < frames; ++i) {
+    step(held, hand);
+    depth = std::max(depth, maxPenetration(held.simulation.state.position, true, workspace).depth);
+  }
+  return depth;
+}
+
+TEST(Grip, TheClosedFormFallsAndIsSettledInTime) {
+  double last = 1.0;
+  for (int k = 1; k <= 60; ++k) {
+    const double now = followCourse(kFollowRate_hz, kFrame_s, k);
+    EXPECT_LT(now, last);
+    EXPECT_GT(now, 0.0);  // never beyond: no overshoot at all
+    last = now;
+  }
+  EXPECT_LT(followCourse(kFollowRate_hz, kFrame_s, kSettled), 0.02);
+}
+
+TEST(Grip, TheGainsGiveTheClosedFormAtAnyRate) {
+  for (const double rate : {1.0, 5.0, 8.0, 20.0}) {
+    for (const double frame_s : {1.0 / 30.0, 1.0 / 60.0, 1.0 / 240.0}) {
+      const FollowGains gains = followGains(rate, frame_s);
+      double x = 1.0;
+      double v = 0.0;
+      for (int k = 1; k <= 100; ++k) {
+        const double a = -gains.place * x - gains.speed * v;
+        x += v * frame_s + 0.5 * a * frame_s * frame_s;
+        v += a * frame_s;
+        ASSERT_NEAR(x, followCourse(rate, frame_s, k), 1e-11);
+      }
+    }
+  }
+}
+
+// The engine's own course of a held block against the closed form: overshoot under 2 % and settled in 0.15 s.
+TEST(Grip, ABlockInTheAirFollowsCriticallyDamped) {
+  struct Engine {
+    Method method;
+    Inertia inertia;
+  };
+  for (const auto& [method, inertia] :
+       {Engine{Method::semiImplicitEuler, Inertia::cuboid}, Engine{Method::semiImplicitEuler, Inertia::lumped},
+        Engine{Method::implicit, Inertia::cuboid}}) {
+    for (const Vec3& direction : {Vec3(1.0, 0.0, 0.0), Vec3(0.0, -1.0, 0.0), Vec3(0.0, 0.0, 1.0), Vec3(0.6, 0.0, -0.8)}) {
+      Scene scene = blockInTheAir();
+      scene.settings.inertia = inertia;
+      scene.settings.method = method;
+      Held held(scene);
+      Hand hand = handOn(held.simulation, blockId(0));
+      const Vec3 target = hand.place + kStep_m * direction;
+      hand.place = target;
+      for (int k = 1; k <= 60; ++k) {
+        step(held, hand);
+        const Vec3 missing = target - centre(held.simulation.state.position, 0);
+        EXPECT_NEAR(missing.dot(direction), kStep_m * followCourse(kFollowRate_hz, kFrame_s, k), 0.012 * kStep_m) << k;
+        EXPECT_GT(missing.dot(direction), -0.02 * kStep_m) << k;
+        EXPECT_LT((missing - missing.dot(direction) * direction).norm(), 1e-3 * kStep_m) << k;
+        if (k >= kSettled) {
+          EXPECT_LT(missing.norm(), 0.02 * kStep_m) << k;
+        }
+      }
+      EXPECT_LT((target - centre(held.simulation.state.position, 0)).norm(), 1e-6);
+    }
+  }
+}
+
+TEST(Grip, AFarStepAtFullForceDoesNotOvershootEither) {
+  Held held(blockInTheAir());
+  Hand hand = handOn(held.simulation, blockId(0));
+  const double start = hand.place.x();
+  hand.place.x() += 1.0;
+  double most = 0.0;
+  bool limited = false;
+  for (int k = 0; k < 90; ++k) {
+    step(held, hand);
+    most = std::max(most, centre(held.simulation.state.position, 0).x() - start);
+    limited = limited || held.force.limited;
+    EXPECT_LE(held.force.force.norm(), kGripForce_n + 1e-12);
+  }
+  EXPECT_TRUE(limited);
+  EXPECT_LT(most, 1.02);
+  EXPECT_NEAR(centre(held.simulation.state.position, 0).x() - start, 1.0, 1e-3);
+}
+
+TEST(Grip, TurnsTheBlockWithoutOvershoot) {
+  for (const Vec3& axis : {Vec3(Vec3::UnitX()), Vec3(Vec3::UnitY()), Vec3(Vec3::UnitZ())}) {
+    Held held(blockInTheAir());
+    Hand hand = handOn(held.simulation, blockId(0));
+    const double angle = 0.5;
+    hand.turn = Eigen::AngleAxisd(angle, axis) * hand.turn;
+    for (int k = 1; k <= 40; ++k) {
+      step(held, hand);
+      const Eigen::AngleAxisd left(hand.turn * orientationOf(held.simulation.state.position, 0).conjugate());
+      EXPECT_GT(left.angle() * left.axis().dot(axis), -0.02 * angle) << k;
+      if (k >= kSettled) {
+        EXPECT_LT(std::abs(left.angle()), 0.02 * angle) << k;
+      }
+    }
+    EXPECT_LT((centre(held.simulation.state.position, 0) - hand.place).norm(), 1e-5);
+  }
+}
+
+TEST(Grip, ForcesAtTheCornersAddUp) {
+  Simulation simulation(blockInTheAir());
+  GripForce grip;
+  grip.force = {1.0, -2.0, 0.5};
+  grip.torque = {0.01, 0.02, -0.03};
+  applyGrip(simulation, blockId(0), grip);
+  ASSERT_EQ(simulation.scene.forces.size(), kCorners);
+  const Vec3 middle = centre(simulation.state.position, 0);
+  Vec3 force = Vec3::Zero();
+  Vec3 torque = Vec3::Zero();
+  for (const UserForce& user : simulation.scene.forces) {
+    force += user.force;
+    torque += (simulation.state.position.at(0, static_cast<std::size_t>(user.corner)) - middle).cross(user.force);
+  }
+  EXPECT_LT((force - grip.force).norm(), 1e-14);
+  EXPECT_LT((torque - grip.torque).norm(), 1e-15);
+}
+
+// On the floor friction decides: below its bound the block stays, above it slides.
+TEST(Grip, FrictionAnswersTheHand) {
+  Scene scene = oneBlockScene(true);
+  const double bound = scene.staticFriction * scene.blocks[0].mass * kStandardGravity_m_s2;
+  const double perMetre = scene.blocks[0].mass * followGains(kFollowRate_hz, kFrame_s).place;
+  for (const double share : {0.8, 1.3}) {
+    Held held(scene);
+    wait(held, 60);
+    Hand hand = handOn(held.simulation, blockId(0));
+    const Vec3 start = hand.place;
+    lead(held, hand, {share * bound / perMetre, 0.0, 0.0}, 0.01, 0.5);
+    const double moved = (centre(held.simulation.state.position, 0) - start).norm();
+    if (share < 1.0) {
+      EXPECT_LT(moved, 2e-5);
+      EXPECT_EQ(holdOf(held, blockId(0)), Hold::sticks);
+      EXPECT_NEAR(held.force.force.norm(), share * bound, 0.02 * bound);
+    } else {
+      EXPECT_GT(moved, 1e-4);
+      EXPECT_NEAR(held.force.force.norm(), bound, 0.05 * bound);
+    }
+  }
+}
+
+TEST(Grip, TakingABlockOfTheTowerMovesNothing) {
+  Held held(towerScene(6));
+  wait(held, 150);
+  const CornerArray before = held.simulation.state.position;
+  Hand hand = handOn(held.simulation, blockId(7));
+  lead(held, hand, Vec3::Zero(), 1.0, 1.0);
+  EXPECT_LT(largestCornerMove(before, held.simulation.state.position), 2e-5);
+  EXPECT_LT(held.force.force.norm(), 0.02);
+  EXPECT_EQ(holdOf(held, hand.block), Hold::sticks);
+}
+
+// The middle block of the third of six rows, out of which the hand draws it whole: at its speed, nearly level, and the tower
+// stands.
+TEST(Grip, DrawsABlockOutAtItsSpeed) {
+  constexpr double kSpeed_m_s = 0.04;
+  Simulation simulation(towerScene(6));
+  for (int i = 0; i < 120; ++i) stepFrame(simulation);
+  const std::size_t block = 7;
+  const std::vector<FittedBox> start = fittedBoxes(simulation.state.position);
+  std::vector<std::uint8_t> leftOut(18, 0);
+  leftOut[block] = 1;
+  Draw draw{handOn(simulation, blockId(block)), {}, Vec3::UnitX(), kSpeed_m_s};
+  std::vector<double> times_s;  // when it had come so many millimetres
+  double tilt = 0.0;
+  for (int i = 0; i < 240 && times_s.size() < 90; ++i) {
+    simulation.scene.forces.clear();
+    EXPECT_LE(drawOn(draw, contactForces(simulation), simulation), kGripForce_n);
+    stepFrame(simulation);
+    const double moved = (centre(simulation.state.position, block) - start[block].centre).x();
+    while (moved > 1e-3 * static_cast<double>(times_s.size() + 1)) times_s.push_back(simulation.time_s);
+    tilt = std::max(tilt, orientationOf(simulation.state.position, block).angularDistance(draw.hand.turn));
+  }
+  ASSERT_EQ(times_s.size(), 90U);
+  EXPECT_NEAR(0.05 / (times_s[59] - times_s[9]), kSpeed_m_s, 0.05 * kSpeed_m_s);
+  EXPECT_LT(tilt, kFallTurn_deg /
+                      57.29577951);  // it droops while the hand takes over its weight, and never so that it would have fallen
+  EXPECT_TRUE(standing(simulation.model, start, simulation.state.position, leftOut).stands);
+}
+
+// Full force for two seconds against the tower: nothing gets deeper than a millimetre, whether it stands or goes over.
+TEST(Grip, PushedAtFullForceNothingPenetratesAMillimetre) {
+  struct Push {
+    std::size_t block;
+    Vec3 way;
+  };
+  const Push pushes[] = {{16, {0.0, 0.5, 0.0}}, {16, {0.0, 0.0, -0.5}}, {1, {0.5, 0.0, 0.0}}, {10, {0.2, 0.3, -0.4}}};
+  for (const Method method : {Method::semiImplicitEuler, Method::implicit}) {
+    Scene scene = towerScene(6);
+    scene.settings.method = method;
+    for (const Push& push : pushes) {
+      Held held(scene);
+      wait(held, 30);
+      Hand hand = handOn(held.simulation, blockId(push.block));
+      hand.place += push.way;
+      EXPECT_LT(deepest(held, hand, 120), 1e-3) << nameOf(method) << ", block " << push.block;
+    }
+  }
+}
+
+// The same with a block in the hand as the tool, brought up from outside against the side of the tower.
+TEST(Grip, AToolPushedIntoTheSideOfTheTowerStaysOutside) {
+  Scene scene = towerScene(6);
+  BlockSpec tool;
+  tool.centre = {0.2, 0.0, 0.06};
+  scene.blocks.push_back(tool);
+  for (const Method method : {Method::semiImplicitEuler, Method::implicit}) {
+    scene.settings.method = method;
+    Held held(scene);
+    Hand hand = handOn(held.simulation, blockId(scene.blocks.size() - 1));
+    lead(held, hand, {-0.06, 0.0, 0.0}, 0.3);
+    hand.place.x() = -0.4;
+    EXPECT_LT(deepest(held, hand, 120), 1e-3) << nameOf(method);
+  }
+}
+
+}  // namespace
+}  // namespace springtower
