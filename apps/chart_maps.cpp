@@ -31,7 +31,7 @@ Scene sceneOf(Method method, int rows, double tolerance_m, int steps) {
   scene.settings.tolerance_m = tolerance_m;
   scene.settings.substeps = steps;
   scene.settings.forceUnstable = true;
-  scene.settings.dampingTime_s = 0.0;
+  scene.settings.dampingTime = 0.0;
   return scene;
 }
 

@@ -75,7 +75,7 @@ TEST(Prototypes, RigidRectanglesComeToRest) {
 // Report Figure 3.4: "deformation was barely noticeable". A row gives way by no more than the tolerance.
 TEST(Prototypes, SprungRectanglesComeToRest) {
   const Outcome sprung = outcomeOf(Method::semiImplicitEuler);
-  const double tolerance_m = Settings{}.tolerance_m;
+  const double tolerance_m = kBlockTolerance_m;
   EXPECT_LT(sprung.meanPenetration_m, tolerance_m);
   EXPECT_LT(sprung.strain, tolerance_m / kBlockHeight_m);
   EXPECT_LT(sprung.asymmetry_m, 1e-12);
