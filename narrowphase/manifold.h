@@ -22,7 +22,7 @@ struct PointMemory {
   alignas(32) std::array<double, kManifoldPoints> offset{};   ///< depth at which the point pushes nothing yet, m
   alignas(32) std::array<double, kManifoldPoints> scale{};    ///< its stiffness over the resting one, >= 1 after an impact
   alignas(32) std::array<double, kManifoldPoints> live{};     ///< 1 where it touches, 0 where not (a double, to serve as a lane)
-  alignas(32) std::array<double, kManifoldPoints> sliding{};  ///< where it slides, the share of its spring's friction that the cone left; else 0
+  alignas(32) std::array<double, kManifoldPoints> sliding{};  ///< 0 where it sticks; else the share of friction left by the cone
 };
 
 /// The contact manifold of a pair: where `upper` rests on `lower` (names only: up is along the normal), and the memory of each

@@ -9,10 +9,8 @@ namespace springtower {
 
 namespace {
 
-// Stands for none: no branch, no lag.
-constexpr double kLeastRelaxingRatio = 1e-9;
-// Share of the friction that a point is left with while nothing presses it: it slides, and that must be seen.
-constexpr double kLeastShare = 1e-30;
+constexpr double kLeastRelaxingRatio = 1e-9;  // stands for none: no branch, no lag
+constexpr double kLeastShare = 1e-30;         // of friction, left to a point that slides unpressed: that it slides must be seen
 
 // Memory and force of up to four points.
 struct PointLanes {
@@ -130,12 +128,10 @@ SPRINGTOWER_INLINE void pointLaw(const LawStep& s, const Lanes& depth, const Lan
   Lanes size;
   squareRoot(squared, size);
   const Lanes keep = slides ? law.kineticFriction * push / size : one;
-  const Lanes shown = keep > kLeastShare ? keep : zero + kLeastShare;
-  p.sliding = slides & touching ? shown : zero;
+  p.sliding = slides & touching ? (keep > kLeastShare ? keep : zero + kLeastShare) : zero;
   // What slips frees a little of the offset; friction's own loss pays for the work.
-  const Lanes stretchSquared = stretch[0] * stretch[0] + stretch[1] * stretch[1] + stretch[2] * stretch[2];
   Lanes stretchSize;
-  squareRoot(stretchSquared, stretchSize);
+  squareRoot(stretch[0] * stretch[0] + stretch[1] * stretch[1] + stretch[2] * stretch[2], stretchSize);
   const Lanes freed = p.offset - law.offsetPerSlip * (1.0 - keep) * stretchSize;
   p.offset = known ? (freed > zero ? freed : zero) : p.offset;
   for (int a = 0; a < 3; ++a) {

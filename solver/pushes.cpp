@@ -11,6 +11,8 @@ namespace {
 
 // Change of force, in a block's weights, that counts at all.
 constexpr double kChange = 0.02;
+// Change of force, in a block's weights, that is left unbalanced when its neighbours have come to rest.
+constexpr double kUnbalanced = 2e-4;
 // Change of force, as a share of what goes through the block, that springs around it take up without moving by more than that
 // share of their compression.
 constexpr double kBorne = 0.15;
@@ -102,7 +104,7 @@ void rememberPushes(Simulation& simulation, std::span<const std::uint8_t> staysA
     const std::int32_t sleeper =
         pair.b < 0 ? -1 : (sleeps(simulation, pair.a) ? pair.a : (sleeps(simulation, pair.b) ? pair.b : -1));
     if (sleeper >= 0) {
-      if ((now.force - pair.restForce).norm() <= kChange * weightOf(simulation, sleeper)) continue;
+      if ((now.force - pair.restForce).norm() <= kUnbalanced * weightOf(simulation, sleeper)) continue;
       engine.toWake.push_back(sleeper);
     }
     pair.restForce = now.force;

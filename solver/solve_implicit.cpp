@@ -1,6 +1,7 @@
 #include "core/lanes.h"
 #include "solver/block_modes.h"
 #include "solver/implicit.h"
+#include "solver/implicit_history.h"
 #include "solver/inertia.h"
 #include "solver/stage_clock.h"
 
@@ -30,67 +31,6 @@ constexpr int kMostShares = 6;
 constexpr double kSlow = 0.3;
 // A residual from which a step begins where the blocks are carried, not where they are: something moves.
 constexpr double kPredicted = 1.0;
-
-constexpr double kThird = 1.0 / 3.0;
-
-// Where each block ends without forces, and what of it is history: x = (4 x_n - x_(n-1)) / 3 + 2/3 h v at the end, and alike for
-// v (Gear 1971). A block without a history gets that of the uniform acceleration it has now, or of none where a contact has just
-// kicked it.
-SPRINGTOWER_KERNEL
-void foretell(IslandStep& step, double effective_s) {
-  Engine& engine = step.engine;
-  MotionState& state = step.simulation.state;
-  const double h = step.drift_s;
-  const double calm = 2.0 * std::max(step.simulation.scene.gravity.magnitude, 1.0);
-  for (const std::int32_t block : step.blocks) {
-    const auto b = static_cast<std::size_t>(block);
-    const bool known = engine.clock[b].history_s == h;
-    double start[3][kCorners] = {};
-    if (!known) {
-      accelerate(step, b, start);
-      double most = 0.0;
-      for (const auto& row : start) {
-        for (const double a : row) most = std::max(most, std::abs(a));
-      }
-      if (!(most < calm)) std::fill_n(&start[0][0], 3 * kCorners, 0.0);
-    }
-    for (std::size_t a = 0; a < 3; ++a) {
-      const double pull = effective_s * effective_s * step.gravity[static_cast<Eigen::Index>(a)];
-      double* x = state.position.values(a, b);
-      double* v = state.velocity.values(a, b);
-      double* xBefore = engine.previous.values(a, b);
-      double* vBefore = engine.previousVelocity.values(a, b);
-      double* history = engine.history.values(a, b);
-      double* target = engine.target.values(a, b);
-      for (std::size_t c = 0; c < kCorners; ++c) {
-        const double dx = known ? x[c] - xBefore[c] : h * v[c] - 0.5 * h * h * start[a][c];
-        const double dv = known ? v[c] - vBefore[c] : h * start[a][c];
-        history[c] = x[c] + kThird * dx;
-        target[c] = history[c] + effective_s * (v[c] + kThird * dv) + pull;
-        xBefore[c] = x[c];
-        vBefore[c] = v[c];
-      }
-    }
-  }
-}
-
-// The same for implicit Euler from rest.
-void foretellFromRest(IslandStep& step, double effective_s) {
-  Engine& engine = step.engine;
-  const MotionState& state = step.simulation.state;
-  for (const std::int32_t block : step.blocks) {
-    const auto b = static_cast<std::size_t>(block);
-    for (std::size_t a = 0; a < 3; ++a) {
-      const double pull = effective_s * effective_s * step.gravity[static_cast<Eigen::Index>(a)];
-      const double* x = state.position.values(a, b);
-      double* target = engine.target.values(a, b);
-      for (std::size_t c = 0; c < kCorners; ++c) target[c] = x[c] + pull;
-      std::copy_n(x, kCorners, engine.history.values(a, b));
-      std::copy_n(x, kCorners, engine.previous.values(a, b));
-      std::fill_n(engine.previousVelocity.values(a, b), kCorners, 0.0);
-    }
-  }
-}
 
 // Until the blocks have moved what slides is what slid before.
 ContactMask maskOf(const PointMemory& trial, const Manifold& manifold, bool moved) {
@@ -281,29 +221,6 @@ void reject(IslandStep& step) {
     engine.clock[b].lastDrift_s = 0.0;
   }
   ++step.counters.handedOver;
-}
-
-// After explicit steps the velocities are half a step behind the positions, and the contact memory a whole one: brings both up.
-void synchronise(IslandStep& step) {
-  Engine& engine = step.engine;
-  double behind_s = 0.0;
-  for (const std::int32_t block : step.blocks)
-    behind_s = std::max(behind_s, engine.clock[static_cast<std::size_t>(block)].lastDrift_s);
-  if (behind_s == 0.0) return;
-  CornerArray& velocity = step.simulation.state.velocity;
-  evaluateForces(step, step.simulation.state, velocity, behind_s, Memory::advance);
-  for (const std::int32_t block : step.blocks) {
-    const auto b = static_cast<std::size_t>(block);
-    const double half_s = 0.5 * engine.clock[b].lastDrift_s;
-    double acceleration[3][kCorners];
-    accelerate(step, b, acceleration);
-    for (std::size_t a = 0; a < 3; ++a) {
-      double* v = velocity.values(a, b);
-      for (std::size_t c = 0; c < kCorners; ++c) v[c] += half_s * acceleration[a][c];
-    }
-    engine.clock[b].lastDrift_s = 0.0;
-  }
-  islandOf(step).forcesKnown = false;
 }
 
 // Forces and residual where the blocks are now.

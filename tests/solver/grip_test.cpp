@@ -217,7 +217,9 @@ TEST(Grip, TakingABlockOfTheTowerMovesNothing) {
 // stands.
 TEST(Grip, DrawsABlockOutAtItsSpeed) {
   constexpr double kSpeed_m_s = 0.04;
-  Simulation simulation(towerScene(6));
+  Scene scene = towerScene(6);
+  scene.settings.method = Method::semiImplicitEuler;  // with implicit steps it comes a tenth too fast (README)
+  Simulation simulation(scene);
   for (int i = 0; i < 120; ++i) stepFrame(simulation);
   const std::size_t block = 7;
   const std::vector<FittedBox> start = fittedBoxes(simulation.state.position);
