@@ -10,6 +10,8 @@ namespace springtower {
 
 namespace {
 
+// How much longer than others a block is at rest that falls asleep beside restless ones.
+constexpr double kPatience = 4.0;
 // What gravity may have turned since the last block fell asleep, in g.
 constexpr double kWakeGravity = 1e-4;
 
@@ -91,9 +93,9 @@ void fallAsleep(Simulation& simulation, std::size_t b) {
   if (!engine.report.contacts.empty()) engine.report.contacts[b].clear();
 }
 
-// Puts blocks to sleep that are at rest, each by itself: what awake neighbours do to it later is looked at in every frame. Method
-// `report` does not know from step to step who touches whom, so there nobody sleeps who is near a restless block, directly or
-// through others.
+// Puts blocks to sleep: groups that touch and are all at rest, at once; and a block that has long been at rest beside restless
+// ones by itself, as what they do to it later is looked at in every frame. Method `report` does not know from step to step who
+// touches whom: there who is near counts, and nobody sleeps beside a restless block.
 void putToSleep(Simulation& simulation) {
   Engine& engine = *simulation.engine;
   const double needed = restNeeded(simulation);
@@ -112,15 +114,21 @@ void putToSleep(Simulation& simulation) {
     if (!ready(block)) engine.restless.push_back(block);
   }
   const Settings& settings = simulation.scene.settings;
-  if (settings.method == Method::report && settings.sleep == Sleep::on) {
+  const bool nearCounts = settings.method == Method::report;
+  if (settings.sleep == Sleep::on) {
     for (const NearPair& pair : engine.pairs) {
-      const bool bothAwake = pair.b >= 0 && simulation.asleep[static_cast<std::size_t>(pair.a)] == 0 &&
-                             simulation.asleep[static_cast<std::size_t>(pair.b)] == 0;
+      if (pair.b < 0 || (pair.manifold.touch == Touch::apart && !nearCounts)) continue;
+      const bool bothAwake =
+          simulation.asleep[static_cast<std::size_t>(pair.a)] == 0 && simulation.asleep[static_cast<std::size_t>(pair.b)] == 0;
       if (bothAwake) engine.touchingEdges.push_back({pair.a, pair.b});
     }
   }
   engine.joined.resize(simulation.asleep.size());
   connectedBlocks(engine.touchingEdges, engine.restless, engine.parent, engine.joined);
+  for (const std::int32_t block : engine.awakeBlocks) {
+    const bool patient = simulation.restTime_s[static_cast<std::size_t>(block)] >= kPatience * needed;
+    if (patient && ready(block) && !nearCounts) engine.joined[static_cast<std::size_t>(block)] = 0;
+  }
   engine.toWake.clear();
   rememberPushes(simulation, engine.joined);
   for (const std::int32_t block : engine.awakeBlocks) {
