@@ -98,8 +98,6 @@ TEST(Moves, APutAsideBlockLiesOnTheFloor) {
 TEST(Moves, ABlockIsDrawnAlongTheFloor) {
   Scene scene = towerScene(3);
   scene.moves = {take(0, 3, Vec3::UnitY()), put(3, 2)};
-  scene.settings.method = Method::semiImplicitEuler;  // with implicit steps the hand tips the block as it leaves (README)
-  scene.settings.sleep = Sleep::off;
   Simulation simulation(scene);
   const RunResult result = play(simulation);
   ASSERT_EQ(result.moves.size(), 2U);
