@@ -61,7 +61,8 @@ void addSequence(const ValidationPlan& plan, ValidationSection& section) {
   }
 }
 
-// One sequence of removals by pulling, along the blocks' length.
+// One sequence of removals by pulling: middle blocks along their length, outer ones sideways, the shorter way, as along their
+// length they drag round what lies on their end.
 struct RemovalSequence {
   std::string id;
   Scene scene;
@@ -87,7 +88,10 @@ std::vector<RemovalSequence> removalSequences(const ValidationPlan& plan) {
       Move take;
       take.row = place.at("row").get<int>();
       take.position = place.at("position").get<int>();
-      take.towards = take.row % 2 == 0 ? Vec3::UnitX() : Vec3::UnitY();
+      const bool alongX = take.row % 2 == 0;
+      const Vec3 length = alongX ? Vec3::UnitX() : Vec3::UnitY();
+      const Vec3 outwards = (take.position - 2) * (alongX ? Vec3::UnitY() : Vec3::UnitX());
+      take.towards = take.position == 2 ? length : outwards;
       Move away;
       away.kind = MoveKind::putAside;
       take.limit_n = away.limit_n = kStrongHand_n;

@@ -51,14 +51,13 @@ void drawOut(SleepPull& what) {
   std::size_t block = 0;
   while (what.scene.blocks[block].row != what.row || what.scene.blocks[block].position != 2) ++block;
   const Vec3 direction = what.scene.blocks[block].orientation * Vec3::UnitX();
-  Draw draw{handOn(simulation, blockId(block)), {}, direction, kPullSpeed_m_s};
+  Draw draw = drawingFrom(simulation, blockId(block), direction, kPullSpeed_m_s);
   std::vector<std::uint8_t> leftOut(what.scene.blocks.size(), 0);
   leftOut[block] = 1;
   const std::vector<FittedBox> start = fittedBoxes(simulation.state.position);
   const Vec3 before = centre(simulation.state.position, block);
   const double begin_s = simulation.time_s;
   while (!what.freed && simulation.time_s < begin_s + kLongestPull_s) {
-    simulation.scene.forces.clear();
     drawOn(draw, contactForces(simulation), simulation);
     stepFrame(simulation);
     const double moved = (centre(simulation.state.position, block) - before).dot(direction);
@@ -67,10 +66,10 @@ void drawOut(SleepPull& what) {
     what.freed = moved > kBlockLength_m && !touchesAnything(simulation, blockId(block));
   }
   const double end_s = simulation.time_s + kHeld_s;
-  draw.hand.place = centre(simulation.state.position, block);
+  draw.hand.velocity = Vec3::Zero();
+  draw.hand.line = Vec3::Zero();
   while (what.freed && simulation.time_s < end_s) {
-    simulation.scene.forces.clear();
-    applyGrip(simulation, blockId(block), gripForce(simulation, contactForces(simulation), draw.hand, draw.grip));
+    hold(draw.hand, contactForces(simulation), draw.grip, simulation);
     stepFrame(simulation);
   }
   what.stands = standing(simulation.model, start, simulation.state.position, leftOut).stands;

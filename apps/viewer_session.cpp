@@ -62,16 +62,15 @@ void advance(Session& session, const FrameInput& input) {
   Simulation& simulation = session.simulation;
   tune(session, input.tuning);
   session.before = simulation.state.position;
-  simulation.scene.forces = session.scene.forces;
   const BlockId held = mayTake(session.game, input.hand.block) ? input.hand.block : kFloor;
   if (held == kFloor) {
     session.grip = {};
-    session.gripForce = {};
+    letGo(simulation);
   } else {
-    session.gripForce = gripForce(simulation, session.contacts, input.hand, session.grip);
-    applyGrip(simulation, held, session.gripForce);
+    hold(input.hand, session.contacts, session.grip, simulation);
   }
   stepFrame(simulation);
+  session.gripForce = gripForce(simulation);
   session.contacts = contactForces(simulation);
   session.hold = held == kFloor ? Hold::none : holdOf(session.contacts, held);
   ++session.frame;

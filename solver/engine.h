@@ -99,10 +99,12 @@ struct Engine {
   CornerArray previousVelocity;    ///< m/s, at the start of the step; for implicit steps
   std::vector<ImplicitIsland> implicitIslands;  ///< by the island's smallest block; empty for other methods
   std::vector<BlockJacobian> jacobian;          ///< of each block alone, for implicit steps
+  std::vector<double> jacobianStep_s;           ///< and what step each is for
   std::vector<RigidIsland> rigidIslands;        ///< by the island's smallest block; empty for other methods
   CornerArray history;                          ///< m, what past steps give of the position at an implicit step's end
   CornerArray stepVelocity;                     ///< m/s, mean over the implicit step
   CornerArray target;                           ///< m, where the implicit step ends without forces
+  GripForce tetherNow;                          ///< the hand's, as last evaluated
   std::vector<std::int32_t> nodeOf;             ///< the place of each block in its island, for implicit steps and rigid methods
   std::vector<PairForce> pairForce;             ///< N, by position in `pairs`; for islands that run on many threads
   std::vector<BlockClock> clock;                ///< [blocks]
@@ -113,11 +115,12 @@ struct Engine {
   std::vector<PushChange> change;               ///< working space, [blocks]
   std::vector<std::int32_t> restless;           ///< working space
   std::vector<std::int32_t> parent;             ///< working space of connectedBlocks
-  std::vector<std::uint8_t> joined;  ///< working space: 1 where a block touches a restless one, directly or through others
-  std::vector<RestWindow> rest;      ///< [blocks]
-  Vec3 gravitySlept = Vec3::Zero();  ///< m/s2, gravity when the last block fell asleep
-  ReportState report;                ///< of method `report`; empty for the others
-  MotionState frameStart;            ///< what a frame that has to be run again starts from
+  std::vector<std::uint8_t> touched;  ///< working space: 1 where a block touches one of toWake, directly or through others
+  std::vector<std::uint8_t> joined;   ///< working space: 1 where a block touches a restless one, directly or through others
+  std::vector<RestWindow> rest;       ///< [blocks]
+  Vec3 gravitySlept = Vec3::Zero();   ///< m/s2, gravity when the last block fell asleep
+  ReportState report;                 ///< of method `report`; empty for the others
+  MotionState frameStart;             ///< what a frame that has to be run again starts from
   std::vector<BlockClock> frameStartClock;
   std::vector<NearPair> frameStartPairs;
   CornerArray frameStartPrevious;          ///< m, and for implicit steps what they started from

@@ -3,6 +3,7 @@
 #include "solver/spring_force.h"
 #include "solver/stage_clock.h"
 
+#include <algorithm>
 #include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/parallel_for.h>
 
@@ -113,6 +114,14 @@ void addUserForces(IslandStep& step) {
   }
 }
 
+void addTether(IslandStep& step, const MotionState& state, double time_s) {
+  if (!holdsTether(step)) return;
+  const Tether& tether = step.simulation.tether;
+  std::array<Vec3, kCorners> corner;
+  step.engine.tetherNow = tetherForces(tether, step.simulation.model, state, time_s, corner);
+  for (std::size_t c = 0; c < kCorners; ++c) step.engine.force.add(index(tether.block), c, corner[c]);
+}
+
 std::uint64_t pointsOf(const IslandStep& step) {
   std::uint64_t points = 0;
   for (const std::int32_t at : step.pairs)
@@ -142,10 +151,28 @@ void evaluateForces(IslandStep& step, const MotionState& state, const CornerArra
   clock.lap(Stage::contacts);
   overBlocks(step, parallel,
              [&](Blocks blocks) { springForces(step.simulation.model, state, blocks, engine.contactForce, engine.force); });
-  if (!step.simulation.scene.forces.empty()) addUserForces(step);
+  if (!step.unforced) addUserForces(step);
+  // Implicit steps ask for the forces at their end.
+  addTether(step, state, step.time_s + (memory == Memory::trial ? advance_s : 0.0));
   clock.lap(Stage::springs);
   step.counters.springEvaluations += kSprings * step.blocks.size();
   step.counters.contactEvaluations += pointsOf(step);
+}
+
+bool isPushed(const IslandStep& step) {
+  const std::vector<std::int32_t>& islandOf = step.engine.islands.islandOf;
+  const double end_s = step.simulation.time_s + step.simulation.scene.settings.frame_s;
+  return std::any_of(step.simulation.scene.forces.begin(), step.simulation.scene.forces.end(), [&](const UserForce& user) {
+    return user.start_s < end_s && user.end_s > step.simulation.time_s &&
+           islandOf[static_cast<std::size_t>(user.block)] == islandOf[static_cast<std::size_t>(step.blocks.front())];
+  });
+}
+
+bool holdsTether(const IslandStep& step) {
+  const BlockId held = step.simulation.tether.block;
+  if (held == kFloor || step.unforced) return false;
+  const std::vector<std::int32_t>& islandOf = step.engine.islands.islandOf;
+  return islandOf[index(held)] >= 0 && islandOf[index(held)] == islandOf[static_cast<std::size_t>(step.blocks.front())];
 }
 
 void accelerate(const IslandStep& step, std::size_t block, double (&acceleration)[3][kCorners]) {

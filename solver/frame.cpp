@@ -93,6 +93,27 @@ Approach approachOf(const IslandStep& step) {
   return approach;
 }
 
+// What the hand's springs and dashpots add to the squared frequencies (1/s2) and damping rates (1/s) of an island.
+struct TetherRates {
+  double stiffness = 0.0;
+  double damping = 0.0;
+};
+
+TetherRates tetherRates(const IslandStep& step) {
+  if (!holdsTether(step)) return {};
+  const Tether& tether = step.simulation.tether;
+  const double mass = step.simulation.model.mass[index(tether.block)];
+  const double own = inverseMass(step.simulation.scene.settings.inertia).own;
+  return {std::max(tether.stiffness_n_m, own * tether.cornerStiffness_n_m) / mass,
+          std::max(tether.damping_n_s_m, own * tether.cornerDamping_n_s_m) / mass};
+}
+
+// By how much a further damping rate shortens the step that dt^2 K + 2 dt C < 4 allows.
+double shortening(double radius, double dampingTime_s, double damping) {
+  const auto longest = [&](double rate) { return std::sqrt(rate * rate + 4.0 * radius) - rate; };
+  return longest(dampingTime_s * radius + damping) / longest(dampingTime_s * radius);
+}
+
 // Chooses the number of steps of an island for this frame, and how stiff contacts born in it may be.
 int chooseSubsteps(IslandStep& step) {
   Simulation& simulation = step.simulation;
@@ -118,11 +139,14 @@ int chooseSubsteps(IslandStep& step) {
   if (substeps > 0) {
     allowed = stableSpectralRadius(settings.method, settings.frame_s / substeps, simulation.dampingTime_s, settings.stepMargin);
   } else {
+    const TetherRates held = tetherRates(step);
     const double needed = standing + (approach.meeting || wanted > 1.0 ? std::max(together, wanted) * born : 0.0);
     const double margin = settings.stepMargin * (settings.method == Method::report ? kImpulseMargin : 1.0);
-    const double dt = stableStep(settings.method, needed, simulation.dampingTime_s, margin);
+    const double dt = stableStep(settings.method, needed + held.stiffness, simulation.dampingTime_s, margin) *
+                      shortening(needed + held.stiffness, simulation.dampingTime_s, held.damping);
     substeps = std::clamp(static_cast<int>(std::ceil(settings.frame_s / dt)), 1, kMostSubsteps);
     allowed = stableSpectralRadius(settings.method, settings.frame_s / substeps, simulation.dampingTime_s, settings.stepMargin);
+    if (held.stiffness > 0.0) allowed = std::min(allowed, needed);
   }
   step.scaleMost = born > 0.0 ? std::clamp((allowed - standing) / (together * born), 1.0, std::max(1.0, wanted)) : 1.0;
   return substeps;

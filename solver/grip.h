@@ -6,77 +6,73 @@
 
 namespace springtower {
 
-// The hand holds a block as a whole: it draws its centre and its orientation to where a mouse or a script wants them, with a
-// bounded force that goes through the solver like any other. Nothing overwrites a velocity, so the hand is never stronger than
+// The hand holds a block as a whole: it draws its centre and its orientation to where a mouse or a script wants them, by springs
+// of bounded force that are solved with all others. Nothing overwrites a velocity, so the hand is never stronger than
 // its limit (report 5.6 had to choose between a block that swings round the cursor and a hand with "super strength").
 
-inline constexpr double kGripForce_n = 5.0;      ///< N, the default limit
-inline constexpr double kFollowRate_hz = 7.958;  ///< natural frequency of the follow, 1/s over 2 pi: 50 rad/s
+inline constexpr double kGripForce_n = 5.0;     ///< N, the default limit
+inline constexpr double kFollow_rad_s = 50.0;   ///< natural frequency of the follow of a free block, 1/s
+inline constexpr double kLead_rad_s = 300.0;    ///< the same of a hand that leads its block along a line
+inline constexpr double kLevel_rad_s = 1000.0;  ///< and of its hold on the block's orientation
 
 /// What the hand wants in one frame.
 struct Hand {
   BlockId block = kFloor;                                    ///< kFloor: it holds nothing
-  Vec3 place = Vec3::Zero();                                 ///< m, where the block's centre should be
+  Vec3 place = Vec3::Zero();                                 ///< m, where the block's centre should be at the frame's end
   Eigen::Quaterniond turn = Eigen::Quaterniond::Identity();  ///< from the block's axes to the world's; unit
-  double limit_n = kGripForce_n;                             ///< N, most force; the torque is limited to this times half the
+  double limit_n = kGripForce_n;                             ///< N, most force; the torque is at most this times half the
                                                              ///< block's middle side, what two fingers on its sides can give
+  Vec3 velocity = Vec3::Zero();                              ///< m/s, of the place during the frame
+  double rate_rad_s = kFollow_rad_s;                         ///< how stiffly its place is followed
+  Vec3 line = Vec3::Zero();                                  ///< unit where it draws along a line: it then holds the block on
+                                                             ///< the line and level by no more than the block's weight asks
+                                                             ///< for, and does not force it against its neighbours
 };
 
-/// Gains of a follow whose force is constant over a frame: acceleration = place * (distance) - speed * (velocity).
-struct FollowGains {
-  double place;  ///< 1/s2
-  double speed;  ///< 1/s
-};
-
-/// The gains that put both poles of the sampled motion of a free mass at exp(-2 pi rate frame_s): critically damped in the exact
-/// sampled sense, at any rate. From rest at distance 1 the distance after k frames is followCourse(k).
-FollowGains followGains(double rate_hz, double frame_s);
-
-/// The closed form of that motion: (1 + k (1 - p^2) / (2 p)) p^k with p the pole; positive and falling, so it never overshoots.
-double followCourse(double rate_hz, double frame_s, int frames);
+/// Distance left after a time, from rest at distance 1, of a free block that follows the hand: critically damped, (1 + w t)
+/// e^(-w t), so it never overshoots.
+double followCourse(double rate_rad_s, double time_s);
 
 /// What the hand remembers of a grip.
 struct Grip {
   BlockId block = kFloor;
-  double carried = 0.0;           ///< share of the block's weight that the hand carries, 0..1: what no contact carries
-  Vec3 levelling = Vec3::Zero();  ///< N m, what the hand turns the block with against its contacts: a block drawn out beyond its
-                                  ///< support would tip over the edge and lever up what lies on its other end
+  double carried = 0.0;                                      ///< share of the block's weight that the hand carries, 0..1: what
+                                                             ///< no contact carries
+  Eigen::Quaterniond turn = Eigen::Quaterniond::Identity();  ///< to which the hand has come, on its way to the one wanted
+  Vec3 spin = Vec3::Zero();                                  ///< rad/s, at which it goes there
 };
 
 /// How the held block touches others.
 enum class Hold { none, free, sticks, slips };
 
-/// What the hand does to the block.
-struct GripForce {
-  Vec3 force = Vec3::Zero();   ///< N
-  Vec3 torque = Vec3::Zero();  ///< N m, about the centre
-  bool limited = false;        ///< whether the force is at its limit
-};
-
 /// The orientation of a (slightly deformed) block: the rotation nearest to its mean edges.
 Eigen::Quaterniond orientationOf(const CornerArray& position, std::size_t block);
 
-/// The hand's force for the coming frame, and its memory brought up to date. `contacts`: contactForces of the simulation as it
-/// stands. The hand takes the weight of a block as far as no contact carries it, and the torque that its contacts leave: a
-/// gripped block of the tower rests as before, a block in the air does not sag, and one that is drawn out stays level.
-/// Precondition: the hand holds a block.
-GripForce gripForce(const Simulation& simulation, std::span<const ContactForce> contacts, const Hand& hand, Grip& grip);
+/// Lets the hand hold its block in the coming frame (simulation.tether), and brings its memory up to date. `contacts`:
+/// contactForces of the simulation as it stands. The hand takes the weight of a block as far as no contact carries it: a gripped
+/// block of the tower rests as before, and one in the air does not sag. Precondition: the hand holds a block.
+void hold(const Hand& hand, std::span<const ContactForce> contacts, Grip& grip, Simulation& simulation);
 
-/// Eight corner forces that add up to this force and torque and leave the block's shape as it is (to first order), for one frame.
-/// Appends them to the scene's forces.
-void applyGrip(Simulation& simulation, BlockId block, const GripForce& grip);
+/// Lets go.
+void letGo(Simulation& simulation);
 
-/// A hand that draws its block along a line at a steady speed: it leads the block by as much as that takes.
+/// What the hand does to its block now; nothing where it holds none.
+GripForce gripForce(const Simulation& simulation);
+
+/// A hand that draws its block along a line at a steady speed.
 struct Draw {
-  Hand hand;  ///< the block, the line (through `place`) and the force that the hand has at most
+  Hand hand;  ///< the block, a place on the line, its direction, and the force that the hand has at most
   Grip grip;
-  Vec3 direction = Vec3::UnitX();  ///< unit
   double speed_m_s = 0.04;
 };
 
-/// Leads the hand for the coming frame, with the force that its contacts took in the last frame and a push towards its speed, and
-/// adds its forces to the scene's. Returns its force along the direction, N. Precondition: the hand holds a block.
-double drawOn(Draw& draw, std::span<const ContactForce> contacts, Simulation& simulation);
+/// Leads the hand on for the coming frame, no farther ahead of its block than its force reaches, and lets it hold the block.
+/// Precondition: the hand holds a block.
+void drawOn(Draw& draw, std::span<const ContactForce> contacts, Simulation& simulation);
+
+/// A hand that will draw a block along a line from where it lies, at a speed.
+Draw drawingFrom(const Simulation& simulation, BlockId block, const Vec3& direction, double speed_m_s,
+                 double limit_n = kGripForce_n);
 
 /// A hand that takes a block as it lies.
 Hand handOn(const Simulation& simulation, BlockId block, double limit_n = kGripForce_n);

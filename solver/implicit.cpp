@@ -7,16 +7,36 @@ namespace springtower {
 
 namespace {
 
-// Steps of a frame where the user names none.
+// Steps of a frame where the user names none; and where nothing moves farther than kCalm tolerances in it.
 constexpr int kImplicitSteps = 4;
+constexpr int kCalmSteps = 1;
+constexpr double kCalm = 0.1;
 // Angle by which a block may turn in an implicit step, rad: the two-step formula turns along chords.
 constexpr double kMostTurn = 0.01;
 // Distance that blocks may close in an implicit step that makes them meet, in tolerances.
 constexpr double kMostClosing = 0.5;
 
-int implicitSteps(const Simulation& simulation) {
-  const int asked = simulation.scene.settings.substeps;
-  return asked > 0 ? asked : kImplicitSteps;
+// Whether the island does so little that one step tells it as well as four. What a hand or a force begins to move is not calm.
+bool isCalm(const IslandStep& step) {
+  const Simulation& simulation = step.simulation;
+  const double most = kCalm * simulation.tolerance_m / simulation.scene.settings.frame_s;
+  for (const std::int32_t block : step.blocks) {
+    // What has just been let go of has no speed yet.
+    if (!(simulation.restTime_s[static_cast<std::size_t>(block)] > 0.0)) return false;
+    for (std::size_t a = 0; a < 3; ++a) {
+      const double* v = simulation.state.velocity.values(a, static_cast<std::size_t>(block));
+      for (std::size_t c = 0; c < kCorners; ++c) {
+        if (!(std::abs(v[c]) <= most)) return false;
+      }
+    }
+  }
+  return !holdsTether(step) && !isPushed(step);
+}
+
+int implicitSteps(const IslandStep& step) {
+  const int asked = step.simulation.scene.settings.substeps;
+  if (asked > 0) return asked;
+  return isCalm(step) ? kCalmSteps : kImplicitSteps;
 }
 
 // The angular speed of a block is at most this, rad/s: how fast its mean edges change against their length.
@@ -70,7 +90,6 @@ Closing closingOf(const Simulation& simulation, const NearPair& pair) {
 void prepareImplicit(Simulation& simulation) {
   Engine& engine = *simulation.engine;
   const std::size_t count = simulation.model.blockCount();
-  const double step_s = implicitEffectiveStep(simulation);
   engine.previousVelocity.resize(count);
   engine.history.resize(count);
   engine.target.resize(count);
@@ -79,17 +98,25 @@ void prepareImplicit(Simulation& simulation) {
   engine.implicitIslands.resize(count);
   engine.nodeOf.assign(count, 0);
   engine.jacobian.resize(count);
-  const BlockModel& model = simulation.model;
-  for (std::size_t b = 0; b < count; ++b) {
-    const bool asBefore = b > 0 && model.dimensions[b] == model.dimensions[b - 1] && model.mass[b] == model.mass[b - 1];
-    engine.jacobian[b] = asBefore ? engine.jacobian[b - 1]
-                                  : blockJacobian(model, simulation.scene.settings.inertia, b, 1.0 / (step_s * step_s),
-                                                  1.0 + simulation.dampingTime_s / step_s);
-  }
+  engine.jacobianStep_s.assign(count, 0.0);
 }
 
-double implicitEffectiveStep(const Simulation& simulation) {
-  return kBdf2 * simulation.scene.settings.frame_s / implicitSteps(simulation);
+void setJacobians(IslandStep& step, double effective_s) {
+  Engine& engine = step.engine;
+  const BlockModel& model = step.simulation.model;
+  std::size_t last = model.blockCount();
+  for (const std::int32_t block : step.blocks) {
+    const auto b = static_cast<std::size_t>(block);
+    if (engine.jacobianStep_s[b] == effective_s) continue;
+    const bool asLast =
+        last < model.blockCount() && model.dimensions[b] == model.dimensions[last] && model.mass[b] == model.mass[last];
+    engine.jacobian[b] = asLast
+                             ? engine.jacobian[last]
+                             : blockJacobian(model, step.simulation.scene.settings.inertia, b, 1.0 / (effective_s * effective_s),
+                                             1.0 + step.simulation.dampingTime_s / effective_s);
+    engine.jacobianStep_s[b] = effective_s;
+    last = b;
+  }
 }
 
 void rememberImplicit(Simulation& simulation) {
@@ -106,10 +133,9 @@ void rewindImplicit(Simulation& simulation) {
   engine.previousVelocity = engine.frameStartPreviousVelocity;
 }
 
-bool implicitStepsFit(const IslandStep& step) {
+bool implicitStepsFit(const IslandStep& step, double step_s) {
   const Simulation& simulation = step.simulation;
   const double frame_s = simulation.scene.settings.frame_s;
-  const double step_s = frame_s / implicitSteps(simulation);
   bool touches = false;
   for (const std::int32_t at : step.pairs) {
     const NearPair& pair = step.engine.pairs[static_cast<std::size_t>(at)];
@@ -136,20 +162,28 @@ IslandOutcome runImplicitSteps(IslandStep& step, double& reached_s) {
   Engine& engine = step.engine;
   IslandOutcome outcome;
   reached_s = 0.0;
-  const bool fits = implicitStepsFit(step);
+  int steps = implicitSteps(step);
+  const bool fits = implicitStepsFit(step, simulation.scene.settings.frame_s / steps);
   for (const std::int32_t block : step.blocks) {
     std::int32_t& frames = engine.clock[static_cast<std::size_t>(block)].explicitFrames;
     frames = std::max(0, frames - 1);
   }
   if (!fits) return outcome;
-  const int steps = implicitSteps(simulation);
   step.drift_s = simulation.scene.settings.frame_s / steps;
+  setJacobians(step, kBdf2 * step.drift_s);
   step.scaleMost = 1.0;
   engine.implicitIslands[static_cast<std::size_t>(step.blocks.front())].forcesKnown = false;
   for (int i = 0; i < steps; ++i) {
     step.time_s = simulation.time_s + i * step.drift_s;
     step.gravity = simulation.scene.gravity.at(step.time_s + step.drift_s);  // forces are those of the step's end
     if (!stepImplicit(step)) {
+      if (steps < kImplicitSteps && simulation.scene.settings.substeps == 0) {  // it was not calm after all
+        steps = kImplicitSteps;
+        step.drift_s = simulation.scene.settings.frame_s / steps;
+        setJacobians(step, kBdf2 * step.drift_s);
+        i = -1;
+        continue;
+      }
       for (const std::int32_t block : step.blocks) engine.clock[static_cast<std::size_t>(block)].explicitFrames = kExplicitFrames;
       return outcome;
     }

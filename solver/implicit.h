@@ -33,11 +33,11 @@ bool stepImplicit(IslandStep& step);
 /// than that, as in stepImplicit. Returns false when it does not converge; everything is then as before.
 bool stepFromRest(IslandStep& step, double effective_s);
 
-/// The step that an implicit step of this scene puts the end's forces into, s.
-double implicitEffectiveStep(const Simulation& simulation);
+/// Each block's own matrix for steps that put the end's forces into `effective_s`, where it is for others.
+void setJacobians(IslandStep& step, double effective_s);
 
-/// Whether implicit steps can follow what the island does in this frame: it touches something, nothing spins fast, and nothing is
-/// about to meet at speed.
-bool implicitStepsFit(const IslandStep& step);
+/// Whether implicit steps of `step_s` can follow what the island does in this frame: it touches something, nothing spins fast,
+/// and nothing is about to meet at speed.
+bool implicitStepsFit(const IslandStep& step, double step_s);
 
 }  // namespace springtower

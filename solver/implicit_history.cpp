@@ -43,7 +43,10 @@ void foretell(IslandStep& step, double effective_s) {
   const double calm = 2.0 * std::max(step.simulation.scene.gravity.magnitude, 1.0);
   for (const std::int32_t block : step.blocks) {
     const auto b = static_cast<std::size_t>(block);
-    const bool known = engine.clock[b].history_s == h;
+    // The step before may have been longer or shorter: its mean acceleration then tells of one as long as this.
+    const double past_s = engine.clock[b].history_s;
+    const bool known = past_s > 0.0;
+    const double share = known ? h / past_s : 0.0;
     double start[3][kCorners] = {};
     if (!known) {
       accelerate(step, b, start);
@@ -62,8 +65,8 @@ void foretell(IslandStep& step, double effective_s) {
       double* history = engine.history.values(a, b);
       double* target = engine.target.values(a, b);
       for (std::size_t c = 0; c < kCorners; ++c) {
-        const double dx = known ? x[c] - xBefore[c] : h * v[c] - 0.5 * h * h * start[a][c];
-        const double dv = known ? v[c] - vBefore[c] : h * start[a][c];
+        const double dv = known ? share * (v[c] - vBefore[c]) : h * start[a][c];
+        const double dx = past_s == h ? x[c] - xBefore[c] : h * v[c] - 0.5 * h * dv;
         history[c] = x[c] + kThird * dx;
         target[c] = history[c] + effective_s * (v[c] + kThird * dv) + pull;
         xBefore[c] = x[c];

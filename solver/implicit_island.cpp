@@ -150,6 +150,22 @@ void addManifold(const IslandStep& step, ImplicitIsland& island, std::size_t at,
   if (ofBoth != nullptr) addContacts(crossNormal, crossTangential, points.direction, !slot.firstIsRow, -1.0, ofBoth);
 }
 
+// The hand's springs on its block: C moves all eight corners, E_a each by a half.
+void addTether(const IslandStep& step, ImplicitIsland& island) {
+  const TetherStiffness& tether = island.tether;
+  const Vec3& line = step.simulation.tether.line;
+  const double edges = 0.25 * static_cast<double>(kCorners) * tether.corner;
+  const auto node = static_cast<std::size_t>(step.engine.nodeOf[index(tether.block)]);
+  float* diagonal = island.matrix.diagonal.data() + kNodeMatrix * static_cast<std::size_t>(island.matrix.position[node]);
+  for (std::size_t i = 0; i < kNodeSize; ++i) diagonal[(kNodeSize + 1) * i] += static_cast<float>(i < 3 ? tether.across : edges);
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      diagonal[kNodeSize * i + k] += static_cast<float>((tether.along - tether.across) * line[static_cast<Eigen::Index>(i)] *
+                                                        line[static_cast<Eigen::Index>(k)]);
+    }
+  }
+}
+
 void mix(std::uint64_t& hash, std::uint64_t value) {
   hash = (hash ^ value) * 1099511628211ULL;
 }
@@ -217,6 +233,15 @@ void layOut(IslandStep& step, ImplicitIsland& island) {
   island.affine.resize(kNodeSize * count);
 }
 
+TetherStiffness tetherStiffness(const IslandStep& step, double step_s) {
+  if (!holdsTether(step)) return {};
+  const Tether& tether = step.simulation.tether;
+  const GripForce& now = step.engine.tetherNow;
+  const double centre = now.limited ? 0.0 : tether.stiffness_n_m + tether.damping_n_s_m / step_s;
+  const double corner = now.turnLimited ? 0.0 : tether.cornerStiffness_n_m + tether.cornerDamping_n_s_m / step_s;
+  return {tether.block, centre, now.acrossLimited ? 0.0 : centre, corner};
+}
+
 bool assemble(IslandStep& step, ImplicitIsland& island, double step_s) {
   clear(island.matrix);
   for (std::size_t i = 0; i < step.blocks.size(); ++i) {
@@ -225,6 +250,9 @@ bool assemble(IslandStep& step, ImplicitIsland& island, double step_s) {
            island.matrix.diagonal.data() + kNodeMatrix * static_cast<std::size_t>(island.matrix.position[i]));
   }
   for (std::size_t at = 0; at < island.touching.size(); ++at) addManifold(step, island, at, step_s);
+  island.tether = tetherStiffness(step, step_s);
+  if (island.tether.block != kFloor) addTether(step, island);
+  island.step_s = step_s;
   ++step.counters.factorisations;
   island.factorised = factorise(island.matrix);
   return island.factorised;

@@ -12,12 +12,23 @@ namespace springtower {
 /// Which points of a pair's manifold push (low byte) and which of them slide (high byte).
 using ContactMask = std::uint16_t;
 
+/// How stiffly the hand's springs and dashpots follow their block in an implicit step, N/m; what is at its limit does not.
+struct TetherStiffness {
+  BlockId block = kFloor;
+  double along = 0.0;   ///< of the centre along the hand's line, or every way where it has none
+  double across = 0.0;  ///< of the centre across it
+  double corner = 0.0;  ///< of one corner about the centre
+  bool operator==(const TetherStiffness&) const = default;
+};
+
 /// What an island keeps from implicit step to implicit step: the factors of M / step^2 + K as the contacts stood when they were
 /// last assembled, and working space of the iteration.
 struct ImplicitIsland {
   std::uint64_t pattern = 0;  ///< of which blocks touch which; what the matrix is laid out for
   bool tooDense = false;      ///< so many blocks touch one another that explicit steps cost less
   bool factorised = false;
+  double step_s = 0.0;       ///< the step times the method's factor that the factors are for
+  TetherStiffness tether;    ///< the hand's springs that the factors contain
   bool moved = false;        ///< whether engine.trial holds a state after the step's start
   bool forcesKnown = false;  ///< engine.force holds the forces at the island's present state
   BlockCholesky matrix;
@@ -37,6 +48,9 @@ struct IslandStep;
 
 /// Lays out the matrix anew where blocks have begun or ceased to touch, unless the island is too dense.
 void layOut(IslandStep& step, ImplicitIsland& island);
+
+/// The hand's springs as they act on the island now. `step_s` as in `assemble`.
+TetherStiffness tetherStiffness(const IslandStep& step, double step_s);
 
 /// Assembles and factorises for contacts that stand as `mask` says. `step_s` is the step times the method's factor. Returns false
 /// where the matrix is not positive definite.

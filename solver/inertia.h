@@ -56,4 +56,11 @@ struct RigidMotion {
 };
 RigidMotion rigidMotion(const MotionState& state, std::size_t block);
 
+/// The turn by a rotation vector (rad).
+inline Eigen::Quaterniond rotation(const Vec3& angle) {
+  const double size = angle.norm();
+  if (size == 0.0) return Eigen::Quaterniond::Identity();
+  return Eigen::Quaterniond(Eigen::AngleAxisd(size, angle / size));
+}
+
 }  // namespace springtower

@@ -53,8 +53,8 @@ MemoryUse memoryUse(const Simulation& simulation) {
             engine.force, engine.frames, engine.motion, engine.carriedMotion, engine.contactForce, engine.springRadius,
             engine.contactMetric, engine.previous, engine.carried, engine.pairForce, engine.clock, engine.lostPartner,
             engine.toWake, engine.pushed, engine.change, engine.beginning, engine.restless, engine.parent, engine.joined,
-            engine.rest, engine.report, engine.frameStart, engine.frameStartClock, engine.frameStartPairs, engine.chunkCounters,
-            engine.islandCounters, engine.islandTimes, engine.islandOutcome);
+            engine.touched, engine.rest, engine.report, engine.frameStart, engine.frameStartClock, engine.frameStartPairs,
+            engine.chunkCounters, engine.islandCounters, engine.islandTimes, engine.islandOutcome);
   use.working += sumOf(engine.sweep.order, engine.sweep.place, engine.sweep.columns, engine.sweep.awake, engine.sweep.renewed,
                        engine.sweep.ascending, engine.sweep.outOfOrder);
   for (const MotionState& stage : engine.stage) use.working += bytesOf(stage);
@@ -71,8 +71,9 @@ MemoryUse memoryUse(const Simulation& simulation) {
                                        matrix.work, island.touching, island.slot, island.mask, island.axes, island.residual,
                                        island.affine, island.order, island.height, island.edges);
   }
-  use.working += sumOf(engine.trial, engine.previousVelocity, engine.jacobian, engine.history, engine.stepVelocity, engine.target,
-                       engine.nodeOf, engine.frameStartPrevious, engine.frameStartPreviousVelocity);
+  use.working +=
+      sumOf(engine.trial, engine.previousVelocity, engine.jacobian, engine.jacobianStep_s, engine.history, engine.stepVelocity,
+            engine.target, engine.nodeOf, engine.frameStartPrevious, engine.frameStartPreviousVelocity);
   return use;
 }
 

@@ -172,7 +172,9 @@ void aim(MoveRun& run, const Simulation& simulation, const Move& move) {
 bool leadTo(Hand& hand, const Vec3& goal, double speed_m_s, double frame_s) {
   const Vec3 way = goal - hand.place;
   const double step = speed_m_s * frame_s;
-  hand.place = way.norm() > step ? Vec3(hand.place + way * (step / way.norm())) : goal;
+  const Vec3 next = way.norm() > step ? Vec3(hand.place + way * (step / way.norm())) : goal;
+  hand.velocity = (next - hand.place) / frame_s;
+  hand.place = next;
   return way.norm() <= step;
 }
 
@@ -200,6 +202,20 @@ double extentAlong(const Simulation& simulation, std::size_t block, const Vec3& 
   return most - least;
 }
 
+// The side of a block that points most along a direction: a hand draws a block along its faces, however its row leans.
+Vec3 alongBlock(const Simulation& simulation, std::size_t block, const Vec3& direction) {
+  Vec3 best = direction;
+  double most = 0.0;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const Vec3 side = meanEdge(simulation.state.position, block, a).normalized();
+    const double along = side.dot(direction);
+    if (std::abs(along) <= most) continue;
+    most = std::abs(along);
+    best = along < 0.0 ? Vec3(-side) : side;
+  }
+  return best;
+}
+
 void begin(MoveRun& run, const Simulation& simulation) {
   const Move& move = simulation.scene.moves[run.results.size()];
   const BlockId held = run.draw.hand.block;
@@ -218,7 +234,7 @@ void begin(MoveRun& run, const Simulation& simulation) {
   run.now.block = blockId(b);
   run.leftOut[b] = 1;
   run.rigid[b].row = -1;
-  run.draw = {handOn(simulation, blockId(b), move.limit_n), {}, move.towards, move.speed_m_s};
+  run.draw = drawingFrom(simulation, blockId(b), alongBlock(simulation, b, move.towards), move.speed_m_s, move.limit_n);
   enter(run, MovePhase::draw);
 }
 
@@ -268,13 +284,14 @@ void follow(MoveRun& run, const Simulation& simulation, std::span<const ContactF
   const double frame_s = simulation.scene.settings.frame_s;
   const std::size_t b = index(run.now.block);
   Hand& hand = run.draw.hand;
+  hand.velocity = Vec3::Zero();
   switch (run.phase) {
     case MovePhase::settle:
       break;
     case MovePhase::draw: {
-      const double moved = (centre(simulation.state.position, b) - centre(run.before, b)).dot(move.towards);
-      if (moved < extentAlong(simulation, b, move.towards) + kClear_m || touchesBlocks(contacts, hand.block)) break;
-      hand.place = centre(simulation.state.position, b);
+      const double moved = (centre(simulation.state.position, b) - centre(run.before, b)).dot(hand.line);
+      if (moved < extentAlong(simulation, b, hand.line) + kClear_m || touchesBlocks(contacts, hand.block)) break;
+      hand.line = Vec3::Zero();
       enter(run, MovePhase::lift);
       break;
     }
@@ -326,7 +343,6 @@ bool isWithin(const Move& move, const MoveResult& result) {
 MoveRun beginMoves(const Simulation& simulation) {
   MoveRun run;
   run.rigid = simulation.scene.blocks;
-  run.userForces = simulation.scene.forces;
   run.leftOut.assign(run.rigid.size(), 0);
   run.finished = simulation.scene.moves.empty();
   if (!run.finished) run.settled_m = rigidTower(run, simulation).settlement_m;
@@ -334,7 +350,8 @@ MoveRun beginMoves(const Simulation& simulation) {
 }
 
 void guideHand(MoveRun& run, Simulation& simulation) {
-  simulation.scene.forces = run.userForces;
+  run.now.force_n = std::max(run.now.force_n, gripForce(simulation).force.norm());
+  letGo(simulation);
   if (run.finished) return;
   if (run.phase == MovePhase::settle) {
     if (simulation.frame == 0 || !(othersRest(run, simulation) || run.phase_s > kLongest_s)) {
@@ -353,13 +370,10 @@ void guideHand(MoveRun& run, Simulation& simulation) {
   }
   run.phase_s += simulation.scene.settings.frame_s;
   if (run.finished || run.draw.hand.block == kFloor) return;
-  const double most = run.now.force_n;
   if (run.phase == MovePhase::draw) {
-    run.now.force_n = std::max(most, drawOn(run.draw, contacts, simulation));
+    drawOn(run.draw, contacts, simulation);
   } else {
-    const GripForce force = gripForce(simulation, contacts, run.draw.hand, run.draw.grip);
-    run.now.force_n = std::max(most, force.force.norm());
-    applyGrip(simulation, run.draw.hand.block, force);
+    hold(run.draw.hand, contacts, run.draw.grip, simulation);
   }
 }
 

@@ -41,9 +41,8 @@ struct MoveRun {
   std::vector<std::uint8_t> leftOut;  ///< 1 for blocks held or put aside, which do not count for `standing`, [blocks]
   std::vector<std::size_t> laid;      ///< blocks in the order in which they came to rest in a new place
 
-  std::vector<BlockSpec> rigid;       ///< the blocks as rigid ones in their nominal places; row -1 for what is not in the tower
-  double settled_m = 0.0;             ///< settlement of the set before this move
-  std::vector<UserForce> userForces;  ///< of the scene
+  std::vector<BlockSpec> rigid;  ///< the blocks as rigid ones in their nominal places; row -1 for what is not in the tower
+  double settled_m = 0.0;        ///< settlement of the set before this move
   MovePhase phase = MovePhase::settle;
   double phase_s = 0.0;      ///< how long it has lasted
   Draw draw;                 ///< the hand
@@ -59,7 +58,7 @@ struct MoveRun {
 /// The sequence of a simulation's scene, before its first frame.
 MoveRun beginMoves(const Simulation& simulation);
 
-/// Before each frame: sees how far the move has come and puts the hand's force for the coming frame into the scene's forces.
+/// Before each frame: sees how far the move has come and lets the hand hold its block in the coming frame.
 void guideHand(MoveRun& run, Simulation& simulation);
 
 }  // namespace springtower

@@ -15,7 +15,7 @@ constexpr double kChange = 0.02;
 constexpr double kUnbalanced = 2e-4;
 // Change of force, as a share of what goes through the block, that springs around it take up without moving by more than that
 // share of their compression.
-constexpr double kBorne = 0.15;
+constexpr double kBorne = 0.35;
 // Share of the friction of its contacts with sleepers that may hold a block against friction of awake ones. A third of a row that
 // is drawn out asks for a fifth of it, half a row for a third.
 constexpr double kHeld = 0.25;

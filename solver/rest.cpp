@@ -93,6 +93,25 @@ void fallAsleep(Simulation& simulation, std::size_t b) {
   if (!engine.report.contacts.empty()) engine.report.contacts[b].clear();
 }
 
+// Where all that touch are at rest, but some sleep on forces that no longer balance, they wake and find their rest together: by
+// turns that would take as many rests as there are rows.
+void restTogether(Simulation& simulation) {
+  Engine& engine = *simulation.engine;
+  engine.touchingEdges.clear();
+  for (const NearPair& pair : engine.pairs) {
+    if (pair.b >= 0 && pair.manifold.touch != Touch::apart) engine.touchingEdges.push_back({pair.a, pair.b});
+  }
+  engine.touched.resize(simulation.asleep.size());
+  connectedBlocks(engine.touchingEdges, engine.toWake, engine.parent, engine.touched);
+  const auto touches = [&](std::int32_t block) { return engine.touched[static_cast<std::size_t>(block)] != 0; };
+  if (std::any_of(engine.restless.begin(), engine.restless.end(), touches)) return;
+  for (std::size_t b = 0; b < engine.touched.size(); ++b) {
+    if (engine.touched[b] == 0) continue;
+    engine.joined[b] = 1;
+    engine.toWake.push_back(static_cast<std::int32_t>(b));
+  }
+}
+
 // Puts blocks to sleep: groups that touch and are all at rest, at once; and a block that has long been at rest beside restless
 // ones by itself, as what they do to it later is looked at in every frame. Method `report` does not know from step to step who
 // touches whom: there who is near counts, and nobody sleeps beside a restless block.
@@ -100,7 +119,10 @@ void putToSleep(Simulation& simulation) {
   Engine& engine = *simulation.engine;
   const double needed = restNeeded(simulation);
   const auto ready = [&](std::int32_t block) {
-    if (simulation.restTime_s[static_cast<std::size_t>(block)] < needed) return false;
+    if (simulation.restTime_s[static_cast<std::size_t>(block)] < needed ||
+        block == static_cast<std::int32_t>(simulation.tether.block)) {
+      return false;
+    }
     const double frame_s = simulation.scene.settings.frame_s;
     return std::none_of(simulation.scene.forces.begin(), simulation.scene.forces.end(), [&](const UserForce& user) {
       return user.block == block && acts(user, simulation.time_s - frame_s, frame_s);
@@ -131,6 +153,7 @@ void putToSleep(Simulation& simulation) {
   }
   engine.toWake.clear();
   rememberPushes(simulation, engine.joined);
+  if (!engine.toWake.empty() && settings.sleep == Sleep::on) restTogether(simulation);
   for (const std::int32_t block : engine.awakeBlocks) {
     if (engine.joined[static_cast<std::size_t>(block)] == 0) fallAsleep(simulation, static_cast<std::size_t>(block));
   }
@@ -161,6 +184,7 @@ void wakeForFrame(Simulation& simulation) {
   for (const UserForce& user : simulation.scene.forces) {
     if (acts(user, simulation.time_s, frame_s)) wake(simulation, static_cast<std::size_t>(user.block));
   }
+  if (simulation.tether.block != kFloor) wake(simulation, index(simulation.tether.block));
 }
 
 void updateRest(Simulation& simulation) {

@@ -36,12 +36,6 @@ Vec3 momentOf(const Simulation& simulation, std::size_t block) {
   return share * simulation.model.mass[block] * (Vec3::Constant(squares.sum()) - squares);
 }
 
-Eigen::Quaterniond rotation(const Vec3& angle) {
-  const double size = angle.norm();
-  if (size == 0.0) return Eigen::Quaterniond::Identity();
-  return Eigen::Quaterniond(Eigen::AngleAxisd(size, angle / size));
-}
-
 void readPoses(IslandStep& step) {
   const Simulation& simulation = step.simulation;
   RigidIsland& island = rigidIslandOf(step);
@@ -165,8 +159,31 @@ Eigen::Quaterniond turnedBy(const Vec3& angle, const Eigen::Quaterniond& turn) {
   return (rotation(angle) * turn).normalized();
 }
 
+// The steps are long for the hand's springs, so they give way as they would at the step's end.
+void applyTether(IslandStep& step) {
+  Tether tether = step.simulation.tether;
+  const std::size_t b = index(tether.block);
+  RigidBody& body = rigidIslandOf(step).bodies[static_cast<std::size_t>(step.engine.nodeOf[b])];
+  const double h = step.drift_s;
+  const double cornerInverseMass = inverseMass(step.simulation.scene.settings.inertia).own * body.inverseMass;
+  const double centre = 1.0 + h * body.inverseMass * (tether.damping_n_s_m + h * tether.stiffness_n_m);
+  const double corners = 1.0 + h * cornerInverseMass * (tether.cornerDamping_n_s_m + h * tether.cornerStiffness_n_m);
+  tether.stiffness_n_m /= centre;
+  tether.damping_n_s_m /= centre;
+  tether.cornerStiffness_n_m /= corners;
+  tether.cornerDamping_n_s_m /= corners;
+  MotionState& state = step.simulation.state;
+  for (std::size_t c = 0; c < kCorners; ++c)
+    state.velocity.set(b, c, body.velocity + body.spin.cross(state.position.at(b, c) - body.place));
+  std::array<Vec3, kCorners> corner;
+  const GripForce held = tetherForces(tether, step.simulation.model, state, step.time_s, corner);
+  body.velocity += h * body.inverseMass * held.force;
+  body.spin += h * (body.inverseInertia * held.torque);
+}
+
 void applyForces(IslandStep& step) {
   RigidIsland& island = rigidIslandOf(step);
+  if (holdsTether(step)) applyTether(step);  // first: its dashpots would brake what gravity has not done yet
   for (RigidBody& body : island.bodies) body.velocity += step.drift_s * step.gravity;
   const std::int32_t own = step.engine.islands.islandOf[static_cast<std::size_t>(step.blocks.front())];
   for (const UserForce& user : step.simulation.scene.forces) {

@@ -170,6 +170,7 @@ void kick(Simulation& simulation, std::size_t block, const Vec3& velocity) {
 
 struct Snapshot {
   MotionState state;
+  Tether tether;
   double time_s;
   std::uint64_t frame;
   int substeps;
@@ -182,11 +183,12 @@ struct Snapshot {
 
 std::shared_ptr<const Snapshot> takeSnapshot(const Simulation& s) {
   return std::make_shared<const Snapshot>(
-      Snapshot{s.state, s.time_s, s.frame, s.substeps, s.asleep, s.restTime_s, s.counters, s.stageTimes, *s.engine});
+      Snapshot{s.state, s.tether, s.time_s, s.frame, s.substeps, s.asleep, s.restTime_s, s.counters, s.stageTimes, *s.engine});
 }
 
 void restoreSnapshot(Simulation& s, const Snapshot& snapshot) {
   s.state = snapshot.state;
+  s.tether = snapshot.tether;
   s.time_s = snapshot.time_s;
   s.frame = snapshot.frame;
   s.substeps = snapshot.substeps;

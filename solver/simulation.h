@@ -4,6 +4,7 @@
 #include "core/scene.h"
 #include "core/state.h"
 #include "solver/lengths.h"
+#include "solver/tether.h"
 
 #include <cstdint>
 #include <memory>
@@ -24,6 +25,7 @@ struct Simulation {
   BlockModel model;
   Lengths lengths;  ///< the scene's own scale
   MotionState state;
+  Tether tether;                      ///< what holds a block, as set by whoever leads the hand (solver/grip), until it lets go
   double time_s = 0.0;                ///< simulated time, s
   std::uint64_t frame = 0;            ///< frames done
   double tolerance_m = 0.0;           ///< the tolerance in force: as given, or what the given substeps allow

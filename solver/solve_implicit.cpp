@@ -50,7 +50,7 @@ struct ContactsNow {
   bool slides = false;   // whether any point slides
 };
 
-ContactsNow contactsNow(const IslandStep& step, const ImplicitIsland& island) {
+ContactsNow contactsNow(const IslandStep& step, const ImplicitIsland& island, double effective_s) {
   ContactsNow now;
   for (std::size_t i = 0; i < island.touching.size(); ++i) {
     const auto at = static_cast<std::size_t>(island.touching[i]);
@@ -58,6 +58,7 @@ ContactsNow contactsNow(const IslandStep& step, const ImplicitIsland& island) {
     now.changed = now.changed || mask != island.mask[i];
     now.slides = now.slides || mask > 0xFFU;
   }
+  now.changed = now.changed || tetherStiffness(step, effective_s) != island.tether;
   return now;
 }
 
@@ -288,13 +289,14 @@ bool solveStep(IslandStep& step, double effective_s) {
   StageClock clock(step.times);
   layOut(step, island);
   island.moved = false;
+  if (island.step_s != effective_s || tetherStiffness(step, effective_s) != island.tether) island.factorised = false;
   double residual = island.tooDense ? 0.0 : findResidual(step, island, effective_s);
   if (residual > kPredicted) residual = predict(step, island, effective_s, clock);
   bool converged = false;
   int most = island.tooDense ? 0 : kMostIterations;
   bool slow = false;
   for (int iteration = 0; iteration < most; ++iteration) {
-    const ContactsNow now = contactsNow(step, island);
+    const ContactsNow now = contactsNow(step, island, effective_s);
     if (now.changed) most = std::min(kMostContactIterations, iteration + kMostIterations);
     const bool stale = slow && (now.changed || now.slides);
     if ((stale || !island.factorised) && !renewFactors(step, island, effective_s)) break;
@@ -329,7 +331,6 @@ bool stepImplicit(IslandStep& step) {
 
 bool stepFromRest(IslandStep& step, double effective_s) {
   step.drift_s = effective_s / kBdf2;
-  islandOf(step).factorised = false;  // for another step
   evaluateForces(step, step.simulation.state, step.simulation.state.velocity, 0.0, Memory::trial);
   foretellFromRest(step, effective_s);
   return solveStep(step, effective_s);

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <vector>
 
 namespace springtower {
@@ -40,21 +39,6 @@ bool mayRest(const IslandStep& step) {
     for (std::size_t c = 0; c < kCorners; ++c) still = still && velocity.at(b, c) == Vec3::Zero();
     return still;
   });
-}
-
-void setJacobians(IslandStep& step, double effective_s) {
-  const Settings& settings = step.simulation.scene.settings;
-  const BlockModel& model = step.simulation.model;
-  std::size_t last = model.blockCount();
-  for (const std::int32_t block : step.blocks) {
-    const auto b = static_cast<std::size_t>(block);
-    const bool asLast =
-        last < model.blockCount() && model.dimensions[b] == model.dimensions[last] && model.mass[b] == model.mass[last];
-    step.engine.jacobian[b] = asLast ? step.engine.jacobian[last]
-                                     : blockJacobian(model, settings.inertia, b, 1.0 / (effective_s * effective_s),
-                                                     1.0 + step.simulation.dampingTime_s / effective_s);
-    last = b;
-  }
 }
 
 // Takes the velocities away; returns how far the fastest corner went in the step.
@@ -114,15 +98,14 @@ bool startInEquilibrium(IslandStep& step) {
   if (!mayRest(step)) return false;
   const Counters before = step.counters;
   step.scaleMost = 1.0;
-  step.time_s = -std::numeric_limits<double>::infinity();
+  step.unforced = true;
   step.gravity = step.simulation.scene.gravity.at(step.simulation.time_s);
   const bool rests = settle(step);
   if (!rests) {
     step.counters = before;
     restoreIsland(step);
   }
-  setJacobians(step, implicitEffectiveStep(step.simulation));
-  step.engine.implicitIslands[static_cast<std::size_t>(step.blocks.front())].factorised = false;
+  step.unforced = false;
   return rests;
 }
 

@@ -106,9 +106,38 @@ TEST(Implicit, ATowerAtRestTakesOneIterationAStep) {
   stepFor(simulation, 1.0);
   EXPECT_EQ(before.handedOver, 0U);
   EXPECT_EQ(simulation.counters.handedOver, 0U);
-  EXPECT_EQ(simulation.counters.implicitSteps - before.implicitSteps, 240U);
-  EXPECT_EQ(simulation.counters.implicitIterations - before.implicitIterations, 240U);
+  EXPECT_EQ(simulation.counters.implicitSteps - before.implicitSteps, 60U);
+  EXPECT_EQ(simulation.counters.implicitIterations - before.implicitIterations, 60U);
   EXPECT_EQ(simulation.counters.factorisations, before.factorisations);
+}
+
+// Gravity sways by a tenth of a degree once a second: slow against the tower, which follows it in a step a frame as in four.
+TEST(Implicit, ACalmTowerTakesOneStepAFrame) {
+  const auto swaying = [](int substeps, std::vector<double>& moved) {
+    Scene scene = towerScene(kRows);
+    scene.settings.sleep = Sleep::off;
+    scene.settings.tolerance_m = 1e-5;
+    scene.settings.substeps = substeps;
+    scene.settings.forceUnstable = true;
+    scene.gravity.sway_deg = 0.1;
+    scene.gravity.sway_hz = 1.0;
+    Simulation simulation(scene);
+    const std::size_t top = simulation.model.blockCount() - 1;
+    const double start = centre(simulation.state.position, top).x();
+    for (int frame = 0; frame < 180; ++frame) {
+      stepFrame(simulation);
+      moved.push_back(centre(simulation.state.position, top).x() - start);
+    }
+    return static_cast<double>(simulation.counters.implicitSteps) / 180.0;
+  };
+  std::vector<double> reference;
+  std::vector<double> calm;
+  EXPECT_GE(swaying(4, reference), 4.0);
+  EXPECT_LT(swaying(0, calm), 1.5);
+  const double range = ringOver(reference, 60, 180);
+  EXPECT_GT(range, 1e-6);
+  EXPECT_NEAR(ringOver(calm, 60, 180), range, 0.02 * range);
+  for (std::size_t frame = 60; frame < 180; ++frame) EXPECT_NEAR(calm[frame], reference[frame], 0.02 * range) << frame;
 }
 
 }  // namespace

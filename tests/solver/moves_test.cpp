@@ -81,8 +81,6 @@ TEST(Moves, APutAsideBlockLiesOnTheFloor) {
   Move away;
   away.kind = MoveKind::putAside;
   scene.moves = {take(2, 2, Vec3::UnitX()), away};
-  scene.settings.method = Method::semiImplicitEuler;  // with implicit steps the hand tips the block as it leaves (README)
-  scene.settings.sleep = Sleep::off;
   Simulation simulation(scene);
   const RunResult result = play(simulation);
   ASSERT_EQ(result.moves.size(), 2U);
@@ -119,37 +117,39 @@ TEST(Moves, AWeakHandGivesUp) {
   EXPECT_TRUE(result.standing.stands);
 }
 
-// The first four removals of `removal-0-2` of the reference set, by pulling: statics lets the tower stand after each. It does so
-// after the fifth as well, but there the scripted hand brings it down (README).
+// The removals `removal-0-2` of the reference set, by pulling: statics lets the tower stand after five of them, and not after the
+// sixth. Outer blocks are drawn sideways, the shorter way: along their length they drag round what lies on their end.
 TEST(Moves, BlocksPulledOutOneByOneLeaveWhatStaticsSays) {
   Scene scene = towerScene(18);
   Move away;
   away.kind = MoveKind::putAside;
-  const std::pair<int, int> places[] = {{5, 1}, {13, 1}, {3, 2}, {15, 2}};
+  const std::pair<int, int> places[] = {{5, 1}, {13, 1}, {3, 2}, {15, 2}, {0, 2}, {15, 1}};
   for (const auto& [row, position] : places) {
-    scene.moves.push_back(take(row, position, row % 2 == 0 ? Vec3::UnitX() : Vec3::UnitY()));
+    const Vec3 length = row % 2 == 0 ? Vec3::UnitX() : Vec3::UnitY();
+    const Vec3 outwards = (position - 2) * (row % 2 == 0 ? Vec3::UnitY() : Vec3::UnitX());
+    scene.moves.push_back(take(row, position, position == 2 ? length : outwards));
     scene.moves.push_back(away);
   }
   for (Move& move : scene.moves) move.limit_n = 20.0;
   Simulation simulation(scene);
   const RunResult result = play(simulation);
-  EXPECT_EQ(result.moves.size(), 8U);
-  for (const MoveResult& move : result.moves) EXPECT_TRUE(move.done);
-  EXPECT_TRUE(result.standing.stands) << describe(result.standing);
+  EXPECT_GE(result.moves.size(), 10U);
+  EXPECT_LT(result.moves.size(), 12U);
+  for (std::size_t i = 0; i < 10; ++i) EXPECT_TRUE(result.moves.at(i).done);
+  EXPECT_FALSE(result.standing.stands);
 }
 
-// Steps 1 and 2 of the report's sequence 6.1.2 (scenes/moves.toml): the block comes to its place, and no other moves by more than
-// the real tower showed. Later steps do not hold yet; `validate --only moves` says how far they are off.
-TEST(Moves, TheReportsFirstStepsMoveNobody) {
-  Scene scene = sceneFromName(SPRINGTOWER_SOURCE_DIR "/scenes/moves.toml");
+// The report's sequence 6.1.2 (scenes/moves.toml) to its end: every block comes to its place, no other moves by more than the
+// real tower showed, and the tower stands.
+TEST(Moves, TheReportsSequenceEndsStanding) {
+  const Scene scene = sceneFromName(SPRINGTOWER_SOURCE_DIR "/scenes/moves.toml");
   ASSERT_EQ(scene.moves.size(), 12U);
-  scene.moves.resize(2);
   Simulation simulation(scene);
   const RunResult result = play(simulation);
   EXPECT_TRUE(result.standing.stands) << describe(result.standing);
-  ASSERT_EQ(result.moves.size(), 2U);
-  for (std::size_t step = 0; step < 2; ++step) {
-    EXPECT_TRUE(result.moves[step].done && result.moves[step].rested);
+  ASSERT_EQ(result.moves.size(), 12U);
+  for (std::size_t step = 0; step < 12; ++step) {
+    EXPECT_TRUE(result.moves[step].done && result.moves[step].rested) << step;
     EXPECT_TRUE(isWithin(scene.moves[step], result.moves[step])) << step << ": " << result.moves[step].moved_m;
   }
 }
