@@ -17,8 +17,8 @@ constexpr double kUnbalanced = 2e-4;
 // share of their compression.
 constexpr double kBorne = 0.35;
 // Share of the friction of its contacts with sleepers that may hold a block against friction of awake ones. A third of a row that
-// is drawn out asks for a fifth of it, half a row for a third.
-constexpr double kHeld = 0.25;
+// is drawn out asks for a fifth of it, half a row for a third; so some is left of what it takes to slip.
+constexpr double kHeld = 0.35;
 
 double weightOf(const Simulation& simulation, std::int32_t block) {
   return simulation.model.mass[static_cast<std::size_t>(block)] * simulation.scene.gravity.magnitude;
