@@ -29,6 +29,7 @@ std::string theoryOf(Method method) {
     case Method::midpoint:
       return "theory: no step is stable without dashpots";
     case Method::implicit:
+    case Method::implicitEuler:
       return "theory: any step is stable";
     default:
       return "theory: none";

@@ -124,7 +124,7 @@ Energy energy(const Simulation& simulation) {
     energy.springs += springEnergy(model, state.position, b);
     energy.gravity -= model.mass[b] * gravity.dot(centre(state.position, b));
     const bool leapfrog =
-        (settings.method == Method::semiImplicitEuler || settings.method == Method::implicit) && simulation.asleep[b] == 0;
+        (settings.method == Method::semiImplicitEuler || isImplicit(settings.method)) && simulation.asleep[b] == 0;
     const double kick = leapfrog ? simulation.engine->clock[b].lastDrift_s : 0.0;
     for (std::size_t a = 0; a < 3; ++a) {
       const double* f = force.values(a, b);

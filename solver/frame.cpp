@@ -154,7 +154,8 @@ int chooseSubsteps(IslandStep& step) {
 
 void stepIsland(Method method, IslandStep& step) {
   switch (method) {
-    case Method::implicit:  // what implicit steps do not fit
+    case Method::implicit:
+    case Method::implicitEuler:  // what implicit steps do not fit
     case Method::semiImplicitEuler:
       stepSemiImplicitEuler(step);
       return;
@@ -183,7 +184,7 @@ IslandOutcome runIsland(IslandStep& step) {
   if (isRigid(settings.method)) return runRigidSteps(step);
   if (simulation.frame == 0 && settings.method != Method::report) startInEquilibrium(step);
   double begin_s = 0.0;
-  if (settings.method == Method::implicit) {
+  if (isImplicit(settings.method)) {
     outcome = runImplicitSteps(step, begin_s);
     if (!outcome.inside || begin_s >= settings.frame_s) return outcome;
   }
@@ -235,7 +236,7 @@ bool runIslands(Simulation& simulation) {
   engine.islandOutcome.assign(islands, 0);
   const ContactLaw law = contactLaw(simulation);
   if (simulation.scene.settings.method == Method::report) prepareReportFrame(simulation);
-  if (simulation.scene.settings.method == Method::implicit || simulation.frame == 0) engine.trial.resize(engine.pairs.size());
+  if (isImplicit(simulation.scene.settings.method) || simulation.frame == 0) engine.trial.resize(engine.pairs.size());
   tbb::parallel_for(std::size_t{0}, islands, [&](std::size_t i) {
     const auto first = static_cast<std::size_t>(engine.pairStart[i]);
     IslandStep step{simulation,

@@ -23,7 +23,7 @@ constexpr double kTouch_n = 1e-4;
 double bearable(double rate_rad_s, const Simulation& simulation) {
   constexpr double kShare = 0.1;  // of an angle a step: with critical damping a tenth of what is stable
   const Settings& settings = simulation.scene.settings;
-  if (simulation.fixedSubsteps == 0 || isRigid(settings.method) || settings.method == Method::implicit) return rate_rad_s;
+  if (simulation.fixedSubsteps == 0 || isRigid(settings.method) || isImplicit(settings.method)) return rate_rad_s;
   return std::min(rate_rad_s, kShare * simulation.fixedSubsteps / settings.frame_s);
 }
 

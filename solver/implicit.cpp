@@ -120,14 +120,14 @@ void setJacobians(IslandStep& step, double effective_s) {
 }
 
 void rememberImplicit(Simulation& simulation) {
-  if (simulation.scene.settings.method != Method::implicit) return;
+  if (!isImplicit(simulation.scene.settings.method)) return;
   Engine& engine = *simulation.engine;
   engine.frameStartPrevious = engine.previous;
   engine.frameStartPreviousVelocity = engine.previousVelocity;
 }
 
 void rewindImplicit(Simulation& simulation) {
-  if (simulation.scene.settings.method != Method::implicit) return;
+  if (!isImplicit(simulation.scene.settings.method)) return;
   Engine& engine = *simulation.engine;
   engine.previous = engine.frameStartPrevious;
   engine.previousVelocity = engine.frameStartPreviousVelocity;
@@ -170,7 +170,7 @@ IslandOutcome runImplicitSteps(IslandStep& step, double& reached_s) {
   }
   if (!fits) return outcome;
   step.drift_s = simulation.scene.settings.frame_s / steps;
-  setJacobians(step, kBdf2 * step.drift_s);
+  setJacobians(step, endShare(simulation.scene.settings.method) * step.drift_s);
   step.scaleMost = 1.0;
   engine.implicitIslands[static_cast<std::size_t>(step.blocks.front())].forcesKnown = false;
   for (int i = 0; i < steps; ++i) {
@@ -180,7 +180,7 @@ IslandOutcome runImplicitSteps(IslandStep& step, double& reached_s) {
       if (steps < kImplicitSteps && simulation.scene.settings.substeps == 0) {  // it was not calm after all
         steps = kImplicitSteps;
         step.drift_s = simulation.scene.settings.frame_s / steps;
-        setJacobians(step, kBdf2 * step.drift_s);
+        setJacobians(step, endShare(simulation.scene.settings.method) * step.drift_s);
         i = -1;
         continue;
       }

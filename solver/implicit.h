@@ -7,6 +7,11 @@ namespace springtower {
 /// Step that the two-step formula puts the end's forces into, in steps.
 inline constexpr double kBdf2 = 2.0 / 3.0;
 
+/// The same for either implicit method: implicit Euler puts the end's forces into the whole step.
+constexpr double endShare(Method method) {
+  return method == Method::implicitEuler ? 1.0 : kBdf2;
+}
+
 /// Frames that an island is stepped explicitly after an implicit step did not converge, or after a blow.
 inline constexpr int kExplicitFrames = 6;
 

@@ -76,7 +76,7 @@ void foretell(IslandStep& step, double effective_s) {
   }
 }
 
-void foretellFromRest(IslandStep& step, double effective_s) {
+void foretellOneStep(IslandStep& step, double effective_s) {
   Engine& engine = step.engine;
   const MotionState& state = step.simulation.state;
   for (const std::int32_t block : step.blocks) {
@@ -84,11 +84,12 @@ void foretellFromRest(IslandStep& step, double effective_s) {
     for (std::size_t a = 0; a < 3; ++a) {
       const double pull = effective_s * effective_s * step.gravity[static_cast<Eigen::Index>(a)];
       const double* x = state.position.values(a, b);
+      const double* v = state.velocity.values(a, b);
       double* target = engine.target.values(a, b);
-      for (std::size_t c = 0; c < kCorners; ++c) target[c] = x[c] + pull;
+      for (std::size_t c = 0; c < kCorners; ++c) target[c] = x[c] + effective_s * v[c] + pull;
       std::copy_n(x, kCorners, engine.history.values(a, b));
       std::copy_n(x, kCorners, engine.previous.values(a, b));
-      std::fill_n(engine.previousVelocity.values(a, b), kCorners, 0.0);
+      std::copy_n(v, kCorners, engine.previousVelocity.values(a, b));
     }
   }
 }

@@ -13,7 +13,7 @@ void synchronise(IslandStep& step);
 /// Precondition: engine.force holds the forces now, where a block has no history.
 void foretell(IslandStep& step, double effective_s);
 
-/// The same for implicit Euler from rest.
-void foretellFromRest(IslandStep& step, double effective_s);
+/// The same for implicit Euler, which knows of no step before.
+void foretellOneStep(IslandStep& step, double effective_s);
 
 }  // namespace springtower

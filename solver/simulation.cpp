@@ -62,7 +62,7 @@ double foreseenSpectralRadius(const Simulation& simulation, const Stiffness& sti
 void chooseStiffness(Simulation& simulation) {
   const Settings& settings = simulation.scene.settings;
   LoadEstimate loads = estimateLoads(simulation.scene);
-  const bool stable = settings.method == Method::implicit || isRigid(settings.method);  // with any step
+  const bool stable = isImplicit(settings.method) || isRigid(settings.method);  // with any step
   simulation.fixedSubsteps = stable ? 0 : settings.substeps;
   simulation.tolerance_m = toleranceOf(simulation.scene);
   Stiffness stiffness = stiffnessForTolerance(loads, simulation.tolerance_m);

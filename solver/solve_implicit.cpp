@@ -321,18 +321,22 @@ bool solveStep(IslandStep& step, double effective_s) {
 }  // namespace
 
 bool stepImplicit(IslandStep& step) {
-  const double effective_s = kBdf2 * step.drift_s;
+  const double effective_s = endShare(step.simulation.scene.settings.method) * step.drift_s;
   synchronise(step);
   if (!islandOf(step).forcesKnown)
     evaluateForces(step, step.simulation.state, step.simulation.state.velocity, 0.0, Memory::trial);
-  foretell(step, effective_s);
+  if (step.simulation.scene.settings.method == Method::implicitEuler) {
+    foretellOneStep(step, effective_s);
+  } else {
+    foretell(step, effective_s);
+  }
   return solveStep(step, effective_s);
 }
 
 bool stepFromRest(IslandStep& step, double effective_s) {
   step.drift_s = effective_s / kBdf2;
   evaluateForces(step, step.simulation.state, step.simulation.state.velocity, 0.0, Memory::trial);
-  foretellFromRest(step, effective_s);
+  foretellOneStep(step, effective_s);
   return solveStep(step, effective_s);
 }
 
