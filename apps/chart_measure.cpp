@@ -89,6 +89,14 @@ double imbalance(const Simulation& simulation) {
   return largest;
 }
 
+// The same for an engine whose contact forces are not known: what the last frame has made of each block's momentum.
+double shownImbalance(const Simulation& simulation, const CornerArray& velocityBefore) {
+  double largest = 0.0;
+  for (std::size_t b = 0; b < simulation.model.blockCount(); ++b)
+    largest = std::max(largest, (centre(simulation.state.velocity, b) - centre(velocityBefore, b)).norm());
+  return largest / (simulation.scene.settings.frame_s * simulation.scene.gravity.magnitude);
+}
+
 // A case on its way: its simulation, what is known of its accuracy so far, and its times.
 class ChartRun {
  public:
@@ -193,6 +201,11 @@ class ChartRun {
   // One frame; returns the processor time of its step, s.
   double timedStep() {
     if (peer_) {
+      if (hand_.block >= 0) {
+        pull(hand_, simulation_);
+        peer_->push(simulation_.scene.forces.front());
+      }
+      velocityBefore_ = simulation_.state.velocity;
       const double step_s = peer_->step(simulation_.state);
       simulation_.time_s = static_cast<double>(++simulation_.frame) * simulation_.scene.settings.frame_s;
       return step_s;
@@ -260,7 +273,7 @@ class ChartRun {
     const int rows = 1 + *std::max_element(row_.begin(), row_.end());
     if (rows > 0) set(ChartMeasure::compression, 1e3 * std::abs(topHeightError(closed_, simulation_.state.position)) / rows);
     set(ChartMeasure::creep, 1e3 * creep_m_);
-    if (!peer_) set(ChartMeasure::imbalance, imbalance(simulation_));
+    set(ChartMeasure::imbalance, peer_ ? shownImbalance(simulation_, velocityBefore_) : imbalance(simulation_));
     set(ChartMeasure::jitter, 1e3 * std::sqrt(squares_ / counted_));
   }
 
@@ -276,6 +289,7 @@ class ChartRun {
   SteadyPull hand_;
   SteadyPull handKept_;
   std::unique_ptr<PeerProcess> peer_;  // instead of our own steps
+  CornerArray velocityBefore_;         // of its last frame
   bool kept_ = false;
   std::shared_ptr<const Snapshot> snapshot_;
   PenetrationWorkspace workspace_;

@@ -129,6 +129,13 @@ double PeerProcess::step(MotionState& state) {
   return numbers_.front();
 }
 
+void PeerProcess::push(const UserForce& force) {
+  const double numbers[] = {static_cast<double>(force.block), force.force.x(), force.force.y(), force.force.z()};
+  command('p');
+  if (!sendAll(socket_, reinterpret_cast<const char*>(numbers), sizeof numbers))
+    throw DivergenceError("the engine has ended", 0, time_s_);
+}
+
 void PeerProcess::keep() {
   command('k');
   keptTime_s_ = time_s_;

@@ -24,6 +24,8 @@ class PeerProcess {
   /// One frame: puts the blocks' corners as they now lie and move into `state`. Returns the processor time it took, s. Throws
   /// DivergenceError when the engine has ended or a block is nowhere.
   double step(MotionState& state);
+  /// A force (N) on a block's centre through the next frame. Throws DivergenceError when the engine has ended.
+  void push(const UserForce& force);
   /// Keeps the state as it is, and goes back to the one that was kept last, which stays kept.
   void keep();
   void restore();

@@ -128,7 +128,6 @@ std::vector<ChartCase> casesOf(ChartScene scene, const std::vector<Method>& meth
     if (std::find(methods.begin(), methods.end(), sweep.method) == methods.end()) continue;
     for (const double value : quick ? sweep.quick : sweep.values) cases.push_back({scene, sweep.method, sweep.knob, value});
   }
-  if (scene == ChartScene::pull) return cases;  // a hand feels how its block moves, in our engine
   for (const Peer peer : peers) {
     for (const PeerKnobs& knobs : quick ? kQuickPeerKnobs : kPeerKnobs) {
       cases.push_back({scene, Method::rigidPgs, Knob::substeps, knobs.substeps, peer, knobs.iterations});

@@ -42,6 +42,20 @@ void writeAll(const std::vector<double>& values) {
   }
 }
 
+PeerPush readPush(std::size_t blocks) {
+  std::array<double, 4> values{};
+  char* bytes = reinterpret_cast<char*>(values.data());
+  for (std::size_t i = 0; i < sizeof values; ++i) {
+    if (!readByte(bytes[i])) throw std::runtime_error("standard input ends within a push");
+  }
+  PeerPush push;
+  push.block = static_cast<std::size_t>(values[0]);
+  if (push.block >= blocks)
+    throw std::runtime_error("found a push on block " + std::to_string(push.block) + ", which there is not");
+  for (std::size_t k = 0; k < 3; ++k) push.force[k] = values[k + 1] * kPeerUnits_1_kg * kPeerUnits_1_m;
+  return push;
+}
+
 double processorTime_s() {
   std::timespec now{};
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
@@ -74,13 +88,15 @@ PeerScene readPeerScene() {
   return scene;
 }
 
-int servePeer(const std::function<void()>& stepFrame, const std::function<void(std::vector<PeerBlock>&)>& read,
+int servePeer(const std::function<void(const PeerPush&)>& stepFrame, const std::function<void(std::vector<PeerBlock>&)>& read,
               std::vector<PeerBlock> blocks) {
   std::vector<double> numbers;
+  PeerPush push;
   for (char command = 0; readByte(command);) {
     if (command == 's') {
       const double begin_s = processorTime_s();
-      stepFrame();
+      stepFrame(push);
+      push = PeerPush{};
       numbers.assign(1, processorTime_s() - begin_s);
       read(blocks);
       for (const PeerBlock& block : blocks) {
@@ -90,6 +106,8 @@ int servePeer(const std::function<void()>& stepFrame, const std::function<void(s
         for (const double value : block.spin) numbers.push_back(value);
       }
       writeAll(numbers);
+    } else if (command == 'p') {
+      push = readPush(blocks.size());
     } else if (command == 'k') {
       const pid_t next = fork();
       if (next < 0) throw std::runtime_error("cannot keep the state: no further process");
@@ -100,7 +118,7 @@ int servePeer(const std::function<void()>& stepFrame, const std::function<void(s
     } else if (command == 'b') {
       return 0;
     } else {
-      throw std::runtime_error(std::string("found command '") + command + "', allowed s, k and b");
+      throw std::runtime_error(std::string("found command '") + command + "', allowed s, p, k and b");
     }
   }
   return 1;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <functional>
 #include <vector>
 
@@ -24,6 +25,12 @@ struct PeerBlock {
   double mass;
 };
 
+/// What pushes a block through a frame, in the engine's units.
+struct PeerPush {
+  std::size_t block = 0;
+  std::array<double, 3> force{};  ///< zero where nothing does
+};
+
 struct PeerScene {
   int substeps = 1;
   int iterations = 0;  ///< of the engine's solver; 0: its own default
@@ -41,8 +48,9 @@ PeerScene readPeerScene();
 
 /// Obeys commands of one byte from standard input until its end, and returns the exit code. `s`: one frame; writes the processor
 /// time it took (s) and 13 numbers a block (centre, orientation, velocity, spin; SI) as doubles. `k`: keeps the state, in a
-/// process of its own. `b`: back to the state that was kept last, which is then kept no more.
-int servePeer(const std::function<void()>& stepFrame, const std::function<void(std::vector<PeerBlock>&)>& read,
+/// process of its own. `b`: back to the state that was kept last, which is then kept no more. `p`, and four doubles: a block and
+/// the force (N) that pushes its centre in the next frame.
+int servePeer(const std::function<void(const PeerPush&)>& stepFrame, const std::function<void(std::vector<PeerBlock>&)>& read,
               std::vector<PeerBlock> blocks);
 
 }  // namespace springtower

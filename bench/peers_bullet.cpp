@@ -67,8 +67,11 @@ int run() {
   }
   for (const Body& made : bodies) world.addRigidBody(made.body.get());
   const auto step_s = static_cast<btScalar>(scene.frame_s / scene.substeps);
-  const auto stepFrame = [&] {
-    for (int i = 0; i < scene.substeps; ++i) world.stepSimulation(step_s, 0);  // 0: this step, as it is
+  const auto stepFrame = [&](const PeerPush& push) {
+    for (int i = 0; i < scene.substeps; ++i) {
+      bodies[push.block].body->applyCentralForce(vectorOf(push.force));
+      world.stepSimulation(step_s, 0);  // 0: this step, as it is
+    }
   };
   const auto read = [&](std::vector<PeerBlock>& blocks) {
     for (std::size_t b = 0; b < blocks.size(); ++b) {

@@ -52,8 +52,9 @@ int run() {
   std::vector<dBodyID> bodies;
   for (const PeerBlock& block : scene.blocks) bodies.push_back(addBlock(world, block));
   if (scene.floor) dCreatePlane(world.space, 0, 0, 1, 0);
-  const auto stepFrame = [&] {
+  const auto stepFrame = [&](const PeerPush& push) {
     for (int i = 0; i < scene.substeps; ++i) {
+      dBodyAddForce(bodies[push.block], push.force[0], push.force[1], push.force[2]);
       dSpaceCollide(world.space, &world, touch);
       dWorldQuickStep(world.world, scene.frame_s / scene.substeps);
       dJointGroupEmpty(world.contacts);

@@ -158,20 +158,24 @@ TEST(Chart, RunsOtherEnginesAndCarriesOverThoseMeasuredElsewhere) {
   std::ofstream(records) << "engine,version,settings,scene,rows,threads,stands_60_s,worst_penetration_mm,top_height_error_mm,"
                             "creep_mm,jitter_mm_s,ms_per_frame,ratio_to_bullet_16_substeps\n"
                             "Other,1,default,uniform,3,1,yes,0.1,-0.3,0,0,1000,0.5\n";
-  const ProgramResult result = chart({"--quick", "--rows", "3", "--scenes", "uniform,drop", "--methods", "bullet,ode", "--peers",
-                                      records, "--out", scratch.file("out")});
+  const ProgramResult result = chart({"--quick", "--rows", "3", "--scenes", "uniform,pull,drop", "--methods", "bullet,ode",
+                                      "--peers", records, "--out", scratch.file("out")});
   ASSERT_EQ(result.exitCode, 0) << result.error;
   double bullet_ms = 0.0;
   int right = 0;
+  int pulled = 0;
   const Json file = Json::parse(contentOf(scratch.file("out/chart.json")));
   for (const Json& one : file.at("cases")) {
     SCOPED_TRACE(one.dump());
     EXPECT_GT(one.at("cpu_ms_per_frame").get<double>(), 0.0);
     EXPECT_LT(one.at("penetration_mm").get<double>(), 20.0);
     if (one.at("outcome") == "right") ++right;
+    if (one.at("scene") == "pull") ++pulled;
+    if (one.at("scene") == "uniform") EXPECT_GT(one.at("imbalance").get<double>(), 0.0) << "they are never quite at rest";
     if (one.at("method") == "bullet" && one.at("value") == 16.0 && one.at("scene") == "uniform")
       bullet_ms = one.at("cpu_ms_per_frame").get<double>();
   }
+  EXPECT_EQ(pulled, 4) << "two settings of each";
   EXPECT_GE(right, 4) << "three rows stand with any engine that takes 16 steps";
   const std::vector<std::string> lines = linesOf(contentOf(scratch.file("out/chart.csv")));
   EXPECT_THAT(lines.back(), StartsWith("elsewhere,uniform,3,\"Other\","));
