@@ -13,6 +13,7 @@
 #include "core/limits.h"
 #include "core/scene.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <filesystem>

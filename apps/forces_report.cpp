@@ -1,6 +1,7 @@
 #include "apps/forces_report.h"
 
 #include <cstddef>
+#include <nlohmann/json.hpp>
 #include <utility>
 
 namespace springtower {

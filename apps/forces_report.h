@@ -2,7 +2,7 @@
 
 #include "solver/simulation.h"
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 namespace springtower {
 

@@ -1,6 +1,7 @@
 #include "apps/moves_report.h"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace springtower {
 namespace {

@@ -3,11 +3,15 @@
 #include "core/limits.h"
 #include "core/settings.h"
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
+
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
 
 namespace springtower {
 

@@ -11,6 +11,7 @@
 #include "core/error.h"
 #include "core/limits.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <filesystem>

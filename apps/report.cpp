@@ -5,6 +5,7 @@
 #include "core/version.h"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 

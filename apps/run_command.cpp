@@ -9,9 +9,11 @@
 #include "core/error.h"
 #include "solver/run.h"
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <initializer_list>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <oneapi/tbb/global_control.h>
 
 namespace springtower {

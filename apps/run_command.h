@@ -3,10 +3,13 @@
 #include "apps/options.h"
 #include "core/scene.h"
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <optional>
 #include <string>
+
+namespace CLI {
+class App;
+}  // namespace CLI
 
 namespace springtower {
 

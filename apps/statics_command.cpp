@@ -7,11 +7,13 @@
 #include "core/error.h"
 #include "core/limits.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
 #include <chrono>
 #include <fmt/format.h>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/info.h>
 

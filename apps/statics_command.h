@@ -3,11 +3,14 @@
 #include "core/ids.h"
 #include "core/scene.h"
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
+
+namespace CLI {
+class App;
+}  // namespace CLI
 
 namespace springtower {
 

@@ -3,7 +3,7 @@
 #include "core/scene.h"
 #include "solver/statics.h"
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>

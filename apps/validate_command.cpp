@@ -5,6 +5,7 @@
 #include "apps/validate_page.h"
 #include "core/error.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <filesystem>

@@ -3,12 +3,15 @@
 #include "apps/options.h"
 #include "core/scene.h"
 
-#include <CLI/CLI.hpp>
 #include <iosfwd>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
+
+namespace CLI {
+class App;
+}  // namespace CLI
 
 namespace springtower {
 

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <initializer_list>
 #include <istream>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <string_view>
 

@@ -171,7 +171,9 @@ TEST(Chart, RunsOtherEnginesAndCarriesOverThoseMeasuredElsewhere) {
     EXPECT_LT(one.at("penetration_mm").get<double>(), 20.0);
     if (one.at("outcome") == "right") ++right;
     if (one.at("scene") == "pull") ++pulled;
-    if (one.at("scene") == "uniform") EXPECT_GT(one.at("imbalance").get<double>(), 0.0) << "they are never quite at rest";
+    if (one.at("scene") == "uniform") {
+      EXPECT_GT(one.at("imbalance").get<double>(), 0.0) << "they are never quite at rest";
+    }
     if (one.at("method") == "bullet" && one.at("value") == 16.0 && one.at("scene") == "uniform")
       bullet_ms = one.at("cpu_ms_per_frame").get<double>();
   }
