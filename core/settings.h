@@ -11,7 +11,18 @@ namespace springtower {
 
 /// How a frame is stepped. Each is one file solve_*.cpp of solver/; `automatic` is replaced by the one that suits the scene when
 /// its simulation is set up.
-enum class Method { implicit, implicitEuler, semiImplicitEuler, midpoint, rungeKutta4, report, rigidPgs, rigidLcp, xpbd, automatic };
+enum class Method {
+  implicit,
+  implicitEuler,
+  semiImplicitEuler,
+  midpoint,
+  rungeKutta4,
+  report,
+  rigidPgs,
+  rigidLcp,
+  xpbd,
+  automatic
+};
 
 /// Whether a method solves for the state at its step's end: in two steps of history (`implicit`), or in one.
 constexpr bool isImplicit(Method method) {
