@@ -60,8 +60,7 @@ std::string labelOf(const ChartResult& result) {
 
 // The methods' colours are in their order; those of other engines follow.
 int styleOf(const ChartCase& what) {
-  constexpr int kFirstPeerStyle = 9;
-  return what.peer == Peer::none ? static_cast<int>(what.method) : kFirstPeerStyle - 1 + static_cast<int>(what.peer);
+  return static_cast<int>(what.peer == Peer::none ? what.method : Method::automatic) + static_cast<int>(what.peer);
 }
 
 bool measuredHere(const Chart& chart, const PeerResult& peer) {

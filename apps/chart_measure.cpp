@@ -90,7 +90,7 @@ double imbalance(const Simulation& simulation) {
 }
 
 // The same for an engine whose contact forces are not known: what the last frame has made of each block's momentum.
-double shownImbalance(const Simulation& simulation, const CornerArray& velocityBefore) {
+double imbalanceFromMomentum(const Simulation& simulation, const CornerArray& velocityBefore) {
   double largest = 0.0;
   for (std::size_t b = 0; b < simulation.model.blockCount(); ++b)
     largest = std::max(largest, (centre(simulation.state.velocity, b) - centre(velocityBefore, b)).norm());
@@ -273,7 +273,7 @@ class ChartRun {
     const int rows = 1 + *std::max_element(row_.begin(), row_.end());
     if (rows > 0) set(ChartMeasure::compression, 1e3 * std::abs(topHeightError(closed_, simulation_.state.position)) / rows);
     set(ChartMeasure::creep, 1e3 * creep_m_);
-    set(ChartMeasure::imbalance, peer_ ? shownImbalance(simulation_, velocityBefore_) : imbalance(simulation_));
+    set(ChartMeasure::imbalance, peer_ ? imbalanceFromMomentum(simulation_, velocityBefore_) : imbalance(simulation_));
     set(ChartMeasure::jitter, 1e3 * std::sqrt(squares_ / counted_));
   }
 

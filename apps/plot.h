@@ -33,7 +33,7 @@ struct PlotLine {
   Marker marker = Marker::filled;
   bool joined = true;
   bool dashed = false;
-  int style = -1;                        ///< colour and shape of the marker, 0 to 10 and round again; -1: the line's place
+  int style = -1;                        ///< colour and shape of the marker, 0 to 11 and round again; -1: the line's place
   std::vector<std::string> labels = {};  ///< written beside the points, [points] or empty
 };
 

@@ -9,8 +9,8 @@
 
 namespace springtower {
 
-/// How a frame is stepped. Each is one file solve_*.cpp of solver/; `automatic` is replaced by the one that suits the scene when
-/// its simulation is set up.
+/// How a frame is stepped. Each is one file solve_*.cpp of solver/, which the two implicit ones share; `automatic` is replaced by
+/// the one that suits the scene when its simulation is set up.
 enum class Method {
   implicit,
   implicitEuler,
