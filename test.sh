@@ -30,11 +30,10 @@ if [[ $preset == ci ]]; then
   step "layout: clang-format"
   find "${folders[@]}" -name '*.cpp' -print0 -o -name '*.h' -print0 | xargs -0 clang-format --dry-run --Werror
   step "names and common mistakes: clang-tidy"
-  # Only what this build compiles: clang-tidy needs the flags.
-  for source in {core,broadphase,narrowphase,solver,apps}/*.cpp; do
-    if grep -qF "/$source\"" "build/$preset/compile_commands.json"; then printf '%s\0' "$source"; fi
-  done |
-    xargs -0 -r -n 1 -P "$(nproc)" clang-tidy -p "build/$preset" --quiet 2>&1 |
+  # Joined, they take a third of the time. A name that two sources give to different things shows here too.
+  cmake --preset lint --log-level=WARNING
+  sed -n 's/^ *"file": "\(.*\)",\{0,1\}$/\1/p' build/lint/compile_commands.json |
+    xargs -r -d '\n' -n 1 -P "$(nproc)" clang-tidy -p build/lint --quiet 2>&1 |
     sed -E '/^[0-9]+ warnings? generated\.$/d'
 fi
 

@@ -23,12 +23,12 @@
 namespace springtower {
 namespace {
 
-constexpr Range kRowsRange{2, 200, ""};
+constexpr Range kChartRowsRange{2, 200, ""};
 constexpr Range kSimulatedRange{0.2, 1000.0, "s"};
 constexpr Range kCaseRange{0.01, 1e5, "s"};
-constexpr Range kSamplesRange{1, 1000, ""};
+constexpr Range kChartSamplesRange{1, 1000, ""};
 
-constexpr std::string_view kExamples =
+constexpr std::string_view kChartExamples =
     R"help(scenes: uniform (equal blocks), heights (varying by 0.2 mm), pull (a block at 4 cm/s), drop (three rows from 2 cm), collapse
 (it leans more than it can stand), spin (one block in flight), heavy-light (every other row ten times as heavy)
 
@@ -191,12 +191,12 @@ CLI::App* defineChart(CLI::App& program, ChartCommand& command) {
   chart->add_option("--methods", command.methods, "as in `run`, or bullet and ode where their programs are (default all)")
       ->delimiter(',')
       ->type_name("NAME,...");
-  addWholeNumber(*chart, "--rows", command.rows, kRowsRange, "rows of the towers (default 18)");
+  addWholeNumber(*chart, "--rows", command.rows, kChartRowsRange, "rows of the towers (default 18)");
   addNumber(*chart, "--seconds", command.seconds, kSimulatedRange, "S",
             "simulated; the second half counts for rest (default 10)");
   addNumber(*chart, "--case-limit", command.case_s, kCaseRange, "S",
             "processor time after which a case has timed out (default 3)");
-  addWholeNumber(*chart, "--samples", command.samples, kSamplesRange, "of each case's speed, taken by turns (default 5)");
+  addWholeNumber(*chart, "--samples", command.samples, kChartSamplesRange, "of each case's speed, taken by turns (default 5)");
   chart->add_option("--peers", command.peers, "figures of other engines, drawn hollow beside ours; see bench/data/peers")
       ->type_name("FILE.csv");
   chart->add_option("--out", command.out, "writes into this folder (default chart)")->type_name("DIR");
@@ -206,7 +206,7 @@ CLI::App* defineChart(CLI::App& program, ChartCommand& command) {
                   "instead: what method auto takes in five scenes that are not charted, and its cost beside the best's");
   chart->add_flag("--fresh", command.fresh, "measures everything again, also what an earlier run has left in the folder");
   wrapDescriptions(*chart);
-  chart->footer(std::string(kExamples));
+  chart->footer(std::string(kChartExamples));
   return chart;
 }
 

@@ -59,7 +59,7 @@ Value valueNamed(const std::array<std::string_view, N>& names, const std::string
   return static_cast<Value>(found - names.begin());
 }
 
-ChartResult resultFromJson(const Json& json) {
+ChartResult chartResultFromJson(const Json& json) {
   ChartResult result;
   result.what.scene = valueNamed<ChartScene>(kChartSceneNames, json.at("scene").get<std::string>());
   const auto method = json.at("method").get<std::string>();
@@ -123,7 +123,7 @@ std::vector<ChartResult> readChartJson(const std::string& path, const Chart& now
                       json.at("limits") == limitsJson(now.limits);
     std::vector<ChartResult> results;
     for (const Json& result : json.at("cases")) {
-      if (same) results.push_back(resultFromJson(result));
+      if (same) results.push_back(chartResultFromJson(result));
     }
     return results;
   } catch (const Json::exception& error) {

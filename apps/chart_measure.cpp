@@ -24,7 +24,7 @@ constexpr double kEarliest_s = 1.0;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 // Of the calling thread: a case runs on one.
-double processorTime_s() {
+double threadTime_s() {
   std::timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
@@ -42,9 +42,9 @@ double tooSlowAtFewRows(const ChartCase& what, const ChartLimits& limits) {
   double frame_s = 0.0;
   try {
     stepFrame(simulation);
-    const double begin_s = processorTime_s();
+    const double begin_s = threadTime_s();
     stepFrame(simulation);
-    frame_s = processorTime_s() - begin_s;
+    frame_s = threadTime_s() - begin_s;
   } catch (const DivergenceError&) {
     return 0.0;  // the tall tower shows when
   }
@@ -210,10 +210,10 @@ class ChartRun {
       simulation_.time_s = static_cast<double>(++simulation_.frame) * simulation_.scene.settings.frame_s;
       return step_s;
     }
-    const double begin_s = processorTime_s();
+    const double begin_s = threadTime_s();
     if (hand_.block >= 0) pull(hand_, simulation_);
     stepFrame(simulation_);
-    return processorTime_s() - begin_s;
+    return threadTime_s() - begin_s;
   }
 
   void keepLeast(std::size_t frame, double step_s) {

@@ -8,13 +8,13 @@
 namespace springtower {
 namespace {
 
-constexpr double kHeightsSigma_m = 0.0002;
+constexpr double kChartHeightsSigma_m = 0.0002;
 constexpr double kDrop_m = 0.02;
 constexpr int kDropRows = 3;
 // The collapsing tower leans by a little more than it can stand; a short one would slide before.
-constexpr double kBeyond_deg = 0.6;
+constexpr double kBeyondStanding_deg = 0.6;
 constexpr double kMostTilt_deg = 30.0;
-constexpr double kHeavy = 10.0;
+constexpr double kHeavyFactor = 10.0;
 constexpr int kLeanRows = 9;
 constexpr double kLean_deg = 9.0;
 constexpr int kTallRows = 36;
@@ -22,7 +22,7 @@ constexpr double kMotion_s = 2.0;  // of scenes that do not come to rest
 
 double collapseTilt_deg(int rows) {
   const double standing = std::atan(kBlockLength_m / (rows * kBlockHeight_m)) * 180.0 / std::numbers::pi;
-  return std::min(standing + kBeyond_deg, kMostTilt_deg);
+  return std::min(standing + kBeyondStanding_deg, kMostTilt_deg);
 }
 
 // One block that slides until friction stops it, or eight that fall askew and come to lie in a heap.
@@ -60,11 +60,11 @@ Scene blocksOf(ChartScene scene, int rows) {
   if (scene == ChartScene::lean) rows = kLeanRows;
   if (scene == ChartScene::tall) rows = kTallRows;
   TowerOptions options;
-  if (scene == ChartScene::heights) options.heightsSigma_m = kHeightsSigma_m;
+  if (scene == ChartScene::heights) options.heightsSigma_m = kChartHeightsSigma_m;
   Scene tower = towerScene(scene == ChartScene::drop ? std::min(rows, kDropRows) : rows, options);
   for (BlockSpec& block : tower.blocks) {
     if (scene == ChartScene::drop) block.centre.z() += kDrop_m;
-    if (scene == ChartScene::heavyLight && block.row % 2 == 1) block.mass *= kHeavy;
+    if (scene == ChartScene::heavyLight && block.row % 2 == 1) block.mass *= kHeavyFactor;
   }
   if (scene == ChartScene::collapse) tower.gravity.tilt_deg = collapseTilt_deg(rows);
   if (scene == ChartScene::lean) tower.gravity.tilt_deg = kLean_deg;

@@ -1,5 +1,7 @@
 #include "apps/forces_report.h"
 
+#include "apps/json_values.h"
+
 #include <cstddef>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -8,14 +10,6 @@ namespace springtower {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json vectorJson(const Vec3& vector) {
-  return Json::array({vector.x(), vector.y(), vector.z()});
-}
-
-Json blockJson(BlockId block) {
-  return block == kFloor ? Json("floor") : Json(index(block));
-}
 
 }  // namespace
 

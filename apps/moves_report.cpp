@@ -6,7 +6,7 @@
 namespace springtower {
 namespace {
 
-std::string_view nameOf(Rest rest) {
+std::string_view shortNameOf(Rest rest) {
   switch (rest) {
     case Rest::stands:
       return "stands";
@@ -55,7 +55,7 @@ nlohmann::ordered_json movesJson(const Simulation& simulation, const RunResult& 
          {"largest_moved_mm", 1e3 * what.moved_m},
          {"largest_moved_block", what.moved == kFloor ? nlohmann::ordered_json() : nlohmann::ordered_json(index(what.moved))},
          {"moved_mm", each},
-         {"statics", nameOf(what.statics)},
+         {"statics", shortNameOf(what.statics)},
          {"rigid_settlement_mm", 1e3 * what.settlement_m},
          {"allowed_mm", move.allowed_m ? nlohmann::ordered_json(1e3 * *move.allowed_m) : nlohmann::ordered_json()},
          {"within", isWithin(move, what)},

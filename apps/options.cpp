@@ -11,8 +11,6 @@
 namespace springtower {
 namespace {
 
-constexpr Range kThreadsRange{1, 1024, ""};
-
 template <class T>
 std::optional<T> parsed(std::string_view text) {
   T value{};

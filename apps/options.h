@@ -15,6 +15,9 @@ class Option;
 
 namespace springtower {
 
+inline constexpr Range kThreadsRange{1, 1024, ""};
+inline constexpr Range kSeedRange{0.0, 9007199254740992.0, ""};  ///< up to where every whole number is a double
+
 /// Options of how to simulate, the same for every command that simulates. Empty ones leave what the scene says.
 struct PhysicsOptions {
   std::optional<std::string> method;

@@ -218,7 +218,7 @@ class Painter {
   std::vector<Look> looks_;  // of each face
 };
 
-cairo_status_t toStream(void* stream, const unsigned char* data, unsigned int length) {
+cairo_status_t toPngStream(void* stream, const unsigned char* data, unsigned int length) {
   auto& out = *static_cast<std::ostream*>(stream);
   out.write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(length));
   return out ? CAIRO_STATUS_SUCCESS : CAIRO_STATUS_WRITE_ERROR;
@@ -260,7 +260,7 @@ void writePicture(std::ostream& stream, const CornerArray& position, bool floor,
       cairo_image_surface_create_for_data(reinterpret_cast<unsigned char*>(pixels.data()), CAIRO_FORMAT_RGB24, frame.width,
                                           frame.height, 4 * frame.width),
       cairo_surface_destroy);
-  const cairo_status_t status = cairo_surface_write_to_png_stream(surface.get(), toStream, &stream);
+  const cairo_status_t status = cairo_surface_write_to_png_stream(surface.get(), toPngStream, &stream);
   if (status != CAIRO_STATUS_SUCCESS) {
     throw InputError(std::string("the picture cannot be written: ") + cairo_status_to_string(status));
   }

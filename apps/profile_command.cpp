@@ -22,16 +22,15 @@
 namespace springtower {
 namespace {
 
-constexpr Range kRowsRange{1, kMostRows, ""};
+constexpr Range kProfileRowsRange{1, kMostRows, ""};
 constexpr Range kTowersRange{1, 2000, ""};
-constexpr Range kThreadsRange{1, 1024, ""};
 constexpr Range kToleranceRange{1e-7, 1e-2, "m"};
-constexpr Range kSamplesRange{1, 1000, ""};
+constexpr Range kProfileSamplesRange{1, 1000, ""};
 constexpr Range kFramesRange{2, 100000, ""};
 constexpr Range kLimitRange{0.0, 1e6, "s"};
 constexpr int kTowersRows = 18;
 
-constexpr std::string_view kExamples =
+constexpr std::string_view kProfileExamples =
     R"help(what is timed: the state is kept once the scene has settled; each sample restores it, leaves out one frame and times the
 next ones; samples of all cases of a scene take turns. The frames of every sample are the same, so the least time of each
 frame counts, then their median, 99th percentile and largest. On one thread that is processor time, else wall time.
@@ -116,7 +115,7 @@ ProfileLimits limitsOf(const ProfileCommand& command) {
 std::vector<ProfileCase> casesOf(const ProfileCommand& command) {
   const std::vector<double> usualRows =
       command.quick ? std::vector<double>{3, 6, 9, 18} : std::vector<double>{3, 6, 9, 12, 18, 24, 36, 54, 72};
-  const std::vector<double> rows = numbers(command.rows, kRowsRange, "--rows", true, usualRows);
+  const std::vector<double> rows = numbers(command.rows, kProfileRowsRange, "--rows", true, usualRows);
   const std::vector<double> towers = numbers(command.towers, kTowersRange, "--towers", true, {1, 4, 16, 64});
   const std::vector<double> tolerances =
       numbers(command.tolerances_m, kToleranceRange, "--tolerances", false, {kBlockTolerance_m});
@@ -207,7 +206,7 @@ CLI::App* defineProfile(CLI::App& program, ProfileCommand& command) {
   list("--threads", command.threads, "N,N,...", "threads to use (default 1)");
   list("--towers", command.towers, "N,N,...", "how many towers scene `towers` has (default 1,4,16,64)");
   profile->add_option("--inertia", command.inertia, "cuboid (default) or lumped")->type_name("NAME");
-  addWholeNumber(*profile, "--samples", command.samples, kSamplesRange, "of each case, taken by turns (default 5)");
+  addWholeNumber(*profile, "--samples", command.samples, kProfileSamplesRange, "of each case, taken by turns (default 5)");
   addWholeNumber(*profile, "--frames", command.frames, kFramesRange, "timed in a sample (default 120)");
   addNumber(*profile, "--settle", command.settle_s, kLimitRange, "S", "simulated before timing (default 5)");
   addNumber(*profile, "--prepare-limit", command.prepare_s, kLimitRange, "S",
@@ -223,7 +222,7 @@ CLI::App* defineProfile(CLI::App& program, ProfileCommand& command) {
       ->needs("--out")
       ->excludes("--trace");
   wrapDescriptions(*profile);
-  profile->footer(std::string(kExamples));
+  profile->footer(std::string(kProfileExamples));
   return profile;
 }
 

@@ -58,7 +58,7 @@ Json resultJson(const ProfileResult& result) {
   return json;
 }
 
-ProfileResult resultFromJson(const Json& json) {
+ProfileResult profileResultFromJson(const Json& json) {
   ProfileResult result;
   const auto scene = json.at("scene").get<std::string>();
   const auto* const found = std::find(kProfileSceneNames.begin(), kProfileSceneNames.end(), scene);
@@ -123,7 +123,7 @@ Profile readProfileJson(const std::string& path) {
     limits.at("settle_s").get_to(profile.limits.settle_s);
     limits.at("prepare_s").get_to(profile.limits.prepare_s);
     limits.at("sample_s").get_to(profile.limits.sample_s);
-    for (const Json& result : json.at("cases")) profile.results.push_back(resultFromJson(result));
+    for (const Json& result : json.at("cases")) profile.results.push_back(profileResultFromJson(result));
     return profile;
   } catch (const Json::exception& error) {
     throw InputError(

@@ -14,8 +14,8 @@ constexpr double kTowerSpacing_m = 0.3;
 constexpr double kCollapseTilt_deg = 14.5;  // a tower of 18 rows topples, but does not slide
 constexpr double kSway_deg = 0.1;
 constexpr double kSway_hz = 1.0;
-constexpr double kHeightsSigma_m = 0.0002;
-constexpr double kPullSpeed_m_s = 0.04;
+constexpr double kProfileHeightsSigma_m = 0.0002;
+constexpr double kProfilePullSpeed_m_s = 0.04;
 constexpr double kPullStart_m = 0.001;  // from here on the block slides
 constexpr double kPullLongest_s = 5.0;
 constexpr double kAsleepLongest_s = 60.0;
@@ -90,7 +90,7 @@ void pull(SteadyPull& hand, Simulation& simulation) {
   constexpr double kProportional = 0.5;
   constexpr double kIntegral = 0.2;
   const auto block = static_cast<std::size_t>(hand.block);
-  const double missing = kPullSpeed_m_s - centre(simulation.state.velocity, block).dot(hand.direction);
+  const double missing = kProfilePullSpeed_m_s - centre(simulation.state.velocity, block).dot(hand.direction);
   const double unit = simulation.model.mass[block] / simulation.scene.settings.frame_s * missing;
   hand.held_n = std::clamp(hand.held_n + kIntegral * unit, 0.0, kStrongest_n);
   const double force_n = std::clamp(hand.held_n + kProportional * unit, 0.0, kStrongest_n);
@@ -100,7 +100,7 @@ void pull(SteadyPull& hand, Simulation& simulation) {
 
 Scene sceneOf(const ProfileCase& what) {
   TowerOptions options;
-  if (what.scene == ProfileScene::heights) options.heightsSigma_m = kHeightsSigma_m;
+  if (what.scene == ProfileScene::heights) options.heightsSigma_m = kProfileHeightsSigma_m;
   Scene scene = towerScene(what.rows, options);
   if (what.towers > 1) {
     const Scene tower = scene;

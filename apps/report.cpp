@@ -1,5 +1,6 @@
 #include "apps/report.h"
 
+#include "apps/json_values.h"
 #include "apps/moves_report.h"
 #include "core/limits.h"
 #include "core/version.h"
@@ -13,8 +14,6 @@ namespace springtower {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-constexpr double kMillimetres = 1e3;
 
 Json orNull(const std::optional<double>& value, double scale = 1.0) {
   return value ? Json(scale * *value) : Json(nullptr);

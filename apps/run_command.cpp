@@ -20,9 +20,8 @@ namespace springtower {
 namespace {
 
 constexpr Range kPosesEveryRange{1e-6, 1e7, "s"};
-constexpr Range kSeedRange{0.0, 9007199254740992.0, ""};  // up to where every whole number is a double
 
-constexpr std::string_view kExamples = R"help(examples:
+constexpr std::string_view kRunExamples = R"help(examples:
   springtower run tower:18                               the full tower for 10 s
   springtower run tower:18 --seconds 60 --no-sleep       all blocks simulated to the end
   springtower run "(010)-(010)-(011)" --picture a.png    a bit code: rows from the bottom, 1 present, 0 absent, L loose
@@ -88,7 +87,7 @@ CLI::App* defineRun(CLI::App& program, RunCommand& command) {
       ->needs("--poses");
   run->add_option("--picture", command.picture, "draws the last frame")->type_name("FILE.png");
   wrapDescriptions(*run);
-  run->footer(std::string(kExamples));
+  run->footer(std::string(kRunExamples));
   return run;
 }
 

@@ -20,8 +20,6 @@
 namespace springtower {
 namespace {
 
-constexpr Range kSeedRange{0.0, 9007199254740992.0, ""};
-constexpr Range kThreadsRange{1, 1024, ""};
 // A programme's time grows with the cube of this.
 constexpr std::size_t kMostStaticBlocks = 1000;
 

@@ -115,12 +115,6 @@ Answer solve(const VerdictLine& line, const Sequence* sequence) {
   return answer;
 }
 
-bool isClear(const VerdictLine& line) {
-  const Json& expect = line.expect;
-  return expect.is_object() && expect.contains("clear") && expect.at("clear") == true && expect.contains("stands") &&
-         expect.at("stands").is_boolean();
-}
-
 std::optional<double> expectedTilt(const VerdictLine& line) {
   if (!isClear(line) || !line.expect.contains("tilt_deg") || !line.expect.at("tilt_deg").is_number()) return {};
   return line.expect.at("tilt_deg").get<double>();

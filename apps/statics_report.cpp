@@ -1,5 +1,6 @@
 #include "apps/statics_report.h"
 
+#include "apps/json_values.h"
 #include "core/limits.h"
 #include "core/version.h"
 
@@ -12,19 +13,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kMillimetres = 1e3;
-
-Json vectorJson(const Vec3& value) {
-  return {value.x(), value.y(), value.z()};
-}
-
 // JSON has no infinity.
 Json finite(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
-
-Json blockJson(BlockId block) {
-  return block == kFloor ? Json("floor") : Json(index(block));
 }
 
 // Without a sign before what prints as zero.

@@ -19,7 +19,7 @@ namespace {
 
 constexpr Range kValidateThreads{1.0, 1024.0, ""};
 
-constexpr std::string_view kExamples = R"help(examples:
+constexpr std::string_view kValidateExamples = R"help(examples:
   springtower validate --out validation                 the short form, in less than two minutes
   springtower validate --out validation --long          every tower of every set
   springtower validate --out validation --only pull,tilt --check
@@ -74,7 +74,7 @@ CLI::App* defineValidate(CLI::App& program, ValidateCommand& command) {
   validate->add_flag("--check", command.check, "exit code 1 if a claim fails");
   addWholeNumber(*validate, "--threads", command.threads, kValidateThreads, "threads to use (default: one for each processor)");
   wrapDescriptions(*validate);
-  validate->footer(std::string(kExamples));
+  validate->footer(std::string(kValidateExamples));
   return validate;
 }
 

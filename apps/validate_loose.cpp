@@ -12,7 +12,7 @@
 namespace springtower {
 namespace {
 
-constexpr double kLongestSettling_s = 20.0;
+constexpr double kLongestLooseSettling_s = 20.0;
 constexpr double kGapInPenetrations = 3.0;
 constexpr double kJudgedLoad = 0.2;  // in weights of the block
 constexpr double kNoLoad = 1e-6;     // the same
@@ -45,7 +45,7 @@ void solve(int rows, UnevenTower& tower) {
   const std::vector<BlockLoad> loads =
       statics.rest == Rest::falls ? std::vector<BlockLoad>{} : blockLoads(statics, contactLoads(statics));
   Simulation simulation(scene);
-  while (!atRest(simulation) && simulation.time_s < kLongestSettling_s) stepFrame(simulation);
+  while (!atRest(simulation) && simulation.time_s < kLongestLooseSettling_s) stepFrame(simulation);
   tower.rested = atRest(simulation);
   PenetrationWorkspace workspace;
   tower.penetration_m = maxPenetration(simulation.state.position, true, workspace).depth;

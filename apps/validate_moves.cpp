@@ -122,7 +122,7 @@ void pullAll(RemovalSequence& sequence) {
   }
 }
 
-void addRemovals(const ValidationPlan& plan, ValidationSection& section) {
+void addRemovalsByPulling(const ValidationPlan& plan, ValidationSection& section) {
   std::vector<RemovalSequence> sequences = removalSequences(plan);
   tbb::parallel_for(std::size_t{0}, sequences.size(),
                     [&](std::size_t i) { tbb::this_task_arena::isolate([&] { pullAll(sequences[i]); }); });
@@ -147,7 +147,7 @@ ValidationSection validateMoves(const ValidationPlan& plan) {
       "tower of 18 rows one by one, at 4 cm/s, along their length, and put aside. "
       "After a state that differs a sequence is not counted further."};
   addSequence(plan, section);
-  addRemovals(plan, section);
+  addRemovalsByPulling(plan, section);
   return section;
 }
 

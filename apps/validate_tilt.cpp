@@ -21,8 +21,8 @@ constexpr double kEarlier_deg = 0.5;    // where friction is active
 constexpr double kAhead_deg = 1.2;      // where the ramp begins
 constexpr double kSoftAhead_deg = 2.5;  // with the default tolerance
 constexpr double kFineTolerance_m = 1e-5;
-constexpr double kBeyond_deg = 1.5;     // where it ends
-constexpr double kManyFriction = 10.0;  // no tower of the sets slides with it
+constexpr double kBeyondMargin_deg = 1.5;  // where it ends
+constexpr double kManyFriction = 10.0;     // no tower of the sets slides with it
 constexpr double kSameMargin_deg = 0.02;
 
 struct Tilted {
@@ -50,7 +50,7 @@ TiltTrial trialOf(const Tilted& tower, std::optional<double> tolerance_m) {
   Scene scene = tower.scene;
   scene.settings.tolerance_m = tolerance_m;
   const double start_deg = std::max(0.0, tower.margin_deg - (tolerance_m ? kAhead_deg : kSoftAhead_deg));
-  return tiltUntilFall(scene, {tower.direction_deg, start_deg, 2.0, 1.0, 0.1, tower.margin_deg + kBeyond_deg});
+  return tiltUntilFall(scene, {tower.direction_deg, start_deg, 2.0, 1.0, 0.1, tower.margin_deg + kBeyondMargin_deg});
 }
 
 std::string wordsFor(const Tilted& tower, const TiltTrial& trial) {

@@ -156,7 +156,7 @@ void addClaims(const OracleSet& set, const Counts& counts, ValidationSection& se
 }
 
 // Every state of the sequences of removals, each as a tower of its own.
-void addRemovals(const ValidationPlan& plan, ValidationSection& section) {
+void addRemovalStatics(const ValidationPlan& plan, ValidationSection& section) {
   const std::string path = plan.oracle + "/removal.jsonl";
   std::ifstream file(path);
   if (!file) throw InputError(fmt::format("--oracle: found no file {}, allowed is the folder of the reference sets", path));
@@ -220,7 +220,7 @@ ValidationSection validateVerdicts(const ValidationPlan& plan) {
     }
     addClaims(set, counts, section);
   }
-  addRemovals(plan, section);
+  addRemovalStatics(plan, section);
   if (section.notes.size() > kMostNotes) {
     const std::size_t more = section.notes.size() - kMostNotes;
     section.notes.resize(kMostNotes);

@@ -1,5 +1,6 @@
 #include "apps/verdict.h"
 
+#include "apps/json_values.h"
 #include "apps/progress.h"
 #include "core/error.h"
 #include "solver/run.h"
@@ -20,12 +21,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kMillimetres = 1e3;
 constexpr double kVerdictSeconds = 10.0;
 // A scene at rest is watched a little longer, so that creep means something and a rest that was none is seen.
-constexpr double kWatch_s = 0.5;
+constexpr double kVerdictWatch_s = 0.5;
 
-constexpr std::string_view kExamples = R"help(a line of the input:
+constexpr std::string_view kVerdictExamples = R"help(a line of the input:
   {"id": "a", "config": "(010)-(010)-(011)", "mu": 0.4, "gravity_tilt_deg": 5, "gravity_direction_deg": 90,
    "offsets_m": [{"row": 1, "position": 2, "dx": 0.002, "dy": 0}], "lower_m": [{"row": 0, "position": 2, "by": 0.0003}]}
   id and config are needed; rows count from 0, positions from 1; expect is carried along: {"stands": true, "clear": true}
@@ -45,7 +45,7 @@ Verdict judge(const VerdictLine& line, double seconds) {
   options.seconds = seconds;
   options.stopWhenFallen = true;
   options.stopWhenAtRest = true;
-  options.secondsAfterRest = kWatch_s;
+  options.secondsAfterRest = kVerdictWatch_s;
   Verdict verdict;
   try {
     Simulation simulation(line.scene);
@@ -91,17 +91,8 @@ Json verdictJson(const VerdictLine& line, const Verdict& verdict) {
   return json;
 }
 
-bool isTrue(const Json& object, const char* key) {
-  return object.is_object() && object.contains(key) && object.at(key).is_boolean() && object.at(key).get<bool>();
-}
-
-// Whether a line is judged: its expectation is clear and says yes or no.
-bool isClear(const VerdictLine& line) {
-  return isTrue(line.expect, "clear") && line.expect.contains("stands") && line.expect.at("stands").is_boolean();
-}
-
 // Prints how many clear lines agree; returns whether all do.
-bool printAgreement(const std::vector<VerdictLine>& lines, const std::vector<Verdict>& verdicts) {
+bool printVerdictAgreement(const std::vector<VerdictLine>& lines, const std::vector<Verdict>& verdicts) {
   struct Count {
     std::size_t clear = 0;
     std::size_t agree = 0;
@@ -111,7 +102,7 @@ bool printAgreement(const std::vector<VerdictLine>& lines, const std::vector<Ver
   std::string differing;
   for (std::size_t i = 0; i < lines.size(); ++i) {
     if (!isClear(lines[i])) continue;
-    const bool expected = isTrue(lines[i].expect, "stands");
+    const bool expected = lines[i].expect.at("stands").get<bool>();
     Count& count = expected ? stands : falls;
     ++count.clear;
     const bool diverged = !verdicts[i].divergence.empty();
@@ -133,7 +124,7 @@ bool printAgreement(const std::vector<VerdictLine>& lines, const std::vector<Ver
   return differing.empty();
 }
 
-std::vector<VerdictLine> readFile(const std::string& file) {
+std::vector<VerdictLine> readVerdictFile(const std::string& file) {
   if (file == "-") return readVerdictLines(std::cin, "standard input");
   std::ifstream stream(file);
   if (!stream) throw InputError(fmt::format("{}: cannot be read", onOneLine(file)));
@@ -152,12 +143,12 @@ CLI::App* defineVerdict(CLI::App& program, VerdictCommand& command) {
       "--check", command.check,
       "prints on standard error how many verdicts agree with expect where that is clear; exit code 1 if one differs");
   wrapDescriptions(*verdict);
-  verdict->footer(std::string(kExamples));
+  verdict->footer(std::string(kVerdictExamples));
   return verdict;
 }
 
 int executeVerdict(const VerdictCommand& command) {
-  std::vector<VerdictLine> lines = readFile(command.file);
+  std::vector<VerdictLine> lines = readVerdictFile(command.file);
   for (VerdictLine& line : lines) applyPhysicsOptions(command.physics, line.scene.settings);
   if (command.check && std::none_of(lines.begin(), lines.end(), isClear)) {
     throw InputError("--check: found no line with a clear expectation, allowed is at least one");
@@ -170,7 +161,7 @@ int executeVerdict(const VerdictCommand& command) {
   for (std::size_t i = 0; i < lines.size(); ++i) output += verdictJson(lines[i], verdicts[i]).dump() + '\n';
   std::cout << output << std::flush;
   int exitCode = 0;
-  if (command.check && !printAgreement(lines, verdicts)) exitCode = 1;
+  if (command.check && !printVerdictAgreement(lines, verdicts)) exitCode = 1;
   for (std::size_t i = 0; i < lines.size(); ++i) {
     if (verdicts[i].divergence.empty()) continue;
     fmt::print(stderr, "springtower: line {}, {}: {}\n", lines[i].number, onOneLine(lines[i].id), verdicts[i].divergence);

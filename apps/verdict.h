@@ -36,6 +36,9 @@ struct VerdictLine {
 /// bit codes with a typo, ids that appear twice.
 std::vector<VerdictLine> readVerdictLines(std::istream& input, const std::string& source);
 
+/// Whether a line is judged: its expectation is clear and says yes or no.
+bool isClear(const VerdictLine& line);
+
 /// Adds the command to the program.
 CLI::App* defineVerdict(CLI::App& program, VerdictCommand& command);
 

@@ -131,4 +131,10 @@ std::vector<VerdictLine> readVerdictLines(std::istream& input, const std::string
   return lines;
 }
 
+bool isClear(const VerdictLine& line) {
+  const Json& expect = line.expect;
+  return expect.is_object() && expect.contains("clear") && expect.at("clear") == true && expect.contains("stands") &&
+         expect.at("stands").is_boolean();
+}
+
 }  // namespace springtower

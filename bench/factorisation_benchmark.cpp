@@ -13,8 +13,8 @@
 namespace springtower {
 namespace {
 
-constexpr std::int32_t kRows = 18;
-constexpr std::int32_t kNodes = 3 * kRows;
+constexpr std::int32_t kFactorisedRows = 18;
+constexpr std::int32_t kNodes = 3 * kFactorisedRows;
 constexpr auto kNode = static_cast<Eigen::Index>(kNodeSize);
 
 struct TowerMatrix {

@@ -52,7 +52,7 @@ PeerPush readPush(std::size_t blocks) {
   push.block = static_cast<std::size_t>(values[0]);
   if (push.block >= blocks)
     throw std::runtime_error("found a push on block " + std::to_string(push.block) + ", which there is not");
-  for (std::size_t k = 0; k < 3; ++k) push.force[k] = values[k + 1] * kPeerUnits_1_kg * kPeerUnits_1_m;
+  for (std::size_t k = 0; k < 3; ++k) push.force[k] = values[k + 1] * kPeerUnitsPerKilogram * kPeerUnitsPerMetre;
   return push;
 }
 
@@ -69,19 +69,19 @@ PeerScene readPeerScene() {
   std::size_t blocks = 0;
   std::istringstream head(readLine());
   head >> blocks >> scene.substeps >> scene.iterations >> scene.frame_s >> scene.friction;
-  read(head, scene.gravity, kPeerUnits_1_m);
+  read(head, scene.gravity, kPeerUnitsPerMetre);
   head >> scene.floor;
   if (!head || blocks == 0 || scene.substeps < 1) throw std::runtime_error("standard input is no scene of springtower chart");
   for (std::size_t b = 0; b < blocks; ++b) {
     std::istringstream line(readLine());
     PeerBlock block{};
-    read(line, block.centre, kPeerUnits_1_m);
+    read(line, block.centre, kPeerUnitsPerMetre);
     read(line, block.orientation);
-    read(line, block.velocity, kPeerUnits_1_m);
+    read(line, block.velocity, kPeerUnitsPerMetre);
     read(line, block.spin);
-    read(line, block.dimensions, kPeerUnits_1_m);
+    read(line, block.dimensions, kPeerUnitsPerMetre);
     line >> block.mass;
-    block.mass *= kPeerUnits_1_kg;
+    block.mass *= kPeerUnitsPerKilogram;
     if (!line) throw std::runtime_error("standard input: block " + std::to_string(b) + " is incomplete");
     scene.blocks.push_back(block);
   }
@@ -100,9 +100,9 @@ int servePeer(const std::function<void(const PeerPush&)>& stepFrame, const std::
       numbers.assign(1, processorTime_s() - begin_s);
       read(blocks);
       for (const PeerBlock& block : blocks) {
-        for (const double value : block.centre) numbers.push_back(value / kPeerUnits_1_m);
+        for (const double value : block.centre) numbers.push_back(value / kPeerUnitsPerMetre);
         for (const double value : block.orientation) numbers.push_back(value);
-        for (const double value : block.velocity) numbers.push_back(value / kPeerUnits_1_m);
+        for (const double value : block.velocity) numbers.push_back(value / kPeerUnitsPerMetre);
         for (const double value : block.spin) numbers.push_back(value);
       }
       writeAll(numbers);

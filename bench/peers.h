@@ -12,8 +12,8 @@ namespace springtower {
 // to 1.
 
 /// Blocks of 1 x 0.33 x 0.22 units: Bullet's manual advises 0.05 to 10, ODE's lengths and masses "around 1".
-inline constexpr double kPeerUnits_1_m = 1.0 / 0.081;
-inline constexpr double kPeerUnits_1_kg = 1.0 / 0.0196;
+inline constexpr double kPeerUnitsPerMetre = 1.0 / 0.081;
+inline constexpr double kPeerUnitsPerKilogram = 1.0 / 0.0196;
 
 /// A block as it starts, and later as it lies, in the engine's units and s; quaternions w, x, y, z.
 struct PeerBlock {

@@ -37,7 +37,7 @@ Dyadic dyadic(double value) {
 
 /// The vertices of a moving polygon, as polynomials per axis.
 template <std::size_t Vertices>
-struct MovingPolygon {
+struct ExactPolygon {
   std::array<std::array<Linear, 3>, Vertices> position;
   std::array<std::array<Quadratic, 3>, Vertices> turn;  ///< cross product of a vertex and the next one
 };
@@ -81,7 +81,7 @@ bool scalePoints(const std::array<const MovingPoint*, 4>& points, ScaledPoints& 
 /// The polygon whose vertex i is point pairs[i].first minus point pairs[i].second.
 template <std::size_t Vertices>
 void buildPolygon(const ScaledPoints& points, const std::array<std::pair<std::size_t, std::size_t>, Vertices>& pairs,
-                  MovingPolygon<Vertices>& polygon) {
+                  ExactPolygon<Vertices>& polygon) {
   for (std::size_t i = 0; i < Vertices; ++i)
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const auto [head, tail] = pairs[i];
@@ -99,7 +99,7 @@ void buildPolygon(const ScaledPoints& points, const std::array<std::pair<std::si
 
 /// det(vertex 0, vertex 1, vertex 2). Zero when the polygon and the origin lie in one plane.
 template <std::size_t Vertices>
-Cubic coplanarityCubic(const MovingPolygon<Vertices>& polygon) {
+Cubic coplanarityCubic(const ExactPolygon<Vertices>& polygon) {
   Cubic cubic;
   for (std::size_t axis = 0; axis < 3; ++axis)
     for (std::size_t i = 0; i <= 2; ++i)
@@ -114,7 +114,7 @@ Cubic coplanarityCubic(const MovingPolygon<Vertices>& polygon) {
 /// and all zero in the others; (2) on a line that misses the origin: the turns around it sum to zero, and are not all zero; (3)
 /// on a line through the origin: all turns are zero and the coordinates decide; (4) a single point: the same.
 template <std::size_t Vertices, class Root>
-bool holdsOrigin(const MovingPolygon<Vertices>& polygon, Root& time) {
+bool holdsOrigin(const ExactPolygon<Vertices>& polygon, Root& time) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     int sum = 0;
     for (std::size_t i = 0; i < Vertices; ++i) sum += signAtRoot(polygon.position[i][axis], time);
@@ -137,7 +137,7 @@ TimeOfImpact timeOfImpact(const std::array<const MovingPoint*, 4>& points,
                           const std::array<std::pair<std::size_t, std::size_t>, Vertices>& pairs) {
   ScaledPoints scaled;
   if (!scalePoints(points, scaled)) return {true, 0.0};  // nothing can be excluded
-  MovingPolygon<Vertices> polygon;
+  ExactPolygon<Vertices> polygon;
   buildPolygon(scaled, pairs, polygon);
 
   TimeOfImpact earliest{false, 1.0};

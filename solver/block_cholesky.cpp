@@ -17,11 +17,11 @@ struct Row {
   Quad high;
 };
 
-SPRINGTOWER_INLINE void load(const float* from, Row& to) {
+SPRINGTOWER_INLINE void loadRow(const float* from, Row& to) {
   __builtin_memcpy(&to.low, from, sizeof to.low);
   __builtin_memcpy(&to.high, from + 8, sizeof to.high);
 }
-SPRINGTOWER_INLINE void store(const Row& from, float* to) {
+SPRINGTOWER_INLINE void storeRow(const Row& from, float* to) {
   __builtin_memcpy(to, &from.low, sizeof from.low);
   __builtin_memcpy(to + 8, &from.high, sizeof from.high);
 }
@@ -38,16 +38,16 @@ SPRINGTOWER_INLINE void add(float factor, const Row& row, Row& to) {
 SPRINGTOWER_INLINE void subtractProduct(const float* w, const float* t, float* c) {
   for (std::size_t i = 0; i < kNodeSize; i += 2) {
     Row first, second;
-    load(c + kNodeSize * i, first);
-    load(c + kNodeSize * (i + 1), second);
+    loadRow(c + kNodeSize * i, first);
+    loadRow(c + kNodeSize * (i + 1), second);
     for (std::size_t k = 0; k < kNodeSize; ++k) {
       Row row;
-      load(t + kNodeSize * k, row);
+      loadRow(t + kNodeSize * k, row);
       subtract(w[kNodeSize * i + k], row, first);
       subtract(w[kNodeSize * (i + 1) + k], row, second);
     }
-    store(first, c + kNodeSize * i);
-    store(second, c + kNodeSize * (i + 1));
+    storeRow(first, c + kNodeSize * i);
+    storeRow(second, c + kNodeSize * (i + 1));
   }
 }
 
@@ -57,10 +57,10 @@ SPRINGTOWER_INLINE void product(const float* s, const float* t, float* c) {
     Row sum{};
     for (std::size_t k = 0; k < kNodeSize; ++k) {
       Row row;
-      load(t + kNodeSize * k, row);
+      loadRow(t + kNodeSize * k, row);
       add(s[kNodeSize * i + k], row, sum);
     }
-    store(sum, c + kNodeSize * i);
+    storeRow(sum, c + kNodeSize * i);
   }
 }
 
@@ -79,18 +79,18 @@ SPRINGTOWER_INLINE bool invert(float* m) {
     const float inverse = 1.0F / pivot;
     m[kNodeSize * p + p] = 1.0F;
     Row row;
-    load(m + kNodeSize * p, row);
+    loadRow(m + kNodeSize * p, row);
     row.low *= inverse;
     row.high *= inverse;
-    store(row, m + kNodeSize * p);
+    storeRow(row, m + kNodeSize * p);
     for (std::size_t i = 0; i < kNodeSize; ++i) {
       if (i == p) continue;
       const float factor = m[kNodeSize * i + p];
       m[kNodeSize * i + p] = 0.0F;
       Row other;
-      load(m + kNodeSize * i, other);
+      loadRow(m + kNodeSize * i, other);
       subtract(factor, row, other);
-      store(other, m + kNodeSize * i);
+      storeRow(other, m + kNodeSize * i);
     }
   }
   return positive;
@@ -99,13 +99,13 @@ SPRINGTOWER_INLINE bool invert(float* m) {
 // y -= t^T x
 SPRINGTOWER_INLINE void subtractTransposed(const float* t, const float* x, float* y) {
   Row sum;
-  load(y, sum);
+  loadRow(y, sum);
   for (std::size_t k = 0; k < kNodeSize; ++k) {
     Row row;
-    load(t + kNodeSize * k, row);
+    loadRow(t + kNodeSize * k, row);
     subtract(x[k], row, sum);
   }
-  store(sum, y);
+  storeRow(sum, y);
 }
 
 // The sum of each of four quads' lanes.
@@ -287,10 +287,10 @@ void solve(BlockCholesky& matrix, std::span<double> values) {
     const float* inverse = blockOf(matrix.diagonal, j);
     for (std::size_t k = 0; k < kNodeSize; ++k) {
       Row row;
-      load(inverse + kNodeSize * k, row);
+      loadRow(inverse + kNodeSize * k, row);
       add(mine[k], row, sum);
     }
-    store(sum, scaled);
+    storeRow(sum, scaled);
     const auto last = static_cast<std::size_t>(matrix.columnStart[j + 1]);
     for (auto i = static_cast<std::size_t>(matrix.columnStart[j]); i < last; ++i) {
       subtractTimes(blockOf(matrix.lower, i), y + kNodeSize * static_cast<std::size_t>(matrix.row[i]), scaled);

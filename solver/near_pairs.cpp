@@ -13,10 +13,6 @@ Key keyOf(const NearPair& pair) {
   return {pair.a, pair.b};
 }
 
-bool sleeps(const Simulation& simulation, std::int32_t block) {
-  return block < 0 || simulation.asleep[static_cast<std::size_t>(block)] != 0;
-}
-
 // Whether a pair met before is kept though the sweep did not report it: nothing moves in it.
 bool dormant(const Simulation& simulation, const NearPair& pair) {
   return sleeps(simulation, pair.a) && sleeps(simulation, pair.b);

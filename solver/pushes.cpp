@@ -24,10 +24,6 @@ double weightOf(const Simulation& simulation, std::int32_t block) {
   return simulation.model.mass[static_cast<std::size_t>(block)] * simulation.scene.gravity.magnitude;
 }
 
-bool sleeps(const Simulation& simulation, std::int32_t block) {
-  return block < 0 || simulation.asleep[static_cast<std::size_t>(block)] != 0;
-}
-
 // How block a of a pair is pushed now.
 Push pushOnA(const Simulation& simulation, const NearPair& pair) {
   Push push = pushOnUpper(simulation, pair.manifold);

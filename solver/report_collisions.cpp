@@ -13,7 +13,7 @@ namespace springtower {
 namespace {
 
 // Edges whose directions are nearer to parallel than this (sine of the angle) do not collide; their ends do, with faces.
-constexpr double kParallelSine = 0.01;
+constexpr double kParallelEdgeSine = 0.01;
 // The straight paths of one block's corners. A disabled block does not move.
 struct Path {
   std::int32_t block;
@@ -36,16 +36,16 @@ struct Path {
 };
 
 // The box that a few corners of a block sweep (report 4.4.3).
-struct Box {
+struct AlignedBox {
   std::array<double, 3> lower;
   std::array<double, 3> upper;
 };
 
 template <std::size_t Count>
-Box boxOf(const Path& path, const std::array<int, Count>& corners) {
+AlignedBox boxOf(const Path& path, const std::array<int, Count>& corners) {
   const std::array<const double*, 3> low = {path.low.x, path.low.y, path.low.z};
   const std::array<const double*, 3> high = {path.high.x, path.high.y, path.high.z};
-  Box box;
+  AlignedBox box;
   for (std::size_t a = 0; a < 3; ++a) {
     box.lower[a] = low[a][corners[0]];
     box.upper[a] = high[a][corners[0]];
@@ -57,7 +57,7 @@ Box boxOf(const Path& path, const std::array<int, Count>& corners) {
   return box;
 }
 
-bool overlap(const Box& p, const Box& q) {
+bool overlap(const AlignedBox& p, const AlignedBox& q) {
   bool all = true;
   for (std::size_t a = 0; a < 3; ++a) all = all && p.lower[a] <= q.upper[a] && q.lower[a] <= p.upper[a];
   return all;
@@ -86,7 +86,7 @@ std::array<double, 3> triangleWeights(const Vec3& point, const Vec3& p1, const V
   return weight;
 }
 
-bool anyCornerNear(const Path& points, const Box& box) {
+bool anyCornerNear(const Path& points, const AlignedBox& box) {
   return std::any_of(kAllCorners.begin(), kAllCorners.end(), [&](int c) { return overlap(boxOf(points, std::array{c}), box); });
 }
 
@@ -94,10 +94,10 @@ bool collidePointsWithFaces(IslandStep& step, const Path& points, const Path& fa
   Counters& counters = step.counters;
   counters.candidateTests += kCorners * kTriangles;
   bool any = false;
-  Box pointsBox = boxOf(points, kAllCorners);
+  AlignedBox pointsBox = boxOf(points, kAllCorners);
   if (!anyCornerNear(points, boxOf(faces, kAllCorners))) return false;
   for (const auto& triangle : kTriangleCorners) {
-    Box triangleBox = boxOf(faces, triangle);
+    AlignedBox triangleBox = boxOf(faces, triangle);
     if (!overlap(triangleBox, pointsBox)) continue;
     for (int c = 0; c < static_cast<int>(kCorners); ++c) {
       if (!overlap(triangleBox, boxOf(points, std::array{c}))) continue;
@@ -150,9 +150,9 @@ bool collideEdges(IslandStep& step, const Path& a, const Path& b, const Vec3& fr
   Counters& counters = step.counters;
   counters.candidateTests += kEdges * kEdges;
   bool any = false;
-  Box boxB = boxOf(b, kAllCorners);
+  AlignedBox boxB = boxOf(b, kAllCorners);
   for (const auto& edgeA : kEdgeCorners) {
-    Box boxEdgeA = boxOf(a, edgeA);
+    AlignedBox boxEdgeA = boxOf(a, edgeA);
     if (!overlap(boxEdgeA, boxB)) continue;
     for (const auto& edgeB : kEdgeCorners) {
       if (!overlap(boxEdgeA, boxOf(b, edgeB))) continue;
@@ -163,7 +163,7 @@ bool collideEdges(IslandStep& step, const Path& a, const Path& b, const Vec3& fr
       const MovingPoint b1 = b.corner(edgeB[1]);
       // Two lines have no front. Here it lies where the first block is from the second, as for any two convex bodies that touch.
       const Vec3 across = (a1.start - a0.start).cross(b1.start - b0.start);
-      const double parallel = kParallelSine * (a1.start - a0.start).norm() * (b1.start - b0.start).norm();
+      const double parallel = kParallelEdgeSine * (a1.start - a0.start).norm() * (b1.start - b0.start).norm();
       if (across.squaredNorm() < parallel * parallel) continue;
       const bool forwards = across.dot(fromBToA) >= 0.0;
       if (!passesToBack(forwards ? coplanarityCubic(a0, a1, b0, b1) : coplanarityCubic(a1, a0, b0, b1))) continue;

@@ -50,6 +50,11 @@ void stepFrame(Simulation& simulation);
 /// before forget it for this block; velocities in `state` are not to be changed behind their back.
 void kick(Simulation& simulation, std::size_t block, const Vec3& velocity);
 
+/// Whether a block sleeps; the floor, numbered -1, always does.
+inline bool sleeps(const Simulation& simulation, std::int32_t block) {
+  return block < 0 || simulation.asleep[static_cast<std::size_t>(block)] != 0;
+}
+
 /// Whether every block has been at rest (speed of its rigid motion, force and torque balance) for the time the settings name.
 bool atRest(const Simulation& simulation);
 

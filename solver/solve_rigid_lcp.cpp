@@ -155,12 +155,12 @@ class Pivoting {
 };
 
 // The contact and direction of a row: first all normals, then each contact's two tangents.
-struct Row {
+struct ConstraintRow {
   std::size_t contact;
   std::size_t direction;
 };
 
-Row rowAt(std::size_t row, std::size_t contacts) {
+ConstraintRow rowAt(std::size_t row, std::size_t contacts) {
   if (row < contacts) return {row, 0};
   return {(row - contacts) / 2, 1 + (row - contacts) % 2};
 }
@@ -193,7 +193,7 @@ void assemble(IslandStep& step, RigidIsland& island) {
   s.clamped.reserve(rows);
   s.placeOf.assign(rows, -1);
   for (std::size_t i = 0; i < rows; ++i) {
-    const Row row = rowAt(i, contacts);
+    const ConstraintRow row = rowAt(i, contacts);
     const RigidContact& contact = island.contacts[row.contact];
     s.velocity[i] = relativeVelocity(island, contact).dot(contact.direction[row.direction]);
     if (row.direction == 0) {
@@ -201,7 +201,7 @@ void assemble(IslandStep& step, RigidIsland& island) {
       s.most[i] = std::numeric_limits<double>::infinity();
     }
     for (std::size_t j = 0; j <= i; ++j) {
-      const Row column = rowAt(j, contacts);
+      const ConstraintRow column = rowAt(j, contacts);
       s.matrix[i * rows + j] = s.matrix[j * rows + i] =
           coupling(island, contact, contact.direction[row.direction], island.contacts[column.contact],
                    island.contacts[column.contact].direction[column.direction]);
@@ -215,7 +215,7 @@ void boundTangents(RigidIsland& island) {
   PivotingSpace& s = island.pivoting;
   const std::size_t contacts = island.contacts.size();
   for (std::size_t row = contacts; row < 3 * contacts; ++row) {
-    const Row at = rowAt(row, contacts);
+    const ConstraintRow at = rowAt(row, contacts);
     s.most[row] = island.contacts[at.contact].coefficient * s.impulse[at.contact];
     s.least[row] = -s.most[row];
   }

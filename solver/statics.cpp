@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kReach = 0.5;        // gaps looked at, in heights of the lowest block
 constexpr double kSettledGap = 1e-6;  // gaps below this are closed, in mean heights
-constexpr double kMostTurn = 5.0 * std::numbers::pi / 180.0;
+constexpr double kMostStaticTurn = 5.0 * std::numbers::pi / 180.0;
 constexpr double kMostSinking = 0.5;  // in mean heights
 constexpr double kMostPull = 1e6;     // in mean block weights; what exceeds it is unlimited
 constexpr double kNoLoad = 1e-6;      // in mean block weights
@@ -59,7 +59,7 @@ std::optional<Settlement> settle(const StaticsModel& model) {
   Settlement settlement;
   for (std::size_t b = 0; b < model.blockCount(); ++b) {
     const Vec6 motion = price.segment<6>(static_cast<Eigen::Index>(6 * b));
-    if (motion.tail<3>().norm() > kMostTurn || motion[2] > kMostSinking) return {};
+    if (motion.tail<3>().norm() > kMostStaticTurn || motion[2] > kMostSinking) return {};
     settlement.motion_m = std::max(settlement.motion_m, motion.head<3>().norm() * model.lengthUnit_m);
   }
   for (const ForcePoint& point : model.points) {

@@ -6,7 +6,7 @@
 namespace springtower {
 namespace {
 
-constexpr int kMostSteps = 200;
+constexpr int kMostRefinements = 200;
 constexpr double kMostImbalance = 1e-9;
 constexpr double kDamping = 1e-10;  // keeps the matrix regular where a block touches nothing; far below any stiffness
 constexpr double kLeastStep = 1e-10;
@@ -109,7 +109,7 @@ std::optional<std::vector<Vec3>> leastSquaresForces(const StaticsModel& model, s
   Eigen::VectorXd displacement = Eigen::VectorXd::Zero(load.size());
   double value = dual.evaluate(displacement);
   dual.pretendAllStick();
-  for (int step = 0; step < kMostSteps; ++step) {
+  for (int step = 0; step < kMostRefinements; ++step) {
     const Eigen::VectorXd imbalance = dual.imbalance();
     if (imbalance.cwiseAbs().maxCoeff() <= kMostImbalance) return dual.forces();
     const Eigen::VectorXd direction = dual.newtonStep();

@@ -9,14 +9,14 @@ namespace springtower {
 
 namespace {
 
-struct Bounds {
+struct BlockBounds {
   std::array<double, 3> lower;
   std::array<double, 3> upper;
 };
 
-Bounds boundsOf(const BlockSpec& block) {
+BlockBounds boundsOf(const BlockSpec& block) {
   const Eigen::Matrix3d rotation = block.orientation.toRotationMatrix();
-  Bounds bounds;
+  BlockBounds bounds;
   for (int a = 0; a < 3; ++a) {
     double reach = 0.0;
     for (int k = 0; k < 3; ++k) reach += std::abs(rotation(a, k)) * 0.5 * block.dimensions[k];
@@ -26,12 +26,12 @@ Bounds boundsOf(const BlockSpec& block) {
   return bounds;
 }
 
-double overlapLength(const Bounds& a, const Bounds& b, std::size_t axis) {
+double overlapLength(const BlockBounds& a, const BlockBounds& b, std::size_t axis) {
   return std::min(a.upper[axis], b.upper[axis]) - std::max(a.lower[axis], b.lower[axis]);
 }
 
 // The highest blocks below each block that its outline covers: those whose tops are within half a block of the highest such top.
-std::vector<std::vector<std::size_t>> supportsOf(const std::vector<Bounds>& bounds) {
+std::vector<std::vector<std::size_t>> supportsOf(const std::vector<BlockBounds>& bounds) {
   const std::size_t count = bounds.size();
   std::vector<std::size_t> order(count);
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -75,7 +75,7 @@ struct LevelMoments {
 };
 
 // How much the tops of a block's supports differ, m.
-double unevenness(const std::vector<Bounds>& bounds, const std::vector<std::size_t>& supports) {
+double unevenness(const std::vector<BlockBounds>& bounds, const std::vector<std::size_t>& supports) {
   if (supports.empty()) return 0.0;
   double lowest = 1e300;
   double highest = -1e300;
@@ -87,7 +87,8 @@ double unevenness(const std::vector<Bounds>& bounds, const std::vector<std::size
 }
 
 // How far a block is above the highest of its supports, or the floor, if none of its sides is level; else 0.
-double askewFall(const Scene& scene, const std::vector<Bounds>& bounds, std::size_t b, const std::vector<std::size_t>& supports) {
+double askewFall(const Scene& scene, const std::vector<BlockBounds>& bounds, std::size_t b,
+                 const std::vector<std::size_t>& supports) {
   constexpr double kLevel = 0.9998;  // cosine of one degree
   if (scene.blocks[b].orientation.toRotationMatrix().row(2).cwiseAbs().maxCoeff() > kLevel) return 0.0;
   if (supports.empty() && !scene.floor) return 0.0;
@@ -111,7 +112,7 @@ constexpr double kSeriesWithBlocks = 0.5;  // contacts and blocks bend alike
 
 LoadEstimate estimateLoads(const Scene& scene) {
   const std::size_t count = scene.blocks.size();
-  std::vector<Bounds> bounds(count);
+  std::vector<BlockBounds> bounds(count);
   for (std::size_t b = 0; b < count; ++b) bounds[b] = boundsOf(scene.blocks[b]);
   const auto below = supportsOf(bounds);
 
@@ -162,7 +163,7 @@ LoadEstimate estimateLoads(const Scene& scene) {
       upper[a] = std::max(upper[a], bounds[b].upper[a]);
     }
     LevelMoments& here = moments[level[b]];
-    const auto addOverlap = [&](const Bounds& support) {
+    const auto addOverlap = [&](const BlockBounds& support) {
       here.points += kPointsPerOverlap;
       for (std::size_t a = 0; a < 2; ++a) {
         here.add(std::max(bounds[b].lower[a], support.lower[a]), std::min(bounds[b].upper[a], support.upper[a]), a);
