@@ -15,7 +15,7 @@ namespace {
 
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 ProgramResult chart(std::vector<std::string> arguments) {
   arguments.insert(arguments.begin(), "chart");

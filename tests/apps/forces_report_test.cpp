@@ -10,7 +10,7 @@
 namespace springtower {
 namespace {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 using Vec3 = Eigen::Vector3d;
 
 Json forcesOf(std::vector<std::string> arguments) {

@@ -19,20 +19,20 @@ namespace {
 using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 ProgramResult profile(std::vector<std::string> arguments) {
   arguments.insert(arguments.begin(), "profile");
   return runProgram("springtower", arguments);
 }
 
-struct BadArguments {
+struct BadProfileArguments {
   std::string name;
   std::vector<std::string> arguments;
   std::string message;  // part of what must be said
 };
 
-class ProfileRefusesTest : public ::testing::TestWithParam<BadArguments> {};
+class ProfileRefusesTest : public ::testing::TestWithParam<BadProfileArguments> {};
 
 TEST_P(ProfileRefusesTest, WithExitCodeTwo) {
   const ProgramResult result = profile(GetParam().arguments);
@@ -44,17 +44,17 @@ TEST_P(ProfileRefusesTest, WithExitCodeTwo) {
 
 INSTANTIATE_TEST_SUITE_P(
     Profile, ProfileRefusesTest,
-    ::testing::Values(BadArguments{"UnknownScene", {"--scenes", "rest,flood"}, "'flood'"},
-                      BadArguments{"UnknownMethod", {"--methods", "magic"}, "'magic'"},
-                      BadArguments{"RowsThatAreNoNumbers", {"--rows", "3,six"}, "'six'"},
-                      BadArguments{"HalfARow", {"--rows", "3.5"}, "whole numbers"},
-                      BadArguments{"NoRows", {"--rows", "0"}, "1 to 2000"},
-                      BadArguments{"NegativeTolerance", {"--tolerances", "-1e-5"}, "--tolerances"},
-                      BadArguments{"NoThreads", {"--threads", "0"}, "--threads"},
-                      BadArguments{"TooFewFrames", {"--frames", "1"}, "--frames"},
-                      BadArguments{"OutIsAFile", {"--quick", "--out", "/dev/null"}, "--out"},
-                      BadArguments{"FromWithoutOut", {"--from", "x.json"}, "--out"},
-                      BadArguments{"FromNothing", {"--from", "no-such-file.json", "--out", "/tmp"}, "no-such-file.json"}),
+    ::testing::Values(BadProfileArguments{"UnknownScene", {"--scenes", "rest,flood"}, "'flood'"},
+                      BadProfileArguments{"UnknownMethod", {"--methods", "magic"}, "'magic'"},
+                      BadProfileArguments{"RowsThatAreNoNumbers", {"--rows", "3,six"}, "'six'"},
+                      BadProfileArguments{"HalfARow", {"--rows", "3.5"}, "whole numbers"},
+                      BadProfileArguments{"NoRows", {"--rows", "0"}, "1 to 2000"},
+                      BadProfileArguments{"NegativeTolerance", {"--tolerances", "-1e-5"}, "--tolerances"},
+                      BadProfileArguments{"NoThreads", {"--threads", "0"}, "--threads"},
+                      BadProfileArguments{"TooFewFrames", {"--frames", "1"}, "--frames"},
+                      BadProfileArguments{"OutIsAFile", {"--quick", "--out", "/dev/null"}, "--out"},
+                      BadProfileArguments{"FromWithoutOut", {"--from", "x.json"}, "--out"},
+                      BadProfileArguments{"FromNothing", {"--from", "no-such-file.json", "--out", "/tmp"}, "no-such-file.json"}),
     [](const auto& bad) { return bad.param.name; });
 
 TEST(Profile, RefusesAnotherFileThanAProfile) {
@@ -204,7 +204,7 @@ TEST_F(ProfileFiles, ChartsAreDrawnAgainToTheByte) {
 }
 
 // Width and height in a PNG's header, pixels.
-std::pair<std::uint32_t, std::uint32_t> sizeOfPng(const std::string& content) {
+std::pair<std::uint32_t, std::uint32_t> pngSize(const std::string& content) {
   const auto number = [&](std::size_t at) {
     std::uint32_t value = 0;
     for (std::size_t i = 0; i < 4; ++i) value = (value << 8U) | static_cast<unsigned char>(content[at + i]);
@@ -224,7 +224,7 @@ TEST_F(ProfileFiles, ChartsAreWholeFiles) {
     ASSERT_GT(png.size(), 1000U);
     EXPECT_EQ(png.substr(1, 3), "PNG");
     EXPECT_EQ(png.substr(png.size() - 8, 4), "IEND");
-    const auto [width, height] = sizeOfPng(png);
+    const auto [width, height] = pngSize(png);
     EXPECT_NE(svg.find("width=\"" + std::to_string(width / 3) + "pt\" height=\"" + std::to_string(height / 3) + "pt\""),
               std::string::npos);
   }

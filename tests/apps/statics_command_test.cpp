@@ -18,7 +18,7 @@ ProgramResult statics(std::vector<std::string> arguments, std::string_view input
   return runProgram("springtower", arguments, input);
 }
 
-Json reportOf(std::vector<std::string> arguments) {
+Json staticsOf(std::vector<std::string> arguments) {
   const ScratchFolder scratch;
   arguments.insert(arguments.end(), {"--report", scratch.file("report.json")});
   const ProgramResult result = statics(arguments);
@@ -39,7 +39,7 @@ TEST(StaticsCommand, PrintsVerdictMarginAndATableOfTheBlocks) {
 }
 
 TEST(StaticsCommand, ReportsAllFiguresAsJson) {
-  const Json report = reportOf({"(111)-(1L1)-(010)", "--pull", "1:2,-x", "--pull", "0,-z"});
+  const Json report = staticsOf({"(111)-(1L1)-(010)", "--pull", "1:2,-x", "--pull", "0,-z"});
   EXPECT_EQ(report.at("stands"), true);
   EXPECT_EQ(report.at("leans"), false);
   EXPECT_EQ(report.at("friction"), 0.4);
@@ -62,42 +62,44 @@ TEST(StaticsCommand, ReportsAllFiguresAsJson) {
 
 TEST(StaticsCommand, SaysWhenASceneFallsOrLeans) {
   // Two blocks meet at a corner: no gravity that friction bears brings the upper one's weight there.
-  const Json falls = reportOf({"(001)-(100)"});
+  const Json falls = staticsOf({"(001)-(100)"});
   EXPECT_EQ(falls.at("stands"), false);
   EXPECT_TRUE(falls.at("tilt_deg").is_null());
   EXPECT_TRUE(falls.at("forces_are").is_null());
   EXPECT_THAT(statics({"(001)-(100)"}).output, HasSubstr("verdict     falls"));
   // Four blocks on one beside them: their centre is 36.4 mm above its edge and 13.8 mm beside it.
-  const Json nearly = reportOf({"(001)-(010)-(010)-(010)-(010)"});
+  const Json nearly = staticsOf({"(001)-(010)-(010)-(010)-(010)"});
   EXPECT_EQ(nearly.at("stands"), false);
   EXPECT_NEAR(nearly.at("tilt_deg").get<double>(), -std::atan(13.8 / 36.4) * 57.29578, 0.01);
   EXPECT_NEAR(nearly.at("tilt_direction_deg").get<double>(), 90.0, 0.01);
-  const Json leans = reportOf({"(1L1)-(010)-(010)", "--remove", "0:1"});
+  const Json leans = staticsOf({"(1L1)-(010)-(010)", "--remove", "0:1"});
   EXPECT_EQ(leans.at("stands"), true);
   EXPECT_EQ(leans.at("leans"), true);
   EXPECT_NEAR(leans.at("settlement_mm").get<double>(), 0.1525, 0.001);
 }
 
 TEST(StaticsCommand, TakesTheOptionsOfARun) {
-  EXPECT_NEAR(reportOf({"(010)", "--mu", "0.2", "--no-removals"}).at("tilt_deg").get<double>(), std::atan(0.2) * 57.29578, 0.01);
-  EXPECT_NEAR(reportOf({"(010)", "--gravity-tilt", "10", "--gravity-direction", "90"}).at("tilt_deg").get<double>(), 11.80, 0.01);
-  EXPECT_FALSE(reportOf({"(010)", "--no-removals"}).at("blocks").at(0).contains("removal"));
-  const Json one = reportOf({"tower:4", "--heights-sigma", "0.0002", "--mass-sigma", "0.001", "--seed", "1", "--threads", "1"});
-  const Json two = reportOf({"tower:4", "--heights-sigma", "0.0002", "--mass-sigma", "0.001", "--seed", "2"});
+  EXPECT_NEAR(staticsOf({"(010)", "--mu", "0.2", "--no-removals"}).at("tilt_deg").get<double>(), std::atan(0.2) * 57.29578, 0.01);
+  EXPECT_NEAR(staticsOf({"(010)", "--gravity-tilt", "10", "--gravity-direction", "90"}).at("tilt_deg").get<double>(), 11.80,
+              0.01);
+  EXPECT_FALSE(staticsOf({"(010)", "--no-removals"}).at("blocks").at(0).contains("removal"));
+  const Json one = staticsOf({"tower:4", "--heights-sigma", "0.0002", "--mass-sigma", "0.001", "--seed", "1", "--threads", "1"});
+  const Json two = staticsOf({"tower:4", "--heights-sigma", "0.0002", "--mass-sigma", "0.001", "--seed", "2"});
   EXPECT_NE(one.at("blocks"), two.at("blocks"));
-  const Json again = reportOf({"tower:4", "--heights-sigma", "0.0002", "--mass-sigma", "0.001", "--seed", "1", "--threads", "3"});
+  const Json again =
+      staticsOf({"tower:4", "--heights-sigma", "0.0002", "--mass-sigma", "0.001", "--seed", "1", "--threads", "3"});
   EXPECT_EQ(one.at("blocks"), again.at("blocks"));
   EXPECT_EQ(one.at("contacts"), again.at("contacts"));
-  EXPECT_EQ(reportOf({std::string(SPRINGTOWER_SOURCE_DIR) + "/scenes/report_t1.toml"}).at("stands"), true);
+  EXPECT_EQ(staticsOf({std::string(SPRINGTOWER_SOURCE_DIR) + "/scenes/report_t1.toml"}).at("stands"), true);
 }
 
-struct BadArguments {
+struct BadStaticsArguments {
   std::string name;
   std::vector<std::string> arguments;
   std::string message;
 };
 
-class StaticsBadArgumentsTest : public ::testing::TestWithParam<BadArguments> {};
+class StaticsBadArgumentsTest : public ::testing::TestWithParam<BadStaticsArguments> {};
 
 TEST_P(StaticsBadArgumentsTest, AreNamed) {
   const ProgramResult result = statics(GetParam().arguments);
@@ -108,19 +110,21 @@ TEST_P(StaticsBadArgumentsTest, AreNamed) {
 
 INSTANTIATE_TEST_SUITE_P(
     StaticsCommand, StaticsBadArgumentsTest,
-    ::testing::Values(BadArguments{"NoScene", {}, "SCENE is required"}, BadArguments{"Typo", {"(012)"}, "character 4"},
-                      BadArguments{"Friction", {"(010)", "--mu", "-1"}, "--mu"},
-                      BadArguments{"RemoveAbsent", {"(010)", "--remove", "0:1"}, "--remove: found '0:1'"},
-                      BadArguments{"RemoveTwice", {"(111)", "--remove", "0:1", "--remove", "0"}, "found '0' twice"},
-                      BadArguments{"RemoveAll", {"(010)", "--remove", "0"}, "found 0 blocks"},
-                      BadArguments{"PullWithoutAxis", {"(010)", "--pull", "0"}, "--pull: found '0', allowed is BLOCK,AXIS"},
-                      BadArguments{"PullAxis", {"(010)", "--pull", "0,up"}, "found the axis 'up'"},
-                      BadArguments{"PullBlock", {"(010)", "--pull", "7,x"}, "--pull: found '7'"},
-                      BadArguments{"TooMany", {"tower:400"}, "found 1200 blocks"},
-                      BadArguments{"CheckOfAScene", {"(010)", "--check"}, "--check: found the scene"},
-                      BadArguments{"OptionOfAList", {"-", "--mu", "0.3"}, "--mu: found it with a list"},
-                      BadArguments{"NoFile", {"/does/not/exist.jsonl"}, "cannot be read"},
-                      BadArguments{"Report", {"(010)", "--report", "/does/not/exist.json"}, "--report"}),
+    ::testing::Values(BadStaticsArguments{"NoScene", {}, "SCENE is required"},
+                      BadStaticsArguments{"Typo", {"(012)"}, "character 4"},
+                      BadStaticsArguments{"Friction", {"(010)", "--mu", "-1"}, "--mu"},
+                      BadStaticsArguments{"RemoveAbsent", {"(010)", "--remove", "0:1"}, "--remove: found '0:1'"},
+                      BadStaticsArguments{"RemoveTwice", {"(111)", "--remove", "0:1", "--remove", "0"}, "found '0' twice"},
+                      BadStaticsArguments{"RemoveAll", {"(010)", "--remove", "0"}, "found 0 blocks"},
+                      BadStaticsArguments{
+                          "PullWithoutAxis", {"(010)", "--pull", "0"}, "--pull: found '0', allowed is BLOCK,AXIS"},
+                      BadStaticsArguments{"PullAxis", {"(010)", "--pull", "0,up"}, "found the axis 'up'"},
+                      BadStaticsArguments{"PullBlock", {"(010)", "--pull", "7,x"}, "--pull: found '7'"},
+                      BadStaticsArguments{"TooMany", {"tower:400"}, "found 1200 blocks"},
+                      BadStaticsArguments{"CheckOfAScene", {"(010)", "--check"}, "--check: found the scene"},
+                      BadStaticsArguments{"OptionOfAList", {"-", "--mu", "0.3"}, "--mu: found it with a list"},
+                      BadStaticsArguments{"NoFile", {"/does/not/exist.jsonl"}, "cannot be read"},
+                      BadStaticsArguments{"Report", {"(010)", "--report", "/does/not/exist.json"}, "--report"}),
     [](const auto& test) { return test.param.name; });
 
 constexpr std::string_view kList =

@@ -14,7 +14,7 @@ namespace {
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 ProgramResult validate(std::vector<std::string> arguments) {
   arguments.insert(arguments.begin(), {"validate", "--oracle", std::string(SPRINGTOWER_TEST_DATA_DIR) + "/oracle", "--scenes",

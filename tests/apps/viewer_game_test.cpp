@@ -1,5 +1,6 @@
 #include "apps/viewer_game.h"
 
+#include "tests/apps/loose_tower.h"
 #include "tests/apps/viewer_play.h"
 
 #include <cmath>
@@ -12,10 +13,6 @@ namespace springtower {
 namespace {
 
 using ::testing::HasSubstr;
-
-constexpr const char* kLooseTower = "(111)-(1L1)-(111)-(111)";
-constexpr std::size_t kLooseBlock = 4;
-constexpr double kTop_m = 4 * kBlockHeight_m;
 
 TEST(ViewerGame, BlocksBelowTheTopCompleteRowMayBeTaken) {
   const Session session(bitCodeScene("(111)-(1L1)-(111)-(110)"), 2);

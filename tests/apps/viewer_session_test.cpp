@@ -4,6 +4,7 @@
 #include "apps/viewer_recording.h"
 #include "core/error.h"
 #include "solver/measures.h"
+#include "tests/apps/loose_tower.h"
 #include "tests/apps/program.h"
 #include "tests/apps/viewer_play.h"
 
@@ -17,8 +18,6 @@ namespace {
 using ::testing::HasSubstr;
 
 constexpr double kFrame_s = 1.0 / 60.0;
-constexpr const char* kLooseTower = "(111)-(1L1)-(111)-(111)";
-constexpr std::size_t kLooseBlock = 4;
 
 // A session in which something happens: a block is pushed, and friction is changed on the way.
 Session playedSession(int frames) {

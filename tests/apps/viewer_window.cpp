@@ -8,7 +8,7 @@
 namespace springtower {
 namespace {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 constexpr const char* kFirstWords = "first picture after ";
 

@@ -4,6 +4,7 @@
 #include "core/random.h"
 #include "core/scene.h"
 #include "solver/simulation.h"
+#include "tests/apps/loose_tower.h"
 
 #include <cmath>
 #include <fmt/format.h>
@@ -13,13 +14,10 @@
 namespace springtower {
 namespace {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 constexpr int kWidth = kWindowWidth;
 constexpr int kHeight = kWindowHeight;
-constexpr const char* kLooseTower = "(111)-(1L1)-(111)-(111)";
-constexpr std::size_t kLooseBlock = 4;
-constexpr double kTop_m = 4 * kBlockHeight_m;
 
 // The middle of a block's pixels; the block is seen there.
 Eigen::Vector2i middleOf(const Inspection& inspection, std::size_t block) {

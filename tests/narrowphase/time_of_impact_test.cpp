@@ -175,7 +175,7 @@ double symmetric(RandomStream& random, double size) {
   return size * (2.0 * random.uniform() - 1.0);
 }
 
-Vec3 randomVector(RandomStream& random, double size) {
+Vec3 randomPlace(RandomStream& random, double size) {
   const double x = symmetric(random, size), y = symmetric(random, size), z = symmetric(random, size);
   return {x, y, z};
 }
@@ -183,8 +183,8 @@ Vec3 randomVector(RandomStream& random, double size) {
 CollisionQuery randomQuery(RandomStream& random, double size, double motion, double offset) {
   CollisionQuery query{};
   for (MovingPoint& point : query.points) {
-    point.start = randomVector(random, size) + Vec3::Constant(offset);
-    point.end = point.start + randomVector(random, motion);
+    point.start = randomPlace(random, size) + Vec3::Constant(offset);
+    point.end = point.start + randomPlace(random, motion);
   }
   return query;
 }

@@ -11,7 +11,7 @@
 namespace springtower {
 namespace {
 
-const Vec3 kBlock(0.081, 0.0267, 0.0182);
+const Vec3 kSides(0.081, 0.0267, 0.0182);
 constexpr double kExact = 1e-15;
 
 // The world's axes are among those tried, so each configuration is also looked at from askew.
@@ -30,16 +30,16 @@ TestBox onEdge(double a, const Vec3& along, double edgeHeight, double towards) {
 
 TEST(OverlapDepth, FaceOnFaceIsTheOverlapInEveryView) {
   for (const double depth : {1e-9, 1e-5, 1e-3}) {
-    const std::vector<TestBox> boxes = {{Vec3::Zero(), kBlock},
-                                        {{0.01, 0.005, kBlock.z() - depth}, kBlock, turned(90.0, Vec3::UnitZ())}};
+    const std::vector<TestBox> boxes = {{Vec3::Zero(), kSides},
+                                        {{0.01, 0.005, kSides.z() - depth}, kSides, turned(90.0, Vec3::UnitZ())}};
     for (const auto& view : views()) EXPECT_NEAR(depthOf(moved(boxes, view, {0.3, -0.2, 0.5})), depth, kExact);
   }
 }
 
 TEST(OverlapDepth, FacesTurnedInTheirPlaneKeepTheirDepth) {
   for (const double degrees : {0.0, 1e-6, 0.01, 17.0, 45.0}) {
-    const std::vector<TestBox> boxes = {{Vec3::Zero(), kBlock},
-                                        {{0.004, 0.002, kBlock.z() - 2e-4}, kBlock, turned(degrees, Vec3::UnitZ())}};
+    const std::vector<TestBox> boxes = {{Vec3::Zero(), kSides},
+                                        {{0.004, 0.002, kSides.z() - 2e-4}, kSides, turned(degrees, Vec3::UnitZ())}};
     for (const auto& view : views()) EXPECT_NEAR(depthOf(moved(boxes, view, Vec3::Zero())), 2e-4, kExact);
   }
 }
@@ -63,7 +63,7 @@ TEST(OverlapDepth, ACornerInAFaceIsMeasuredAlongTheNormalOfTheFace) {
   const double depth = 5e-4;
   // A cube balanced on a corner stands sqrt(3) a high.
   const Eigen::Quaterniond balanced = Eigen::Quaterniond::FromTwoVectors(Vec3::Ones(), Vec3::UnitZ());
-  const std::vector<TestBox> boxes = {{{0.0, 0.0, -0.5 * kBlock.z()}, kBlock},
+  const std::vector<TestBox> boxes = {{{0.0, 0.0, -0.5 * kSides.z()}, kSides},
                                       {{0.005, 0.001, 0.5 * std::sqrt(3.0) * a - depth}, {a, a, a}, balanced}};
   for (const auto& view : views()) EXPECT_NEAR(depthOf(moved(boxes, view, Vec3::Zero())), depth, kExact);
 }
@@ -71,7 +71,7 @@ TEST(OverlapDepth, ACornerInAFaceIsMeasuredAlongTheNormalOfTheFace) {
 TEST(OverlapDepth, TouchingAndSeparateBlocksDoNotOverlap) {
   const std::vector<TestBox> touching = {{Vec3::Zero(), {1.0, 1.0, 1.0}}, {{0.25, 0.0, 1.0}, {1.0, 1.0, 1.0}}};
   EXPECT_EQ(depthOf(touching), 0.0);
-  const std::vector<TestBox> apart = {{Vec3::Zero(), kBlock}, {{0.0, kBlock.y() + 1e-9, 0.0}, kBlock}};
+  const std::vector<TestBox> apart = {{Vec3::Zero(), kSides}, {{0.0, kSides.y() + 1e-9, 0.0}, kSides}};
   for (const auto& view : views()) EXPECT_EQ(depthOf(moved(apart, view, Vec3::Zero())), 0.0);
 }
 
@@ -82,14 +82,14 @@ TEST(OverlapDepth, ABlockInsideAnotherMustLeaveThroughTheNearestFace) {
 
 TEST(OverlapDepth, DeformationCountsInFull) {
   // One lower corner of the upper block hangs down: its fitted cuboid would hide three quarters of that.
-  const std::vector<TestBox> boxes = {{Vec3::Zero(), kBlock}, {{0.0, 0.0, kBlock.z()}, kBlock}};
+  const std::vector<TestBox> boxes = {{Vec3::Zero(), kSides}, {{0.0, 0.0, kSides.z()}, kSides}};
   CornerArray position = cornersOf(boxes);
   position.add(1, 0, {0.0, 0.0, -1e-4});
   EXPECT_NEAR(overlapDepth(position, 0, 1), 1e-4, 1e-9);
 }
 
 TEST(OverlapDepth, MayStopEarlyOnceThePairIsNotWorthIt) {
-  const std::vector<TestBox> boxes = {{Vec3::Zero(), kBlock}, {{0.0, 0.0, kBlock.z() - 1e-4}, kBlock}};
+  const std::vector<TestBox> boxes = {{Vec3::Zero(), kSides}, {{0.0, 0.0, kSides.z() - 1e-4}, kSides}};
   const CornerArray position = cornersOf(boxes);
   EXPECT_NEAR(overlapDepth(position, 0, 1, 0.99e-4), 1e-4, kExact);
   EXPECT_LE(overlapDepth(position, 0, 1, 1.01e-4), 1.01e-4);
@@ -103,8 +103,8 @@ TEST(MaxPenetration, OfNothingIsNone) {
 }
 
 TEST(MaxPenetration, NamesTheLowestCornerBelowTheFloor) {
-  const std::vector<TestBox> boxes = {{{0.0, 0.0, 0.5 * kBlock.z() - 1e-5}, kBlock},
-                                      {{1.0, 0.0, 0.5 * kBlock.z()}, kBlock, turned(2.0, Vec3::UnitX())}};
+  const std::vector<TestBox> boxes = {{{0.0, 0.0, 0.5 * kSides.z() - 1e-5}, kSides},
+                                      {{1.0, 0.0, 0.5 * kSides.z()}, kSides, turned(2.0, Vec3::UnitX())}};
   const CornerArray position = cornersOf(boxes);
   double lowest = 0.0;
   for (std::size_t c = 0; c < kCorners; ++c) lowest = std::min(lowest, position.at(1, c).z());
@@ -117,8 +117,8 @@ TEST(MaxPenetration, NamesTheLowestCornerBelowTheFloor) {
 }
 
 TEST(MaxPenetration, NamesThePairThatOverlapsMost) {
-  std::vector<TestBox> boxes(4, {Vec3(0.0, 0.0, 0.5 * kBlock.z()), kBlock});
-  for (std::size_t i = 1; i < 4; ++i) boxes[i].centre.z() = boxes[i - 1].centre.z() + kBlock.z() - 1e-5;
+  std::vector<TestBox> boxes(4, {Vec3(0.0, 0.0, 0.5 * kSides.z()), kSides});
+  for (std::size_t i = 1; i < 4; ++i) boxes[i].centre.z() = boxes[i - 1].centre.z() + kSides.z() - 1e-5;
   boxes[3].centre.z() -= 3e-5;
   PenetrationWorkspace workspace;
   const Penetration deepest = maxPenetration(cornersOf(boxes), true, workspace);
@@ -136,7 +136,7 @@ TEST(MaxPenetration, FindsTheDeepestOfAllPairsWhileBlocksMove) {
   std::vector<Vec3> velocity;
   for (int i = 0; i < 60; ++i) {
     const Vec3 spread(0.25, 0.15, 0.1);
-    boxes.push_back({anyVector().cwiseProduct(spread), kBlock, turned(180.0 * uniform(random), anyVector())});
+    boxes.push_back({anyVector().cwiseProduct(spread), kSides, turned(180.0 * uniform(random), anyVector())});
     velocity.push_back(0.02 * anyVector().cwiseProduct(Vec3(0.2, 0.2, 3.0)));
   }
   PenetrationWorkspace kept;

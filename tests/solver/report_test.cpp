@@ -15,7 +15,7 @@ namespace {
 // What the 2003 report promises of its method. What it is known to get wrong stands in report_failures_test.cpp.
 
 // A block that falls flat from a height, one step a frame.
-Scene fallingBlock(double height, double restitution) {
+Scene blockThatFalls(double height, double restitution) {
   Scene scene = asReported(oneBlockScene(true));
   scene.blocks[0].centre.z() += height;
   scene.settings.frame_s = 1e-4;
@@ -56,7 +56,7 @@ struct ReportRestitutionTest : ::testing::TestWithParam<double> {};
 // Eq. 2.11 holds for what collides: a corner. Until the floor is met the springs are at rest, so each corner falls alone.
 TEST_P(ReportRestitutionTest, EachCornerLeavesTheFloorWithItsShareOfSpeed) {
   const double restitution = GetParam();
-  Simulation simulation(fallingBlock(0.02, restitution));
+  Simulation simulation(blockThatFalls(0.02, restitution));
   double before = 0.0;
   int frame = 0;
   for (; frame < 1000 && largestImpulse(simulation) == 0.0; ++frame) {
@@ -80,7 +80,7 @@ INSTANTIATE_TEST_SUITE_P(Method, ReportRestitutionTest, ::testing::Values(0.0, 0
 // says. With e = 1 all of it does. Both but for what the springs' dashpots and the block's sideways modes keep.
 TEST(ReportMethod, ABlockReboundsThroughItsSpringsWhateverTheRestitution) {
   const auto rebound = [](double restitution) {
-    Scene scene = fallingBlock(0.02, restitution);
+    Scene scene = blockThatFalls(0.02, restitution);
     Simulation simulation(scene);
     double falling = 0.0;
     double rising = 0.0;
@@ -164,7 +164,7 @@ INSTANTIATE_TEST_SUITE_P(Method, ReportInertiaTest, ::testing::Values(Inertia::l
 
 // A corner that lies below the floor and rises is not held back.
 TEST(ReportMethod, TheFloorNeverPulls) {
-  Scene scene = fallingBlock(0.0, 0.1);
+  Scene scene = blockThatFalls(0.0, 0.1);
   scene.blocks[0].velocity.z() = 0.1;
   Simulation simulation(scene);
   for (std::size_t c = 0; c < kCorners; ++c) simulation.state.position.add(0, c, Vec3(0.0, 0.0, -0.005));

@@ -14,8 +14,8 @@
 namespace springtower {
 namespace {
 
-constexpr double kFriction = 0.4;
-const double kFrictionAngle_deg = degrees(std::atan(kFriction));
+constexpr double kBlockFriction = 0.4;
+const double kFrictionAngle_deg = degrees(std::atan(kBlockFriction));
 
 Scene sceneFile(const std::string& name) {
   return sceneFromToml(std::string(SPRINGTOWER_SOURCE_DIR) + "/scenes/" + name + ".toml");
@@ -80,7 +80,7 @@ TEST_P(SlopeTest, SlidesJustAboveTheFrictionAngle) {
   stepFor(simulation, 2.0);
   const Vec3 acceleration = 0.5 * (centre(simulation.state.velocity, 0) - before);
   const double angle = simulation.scene.gravity.tilt_deg * std::numbers::pi / 180.0;
-  const double expected = kStandardGravity_m_s2 * (std::sin(angle) - kFriction * std::cos(angle));
+  const double expected = kStandardGravity_m_s2 * (std::sin(angle) - kBlockFriction * std::cos(angle));
   EXPECT_NEAR(acceleration.dot(horizontal(GetParam())), expected, 0.01 * expected);
   EXPECT_LT((acceleration - acceleration.dot(horizontal(GetParam())) * horizontal(GetParam())).norm(), 0.01 * expected);
 }
@@ -94,7 +94,7 @@ TEST_P(SlopeTest, ThrownFlatStopsWhereTheoryStopsIt) {
   const FittedBox start = fittedBox(simulation.state.position, 0);
   stepFor(simulation, 1.0);  // it needs 0.13 s
   const FittedBox end = fittedBox(simulation.state.position, 0);
-  const double expected = 0.25 / (2.0 * kFriction * kStandardGravity_m_s2);
+  const double expected = 0.25 / (2.0 * kBlockFriction * kStandardGravity_m_s2);
   Vec3 way = end.centre - start.centre;
   way.z() = 0.0;
   EXPECT_NEAR(way.norm(), expected, 0.01 * expected);
@@ -248,7 +248,7 @@ INSTANTIATE_TEST_SUITE_P(Offsets, OverTheEdge, ::testing::Values(0.0136, 0.015, 
 // far, counting the way it still slides. Afterwards it falls from 2 cm, and from 1 cm it stays and sleeps again.
 struct Pushed : ::testing::Test {
   static Simulation afterRest(double way) {
-    const double friction = kFriction * kBlockMass_kg * kStandardGravity_m_s2;
+    const double friction = kBlockFriction * kBlockMass_kg * kStandardGravity_m_s2;
     const double gain = 0.2 * friction / kBlockMass_kg;
     const double loss = friction / kBlockMass_kg;
     Scene scene = overhangScene(0.0);

@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr double kDegrees = 180.0 / std::numbers::pi;
+constexpr double kDegreesOfRadian = 180.0 / std::numbers::pi;
 constexpr int kDirections = 16;
 
 Vec3 sideways(double turns) {
@@ -67,7 +67,7 @@ double turnToStand_deg(const StaticScene& statics) {
     }
     if (program.isFeasible()) least = std::min(least, -program.maximise(std::array{-1.0, -1.0}));
   }
-  return kDegrees * std::atan(least);
+  return kDegreesOfRadian * std::atan(least);
 }
 
 class StaticsTiltTest : public ::testing::TestWithParam<std::string> {};
@@ -85,13 +85,13 @@ TEST_P(StaticsTiltTest, SixteenDirectionsGiveTheReferencesTilt) {
     const std::optional<TiltMargin> margin = tiltMargin(statics);
     ASSERT_TRUE(margin) << row.id;
     // For a tower that falls sixteen directions make the turn too small, for one that stands too large.
-    const double ours = std::tan(std::abs(margin->tilt_deg) / kDegrees);
-    const double theirs = std::tan(std::abs(row.tilt_deg) / kDegrees);
+    const double ours = std::tan(std::abs(margin->tilt_deg) / kDegreesOfRadian);
+    const double theirs = std::tan(std::abs(row.tilt_deg) / kDegreesOfRadian);
     const double spread = std::cos(std::numbers::pi / kDirections);
     const double least = row.tilt_deg >= 0.0 ? theirs * spread : theirs;
     const double greatest = row.tilt_deg >= 0.0 ? theirs : theirs / spread;
-    EXPECT_GE(kDegrees * std::atan(ours), kDegrees * std::atan(least) - 0.05) << row.id;
-    EXPECT_LE(kDegrees * std::atan(ours), kDegrees * std::atan(greatest) + 0.05) << row.id;
+    EXPECT_GE(kDegreesOfRadian * std::atan(ours), kDegreesOfRadian * std::atan(least) - 0.05) << row.id;
+    EXPECT_LE(kDegreesOfRadian * std::atan(ours), kDegreesOfRadian * std::atan(greatest) + 0.05) << row.id;
     EXPECT_EQ(margin->tilt_deg < 0.0, row.tilt_deg < 0.0) << row.id;
     if (std::abs(margin->tilt_deg - row.tilt_deg) <= 0.02) continue;
     ++asked;

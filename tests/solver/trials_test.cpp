@@ -9,7 +9,7 @@
 namespace springtower {
 namespace {
 
-constexpr double kWeight_n = kBlockMass_kg * kStandardGravity_m_s2;
+constexpr double kTrialWeight_n = kBlockMass_kg * kStandardGravity_m_s2;
 
 Simulation settled(Scene scene, double seconds) {
   scene.settings.sleep = Sleep::off;
@@ -29,7 +29,7 @@ TEST(Pull, ABlockAloneSlipsAtFrictionTimesItsWeight) {
       Simulation simulation = settled(scene, 0.5);
       const SlipTrial trial = pullUntilSlip(simulation, 0, {std::cos(angle), std::sin(angle), 0.0});
       ASSERT_TRUE(trial.slipped) << friction;
-      EXPECT_NEAR(trial.force_n / (friction * kWeight_n), 1.0, 0.01) << friction << " towards " << angle;
+      EXPECT_NEAR(trial.force_n / (friction * kTrialWeight_n), 1.0, 0.01) << friction << " towards " << angle;
     }
   }
 }
