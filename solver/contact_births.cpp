@@ -88,8 +88,7 @@ void chooseManifold(const Separation& separation, const CornerView& a, const Cor
 }
 
 void part(NearPair& pair, const Vec3& witness, double margin) {
-  pair.manifold.touch = Touch::apart;
-  pair.manifold.count = 0;
+  pair.manifold = Manifold{};
   pair.witness = witness;
   pair.margin = margin;
 }

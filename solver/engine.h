@@ -31,6 +31,11 @@ struct NearPair {
   Vec3 restTorque = Vec3::Zero();  ///< N m, its torque about the world's origin
 };
 
+/// What up to four points of a manifold remember, in as few cache lines as hold it.
+struct FewPoints {
+  alignas(32) std::array<std::array<double, 4>, 8> memory;
+};
+
 /// One island's private record, kept by the island's smallest block so that it survives other islands' coming and going.
 struct BlockClock {
   double lastDrift_s = 0.0;         ///< s; the explicit step in which the block's positions last moved; 0 after an implicit one
@@ -72,11 +77,13 @@ struct Engine {
   bool swept = false;                 ///< whether the order of the sweep has been set up
   std::vector<BlockPair> sweptPairs;
   std::vector<BlockPair> keys;            ///< working space: the pairs asked for, the floor as b = -1
+  std::vector<BlockPair> pairKeys;        ///< those of `pairs`, in its order
   std::vector<std::int32_t> awakeBlocks;  ///< ascending
   std::size_t awakeCount = 0;
   std::vector<NearPair> pairs;        ///< by (a, b), the floor first for each a
-  std::vector<NearPair> pairsBefore;  ///< the same before the last merge; its storage is reused
+  std::vector<NearPair> pairsBefore;  ///< before the last merge; then, where pairKept is 1, as the frame began
   Islands islands;
+  bool regrouped = true;                ///< whether pairs or islands are others than in the frame before
   std::vector<std::int32_t> pairStart;  ///< pairs of island i are islandPairs[pairStart[i] .. pairStart[i + 1]]
   std::vector<std::int32_t> islandPairs;
   std::vector<std::int32_t> blockPairStart;  ///< pairs of block b are blockPairs[blockPairStart[b] .. blockPairStart[b + 1]]
@@ -98,8 +105,6 @@ struct Engine {
   std::vector<PointMemory> trial;  ///< by position in `pairs`: contact memory at the end of an implicit step not yet taken
   CornerArray previousVelocity;    ///< m/s, at the start of the step; for implicit steps
   std::vector<ImplicitIsland> implicitIslands;  ///< by the island's smallest block; empty for other methods
-  std::vector<BlockJacobian> jacobian;          ///< of each block alone, for implicit steps
-  std::vector<double> jacobianStep_s;           ///< and what step each is for
   std::vector<RigidIsland> rigidIslands;        ///< by the island's smallest block; empty for other methods
   CornerArray history;                          ///< m, what past steps give of the position at an implicit step's end
   CornerArray stepVelocity;                     ///< m/s, mean over the implicit step
@@ -122,10 +127,11 @@ struct Engine {
   ReportState report;                 ///< of method `report`; empty for the others
   MotionState frameStart;             ///< what a frame that has to be run again starts from
   std::vector<BlockClock> frameStartClock;
-  std::vector<NearPair> frameStartPairs;
-  CornerArray frameStartPrevious;          ///< m, and for implicit steps what they started from
-  CornerArray frameStartPreviousVelocity;  ///< m/s
-  std::vector<Counters> chunkCounters;     ///< of ranges of pairs inside a large island
+  std::vector<FewPoints> frameStartPoints;  ///< by position in `pairs`: what the points of those that touch remember
+  std::vector<std::uint8_t> pairKept;       ///< 1 where a pair has changed since otherwise than in that
+  CornerArray frameStartPrevious;           ///< m, and for implicit steps what they started from
+  CornerArray frameStartPreviousVelocity;   ///< m/s
+  std::vector<Counters> chunkCounters;      ///< of ranges of pairs inside a large island
   std::vector<Counters> islandCounters;
   std::vector<StageTimes> islandTimes;
   std::vector<int> islandOutcome;  ///< steps of each island, -1 where a block left its swept box

@@ -1,5 +1,6 @@
 #include "core/error.h"
 #include "solver/forces_now.h"
+#include "solver/frame_start.h"
 #include "solver/implicit.h"
 #include "solver/inertia.h"
 #include "solver/island_step.h"
@@ -235,6 +236,7 @@ bool runIslands(Simulation& simulation) {
   engine.islandTimes.assign(islands, StageTimes{});
   engine.islandOutcome.assign(islands, 0);
   const ContactLaw law = contactLaw(simulation);
+  prepareFrameStart(simulation);
   if (simulation.scene.settings.method == Method::report) prepareReportFrame(simulation);
   if (isImplicit(simulation.scene.settings.method) || simulation.frame == 0) engine.trial.resize(engine.pairs.size());
   tbb::parallel_for(std::size_t{0}, islands, [&](std::size_t i) {
@@ -247,6 +249,7 @@ bool runIslands(Simulation& simulation) {
                     engine.islandCounters[i],
                     engine.islandTimes[i],
                     law};
+    rememberStart(step);
     const IslandOutcome outcome = runIsland(step);
     engine.islandOutcome[i] = outcome.inside ? outcome.substeps : -1;
   });
@@ -269,22 +272,14 @@ void stepFrame(Simulation& simulation) {
   engine.lostPartner.clear();
   if (engine.awakeCount > 0) {
     double margin = kSweepMargin * simulation.lengths.blockHeight_m;
-    engine.frameStart = simulation.state;
-    engine.frameStartClock = engine.clock;
     findNearPairs(simulation, margin);
-    engine.frameStartPairs = engine.pairs;
-    rememberImplicit(simulation);
     while (!runIslands(simulation)) {
       // Something was hit and left its swept box: the frame is run again with a wider one, so that no meeting is missed.
       ++simulation.counters.replayedFrames;
       margin *= 4.0;
-      simulation.state = engine.frameStart;
-      engine.clock = engine.frameStartClock;
-      engine.pairs = engine.frameStartPairs;
+      rewindFrame(simulation);
       if (simulation.scene.settings.method == Method::report) rewindReportFrame(simulation);
-      rewindImplicit(simulation);
       findNearPairs(simulation, margin);
-      engine.frameStartPairs = engine.pairs;
     }
     simulation.counters.steps += static_cast<std::uint64_t>(simulation.substeps);
     simulation.time_s += simulation.scene.settings.frame_s;

@@ -97,40 +97,32 @@ void prepareImplicit(Simulation& simulation) {
   engine.carriedMotion.resize(count);
   engine.implicitIslands.resize(count);
   engine.nodeOf.assign(count, 0);
-  engine.jacobian.resize(count);
-  engine.jacobianStep_s.assign(count, 0.0);
 }
 
 void setJacobians(IslandStep& step, double effective_s) {
-  Engine& engine = step.engine;
   const BlockModel& model = step.simulation.model;
-  std::size_t last = model.blockCount();
-  for (const std::int32_t block : step.blocks) {
-    const auto b = static_cast<std::size_t>(block);
-    if (engine.jacobianStep_s[b] == effective_s) continue;
-    const bool asLast =
-        last < model.blockCount() && model.dimensions[b] == model.dimensions[last] && model.mass[b] == model.mass[last];
-    engine.jacobian[b] = asLast
-                             ? engine.jacobian[last]
-                             : blockJacobian(model, step.simulation.scene.settings.inertia, b, 1.0 / (effective_s * effective_s),
-                                             1.0 + step.simulation.dampingTime_s / effective_s);
-    engine.jacobianStep_s[b] = effective_s;
-    last = b;
+  ImplicitIsland& island = step.engine.implicitIslands[static_cast<std::size_t>(step.blocks.front())];
+  const auto fits = [&](std::size_t b, std::size_t kind) {
+    return model.dimensions[b] == island.kinds[kind].dimensions && model.mass[b] == island.kinds[kind].mass;
+  };
+  bool known = island.jacobianStep_s == effective_s && island.kindOf.size() == step.blocks.size();
+  for (std::size_t i = 0; known && i < step.blocks.size(); ++i) {
+    known = fits(static_cast<std::size_t>(step.blocks[i]), static_cast<std::size_t>(island.kindOf[i]));
   }
-}
-
-void rememberImplicit(Simulation& simulation) {
-  if (!isImplicit(simulation.scene.settings.method)) return;
-  Engine& engine = *simulation.engine;
-  engine.frameStartPrevious = engine.previous;
-  engine.frameStartPreviousVelocity = engine.previousVelocity;
-}
-
-void rewindImplicit(Simulation& simulation) {
-  if (!isImplicit(simulation.scene.settings.method)) return;
-  Engine& engine = *simulation.engine;
-  engine.previous = engine.frameStartPrevious;
-  engine.previousVelocity = engine.frameStartPreviousVelocity;
+  if (known) return;
+  island.jacobianStep_s = effective_s;
+  island.kindOf.resize(step.blocks.size());
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < step.blocks.size(); ++i) {
+    const auto b = static_cast<std::size_t>(step.blocks[i]);
+    if (count == 0 || !fits(b, count - 1)) {
+      if (island.kinds.size() == count) island.kinds.emplace_back();
+      island.kinds[count++] = {model.dimensions[b], model.mass[b],
+                               blockJacobian(model, step.simulation.scene.settings.inertia, b, 1.0 / (effective_s * effective_s),
+                                             1.0 + step.simulation.dampingTime_s / effective_s)};
+    }
+    island.kindOf[i] = static_cast<std::int32_t>(count - 1);
+  }
 }
 
 bool implicitStepsFit(const IslandStep& step, double step_s) {
@@ -168,11 +160,17 @@ IslandOutcome runImplicitSteps(IslandStep& step, double& reached_s) {
     std::int32_t& frames = engine.clock[static_cast<std::size_t>(block)].explicitFrames;
     frames = std::max(0, frames - 1);
   }
+  ImplicitIsland& island = engine.implicitIslands[static_cast<std::size_t>(step.blocks.front())];
+  // Where nothing has come or gone since, the forces are those that the last frame ended with.
+  const bool forced = holdsTether(step) || isPushed(step);
+  const bool known = island.forcesKnown && !engine.regrouped && !island.forced && !forced;
+  island.forced = forced;
+  island.forcesKnown = false;
   if (!fits) return outcome;
   step.drift_s = simulation.scene.settings.frame_s / steps;
   setJacobians(step, endShare(simulation.scene.settings.method) * step.drift_s);
   step.scaleMost = 1.0;
-  engine.implicitIslands[static_cast<std::size_t>(step.blocks.front())].forcesKnown = false;
+  island.forcesKnown = known;
   for (int i = 0; i < steps; ++i) {
     step.time_s = simulation.time_s + i * step.drift_s;
     step.gravity = simulation.scene.gravity.at(step.time_s + step.drift_s);  // forces are those of the step's end
@@ -193,7 +191,7 @@ IslandOutcome runImplicitSteps(IslandStep& step, double& reached_s) {
     outcome.inside = updateContacts(step);
     if (!outcome.inside) return outcome;
     if (looked != step.counters.manifoldRefreshes + step.counters.contactsBorn) {
-      engine.implicitIslands[static_cast<std::size_t>(step.blocks.front())].forcesKnown = false;
+      island.forcesKnown = false;
     }
   }
   return outcome;

@@ -18,10 +18,6 @@ inline constexpr int kExplicitFrames = 6;
 /// Sizes what method `implicit` needs: histories, factors, and each block's own matrix.
 void prepareImplicit(Simulation& simulation);
 
-/// Keeps what implicit steps start the frame from, and brings it back when the frame is run again. Nothing for other methods.
-void rememberImplicit(Simulation& simulation);
-void rewindImplicit(Simulation& simulation);
-
 struct IslandOutcome {
   int substeps = 0;
   bool inside = true;  ///< no block left its swept box
@@ -38,7 +34,7 @@ bool stepImplicit(IslandStep& step);
 /// than that, as in stepImplicit. Returns false when it does not converge; everything is then as before.
 bool stepFromRest(IslandStep& step, double effective_s);
 
-/// Each block's own matrix for steps that put the end's forces into `effective_s`, where it is for others.
+/// The matrices of the island's blocks alone, for steps that put the end's forces into `effective_s`.
 void setJacobians(IslandStep& step, double effective_s);
 
 /// Whether implicit steps of `step_s` can follow what the island does in this frame: it touches something, nothing spins fast,

@@ -246,7 +246,7 @@ bool assemble(IslandStep& step, ImplicitIsland& island, double step_s) {
   clear(island.matrix);
   for (std::size_t i = 0; i < step.blocks.size(); ++i) {
     island.axes[i] = axesOf(step.engine.frames[static_cast<std::size_t>(step.blocks[i])].place);
-    addOwn(step.engine.jacobian[static_cast<std::size_t>(step.blocks[i])], island.axes[i],
+    addOwn(jacobianOf(island, i), island.axes[i],
            island.matrix.diagonal.data() + kNodeMatrix * static_cast<std::size_t>(island.matrix.position[i]));
   }
   for (std::size_t at = 0; at < island.touching.size(); ++at) addManifold(step, island, at, step_s);

@@ -24,6 +24,12 @@ struct TetherStiffness {
 /// What an island keeps from implicit step to implicit step: the factors of M / step^2 + K as the contacts stood when they were
 /// last assembled, and working space of the iteration.
 struct ImplicitIsland {
+  /// Blocks of one size and mass share their own matrix.
+  struct Kind {
+    Vec3 dimensions;  ///< m
+    double mass;      ///< kg
+    BlockJacobian jacobian;
+  };
   std::uint64_t pattern = 0;  ///< of which blocks touch which; what the matrix is laid out for
   bool tooDense = false;      ///< so many blocks touch one another that explicit steps cost less
   bool factorised = false;
@@ -31,6 +37,7 @@ struct ImplicitIsland {
   TetherStiffness tether;    ///< the hand's springs that the factors contain
   bool moved = false;        ///< whether engine.trial holds a state after the step's start
   bool forcesKnown = false;  ///< engine.force holds the forces at the island's present state
+  bool forced = false;       ///< and with them those of a user or the hand
   BlockCholesky matrix;
   std::vector<std::int32_t> touching;                      ///< touching pairs, as positions in engine.pairs
   std::vector<BlockSlot> slot;                             ///< of each of these; at = -1 where one side is the floor or asleep
@@ -39,10 +46,18 @@ struct ImplicitIsland {
   std::vector<ModeVectors> residual;                       ///< N, in the blocks' frames, by node
   std::vector<ModeVectors> direction;                      ///< m, the last correction, in the world's frame, by node
   std::vector<double> affine;                              ///< right-hand sides and solutions, [nodes][12]
+  std::vector<Kind> kinds;                                 ///< of the island's blocks; maybe more than it has now
+  std::vector<std::int32_t> kindOf;                        ///< of each node
+  double jacobianStep_s = 0.0;                             ///< what step these are for
   std::vector<std::int32_t> order;                         ///< working space of `layOut`
   std::vector<double> height;                              ///< working space of `layOut`, m
   std::vector<BlockPair> edges;                            ///< working space of `layOut`
 };
+
+/// The own matrix of a node's block.
+inline const BlockJacobian& jacobianOf(const ImplicitIsland& island, std::size_t node) {
+  return island.kinds[static_cast<std::size_t>(island.kindOf[node])].jacobian;
+}
 
 struct IslandStep;
 

@@ -38,15 +38,12 @@ void listKeys(const Simulation& simulation, std::vector<BlockPair>& keys) {
   }
 }
 
-// Brings engine.pairs to these keys, taking over what was known of each.
-void mergePairs(Simulation& simulation) {
+// Brings engine.pairs to what the sweep asks for, taking over what was known of each. Returns whether any came or went.
+bool mergePairs(Simulation& simulation) {
   Engine& engine = *simulation.engine;
   std::vector<BlockPair>& keys = engine.keys;
   listKeys(simulation, keys);
-  const bool same = keys.size() == engine.pairs.size() &&
-                    std::equal(keys.begin(), keys.end(), engine.pairs.begin(),
-                               [](const BlockPair& key, const NearPair& pair) { return key.a == pair.a && key.b == pair.b; });
-  if (same) return;
+  if (keys == engine.pairKeys) return false;
   std::swap(engine.pairs, engine.pairsBefore);
   engine.pairs.clear();
   auto old = engine.pairsBefore.begin();
@@ -72,8 +69,11 @@ void mergePairs(Simulation& simulation) {
     engine.pairs.push_back(fresh);
   }
   keepDormantBefore({static_cast<std::int32_t>(simulation.model.blockCount()), 0});
+  engine.pairKeys.clear();
+  for (const NearPair& pair : engine.pairs) engine.pairKeys.push_back({pair.a, pair.b});
   // The two change places: as large as one has grown, the other will be.
   engine.pairsBefore.reserve(engine.pairs.capacity());
+  return true;
 }
 
 // The island a pair moves with: that of whichever block is awake.
@@ -142,11 +142,11 @@ void findNearPairs(Simulation& simulation, double margin_m) {
     engine.swept = true;
     findPairs(engine.sweep, engine.boxes, simulation.asleep, engine.sweptPairs);
     simulation.counters.blockPairs += engine.sweptPairs.size();
-    mergePairs(simulation);
+    engine.regrouped = mergePairs(simulation);
   }
   const StageTimer timer(simulation.stageTimes, Stage::islandsAndSleep);
-  updateIslands(engine.islands, engine.sweptPairs, simulation.asleep);
-  listIslandPairs(simulation);
+  engine.regrouped = updateIslands(engine.islands, engine.sweptPairs, simulation.asleep) || engine.regrouped;
+  if (engine.regrouped) listIslandPairs(simulation);
 }
 
 }  // namespace springtower

@@ -93,7 +93,7 @@ double findResidual(IslandStep& step, ImplicitIsland& island, double effective_s
   for (std::size_t i = 0; i < step.blocks.size(); ++i) {
     const auto b = static_cast<std::size_t>(step.blocks[i]);
     ModeVectors& residual = island.residual[i];
-    missingForces(engine.jacobian[b], rate, engine.force, engine.target, step.simulation.state.position, b, residual);
+    missingForces(jacobianOf(island, i), rate, engine.force, engine.target, step.simulation.state.position, b, residual);
     double largest = 0.0;
     for (const auto& vector : residual) {
       for (const double r : vector) {
@@ -141,24 +141,22 @@ void moveAlong(IslandStep& step, const ImplicitIsland& island, double share, dou
 
 // One solution with the factors at hand: the correction.
 SPRINGTOWER_KERNEL
-void findCorrection(IslandStep& step, ImplicitIsland& island) {
-  Engine& engine = step.engine;
-  const std::size_t count = step.blocks.size();
+void findCorrection(ImplicitIsland& island) {
+  const std::size_t count = island.residual.size();
   for (std::size_t i = 0; i < count; ++i) {
     turn(island.axes[i], false, kCorners, island.residual[i]);
     ModeVectors reduced = island.residual[i];
-    eliminateWarps(engine.jacobian[static_cast<std::size_t>(step.blocks[i])], reduced);
+    eliminateWarps(jacobianOf(island, i), reduced);
     turn(island.axes[i], true, kAffine, reduced);
     for (std::size_t m = 0; m < kAffine; ++m)
       std::copy(reduced[m].begin(), reduced[m].end(), island.affine.data() + kNodeSize * i + 3 * m);
   }
   solve(island.matrix, island.affine);
   for (std::size_t i = 0; i < count; ++i) {
-    const auto b = static_cast<std::size_t>(step.blocks[i]);
     ModeVectors& change = island.direction[i];
     for (std::size_t m = 0; m < kAffine; ++m) std::copy_n(island.affine.data() + kNodeSize * i + 3 * m, 3, change[m].begin());
     turn(island.axes[i], false, kAffine, change);
-    recoverWarps(engine.jacobian[b], island.residual[i], change);
+    recoverWarps(jacobianOf(island, i), island.residual[i], change);
     turn(island.axes[i], true, kCorners, change);
     turn(island.axes[i], true, kCorners, island.residual[i]);
   }
@@ -301,7 +299,7 @@ bool solveStep(IslandStep& step, double effective_s) {
     const bool stale = slow && (now.changed || now.slides);
     if ((stale || !island.factorised) && !renewFactors(step, island, effective_s)) break;
     const double before = residual;
-    findCorrection(step, island);
+    findCorrection(island);
     residual = takeCorrection(step, island, effective_s, clock);
     slow = residual > kSlow * before;
     ++step.counters.implicitIterations;

@@ -1,5 +1,6 @@
 #include "solver/static_start.h"
 
+#include "solver/frame_start.h"
 #include "solver/implicit.h"
 #include "solver/inertia.h"
 
@@ -77,21 +78,6 @@ bool settle(IslandStep& step) {
   return false;
 }
 
-void restoreIsland(IslandStep& step) {
-  Engine& engine = step.engine;
-  for (const std::int32_t block : step.blocks) {
-    const auto b = static_cast<std::size_t>(block);
-    for (std::size_t a = 0; a < 3; ++a) {
-      std::copy_n(engine.frameStart.position.values(a, b), kCorners, step.simulation.state.position.values(a, b));
-      std::copy_n(engine.frameStart.velocity.values(a, b), kCorners, step.simulation.state.velocity.values(a, b));
-    }
-    engine.clock[b] = engine.frameStartClock[b];
-  }
-  for (const std::int32_t at : step.pairs)
-    engine.pairs[static_cast<std::size_t>(at)] = engine.frameStartPairs[static_cast<std::size_t>(at)];
-  findTouching(step);
-}
-
 }  // namespace
 
 bool startInEquilibrium(IslandStep& step) {
@@ -103,7 +89,8 @@ bool startInEquilibrium(IslandStep& step) {
   const bool rests = settle(step);
   if (!rests) {
     step.counters = before;
-    restoreIsland(step);
+    rewindIsland(step);
+    findTouching(step);
   }
   step.unforced = false;
   return rests;

@@ -1,5 +1,6 @@
 #include "core/error.h"
 #include "solver/contact_births.h"
+#include "solver/frame_start.h"
 #include "solver/island_step.h"
 #include "solver/stage_clock.h"
 
@@ -58,15 +59,18 @@ double travelOf(const Engine& engine, const NearPair& pair) {
          (pair.b < 0 ? 0.0 : engine.clock[static_cast<std::size_t>(pair.b)].travel);
 }
 
-void updatePair(IslandStep& step, NearPair& pair, Counters& counters) {
+void updatePair(IslandStep& step, std::int32_t at, Counters& counters) {
+  NearPair& pair = step.engine.pairs[static_cast<std::size_t>(at)];
   const double travel = travelOf(step.engine, pair);
   const double used = travel - pair.checkedTravel;
   if (pair.manifold.touch == Touch::apart) {
     if (used < pair.margin) return;
     ++counters.marginsSpent;
+    keepPair(step.engine, static_cast<std::size_t>(at));
     pair.checkedTravel = travel;
     watchApart(step, pair, counters);
   } else if (used > refreshTravel(step.simulation)) {
+    keepPair(step.engine, static_cast<std::size_t>(at));
     pair.checkedTravel = travel;
     renewManifold(step, pair, counters);
   }
@@ -77,6 +81,7 @@ void updatePair(IslandStep& step, NearPair& pair, Counters& counters) {
 void findTouching(IslandStep& step) {
   for (const std::int32_t at : step.pairs) {
     NearPair& pair = step.engine.pairs[static_cast<std::size_t>(at)];
+    keepPair(step.engine, static_cast<std::size_t>(at));
     if (pair.manifold.touch == Touch::apart) watchApart(step, pair, step.counters);
   }
 }
@@ -93,12 +98,12 @@ bool updateContacts(IslandStep& step) {
       counted[chunk] = Counters{};
       const std::size_t last = std::min(step.pairs.size(), (chunk + 1) * kChunk);
       for (std::size_t i = chunk * kChunk; i < last; ++i) {
-        updatePair(step, step.engine.pairs[static_cast<std::size_t>(step.pairs[i])], counted[chunk]);
+        updatePair(step, step.pairs[i], counted[chunk]);
       }
     });
     for (std::size_t chunk = 0; chunk < chunks; ++chunk) step.counters += counted[chunk];
   } else {
-    for (const std::int32_t at : step.pairs) updatePair(step, step.engine.pairs[static_cast<std::size_t>(at)], step.counters);
+    for (const std::int32_t at : step.pairs) updatePair(step, at, step.counters);
   }
   clock.lap(Stage::candidates);
   return inside;
