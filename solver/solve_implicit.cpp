@@ -282,7 +282,7 @@ double predict(IslandStep& step, ImplicitIsland& island, double effective_s, Sta
 }
 
 // Newton's iteration for the state at the step's end, from engine.target and engine.history.
-bool solveStep(IslandStep& step, double effective_s) {
+bool solveStep(IslandStep& step, double effective_s, int mostContactIterations) {
   ImplicitIsland& island = islandOf(step);
   StageClock clock(step.times);
   layOut(step, island);
@@ -295,7 +295,7 @@ bool solveStep(IslandStep& step, double effective_s) {
   bool slow = false;
   for (int iteration = 0; iteration < most; ++iteration) {
     const ContactsNow now = contactsNow(step, island, effective_s);
-    if (now.changed) most = std::min(kMostContactIterations, iteration + kMostIterations);
+    if (now.changed) most = std::min(mostContactIterations, iteration + kMostIterations);
     const bool stale = slow && (now.changed || now.slides);
     if ((stale || !island.factorised) && !renewFactors(step, island, effective_s)) break;
     const double before = residual;
@@ -328,14 +328,15 @@ bool stepImplicit(IslandStep& step) {
   } else {
     foretell(step, effective_s);
   }
-  return solveStep(step, effective_s);
+  return solveStep(step, effective_s, kMostContactIterations);
 }
 
 bool stepFromRest(IslandStep& step, double effective_s) {
   step.drift_s = effective_s / kBdf2;
   evaluateForces(step, step.simulation.state, step.simulation.state.velocity, 0.0, Memory::trial);
   foretellOneStep(step, effective_s);
-  return solveStep(step, effective_s);
+  // The weight of a tower that is laid down comes to its foot row by row.
+  return solveStep(step, effective_s, std::max(kMostContactIterations, static_cast<int>(step.blocks.size())));
 }
 
 }  // namespace springtower

@@ -162,5 +162,20 @@ TEST(Implicit, ACalmTowerTakesOneStepAFrame) {
   for (std::size_t frame = 60; frame < 180; ++frame) EXPECT_NEAR(calm[frame], reference[frame], 0.02 * range) << frame;
 }
 
+// The weight of a tower that is laid down comes to its foot row by row, an iteration a row; where the iteration ended before, 144
+// rows went to 6000 explicit steps a frame.
+TEST(Implicit, ATowerOf144RowsStandsFromTheStart) {
+  Scene scene = towerScene(144);
+  scene.settings.sleep = Sleep::off;
+  Simulation simulation(scene);
+  stepFor(simulation, 0.5);
+  const Counters before = simulation.counters;
+  for (int i = 0; i < 30; ++i) stepFrame(simulation);
+  EXPECT_EQ(simulation.counters.steps - before.steps, 30U);
+  EXPECT_EQ(simulation.counters.handedOver, before.handedOver);
+  PenetrationWorkspace workspace;
+  EXPECT_LE(maxPenetration(simulation.state.position, true, workspace).depth, 5e-5);
+}
+
 }  // namespace
 }  // namespace springtower
