@@ -62,7 +62,7 @@ struct Settings {
   /// In sqrt(h / g); dashpot over stiffness, of springs and contacts: sets the rebound and damps ringing. 30 us for the game's
   /// blocks.
   double dampingTime = 6.965e-4;
-  double impactPenetration = 8.0;  ///< largest penetration aimed at in an impact, in tolerances
+  double impactPenetration = 8.0;  ///< largest penetration aimed at in an impact, in tolerances, default ones at least
   bool continuousTests = true;     ///< find collisions by the cubic tests; off shows what a discrete method misses
   double restSpeed =
       2.5e-4;              ///< in sqrt(g h); a block slower than this (corner speed of its rigid motion) is a candidate for sleep

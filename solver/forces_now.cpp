@@ -4,6 +4,7 @@
 #include "solver/island_step.h"
 #include "solver/rigid_contacts.h"
 #include "solver/spring_force.h"
+#include "solver/stiffness.h"
 
 #include <algorithm>
 
@@ -54,7 +55,7 @@ ContactLaw contactLaw(const Simulation& simulation) {
   law.tangentialRatio = settings.tangentialRatio;
   law.staticFriction = simulation.scene.staticFriction;
   law.kineticFriction = simulation.scene.kineticFriction;
-  law.impactPenetration_m = settings.impactPenetration * simulation.tolerance_m;
+  law.impactPenetration_m = impactDepth_m(settings, simulation.tolerance_m, simulation.lengths.blockHeight_m);
   law.offsetPerSlip = 0.1 * simulation.scene.kineticFriction;
   return law;
 }

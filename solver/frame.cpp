@@ -128,7 +128,7 @@ int chooseSubsteps(IslandStep& step) {
   const double standing = record.spectralRadius;
   const double stiffness = simulation.contactStiffness_n_m * (1.0 + settings.viscoelasticRatio);
   const Approach approach = settings.method == Method::report ? Approach{} : approachOf(step);  // its contacts have no stiffness
-  const double depth = settings.impactPenetration * simulation.tolerance_m;
+  const double depth = impactDepth_m(settings, simulation.tolerance_m, simulation.lengths.blockHeight_m);
   const double wanted =
       approach.reducedMass * approach.speed * approach.speed / (depth * depth * simulation.contactStiffness_n_m);
   const double born = 2.0 * stiffness * approach.cornerInverse;  // what one new contact at rest stiffness adds

@@ -208,4 +208,9 @@ double stableSpectralRadius(Method method, double step_s, double dampingTime_s, 
   return method == Method::midpoint ? std::min(radius, 4.0 * dampingTime_s / (step * step * step)) : radius;
 }
 
+double impactDepth_m(const Settings& settings, double tolerance_m, double blockHeight_m) {
+  const double usual_m = kBlockTolerance_m * (blockHeight_m / kBlockHeight_m);
+  return settings.impactPenetration * std::max(tolerance_m, usual_m);
+}
+
 }  // namespace springtower
