@@ -1,5 +1,6 @@
 #include "apps/picture.h"
 
+#include "apps/plot_canvas.h"
 #include "apps/raster.h"
 #include "core/error.h"
 
@@ -218,12 +219,6 @@ class Painter {
   std::vector<Look> looks_;  // of each face
 };
 
-cairo_status_t toPngStream(void* stream, const unsigned char* data, unsigned int length) {
-  auto& out = *static_cast<std::ostream*>(stream);
-  out.write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(length));
-  return out ? CAIRO_STATUS_SUCCESS : CAIRO_STATUS_WRITE_ERROR;
-}
-
 std::uint32_t packed(const Colour& colour) {
   std::uint32_t value = 0xff;
   for (Eigen::Index a = 0; a < 3; ++a) {
@@ -260,7 +255,7 @@ void writePicture(std::ostream& stream, const CornerArray& position, bool floor,
       cairo_image_surface_create_for_data(reinterpret_cast<unsigned char*>(pixels.data()), CAIRO_FORMAT_RGB24, frame.width,
                                           frame.height, 4 * frame.width),
       cairo_surface_destroy);
-  const cairo_status_t status = cairo_surface_write_to_png_stream(surface.get(), toPngStream, &stream);
+  const cairo_status_t status = cairo_surface_write_to_png_stream(surface.get(), toStream, &stream);
   if (status != CAIRO_STATUS_SUCCESS) {
     throw InputError(std::string("the picture cannot be written: ") + cairo_status_to_string(status));
   }

@@ -229,12 +229,6 @@ void check(cairo_status_t status) {
   throw InputError(std::string("the chart cannot be written: ") + cairo_status_to_string(status));
 }
 
-cairo_status_t toStream(void* stream, const unsigned char* data, unsigned int length) {
-  auto& out = *static_cast<std::ostream*>(stream);
-  out.write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(length));
-  return out ? CAIRO_STATUS_SUCCESS : CAIRO_STATUS_WRITE_ERROR;
-}
-
 // How large the chart becomes: depends on the widths of its words.
 std::array<double, 2> sizeOf(const Plot& plot) {
   const Surface scratch(cairo_image_surface_create(CAIRO_FORMAT_A8, 1, 1), cairo_surface_destroy);

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <numbers>
+#include <ostream>
 #include <sstream>
 
 namespace springtower {
@@ -119,6 +120,12 @@ void Canvas::marker(double x, double y, std::size_t style, bool filled) {
   cairo_fill_preserve(get());
   ink(inkOf(style));
   stroke(1.1, false);
+}
+
+cairo_status_t toStream(void* stream, const unsigned char* data, unsigned int length) {
+  auto& out = *static_cast<std::ostream*>(stream);
+  out.write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(length));
+  return out ? CAIRO_STATUS_SUCCESS : CAIRO_STATUS_WRITE_ERROR;
 }
 
 }  // namespace springtower

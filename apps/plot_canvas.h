@@ -26,6 +26,9 @@ inline constexpr double kMarkerRadius = 3.2;  ///< points
 /// Which end of a text stands at its place.
 enum class Anchor { start, middle, end };
 
+/// Writes what cairo hands on to the std::ostream that `stream` points to.
+cairo_status_t toStream(void* stream, const unsigned char* data, unsigned int length);
+
 /// What a chart is drawn on: a thin cover over cairo, in points, y downwards. The surface must outlive it.
 class Canvas {
  public:
