@@ -5,6 +5,7 @@
 #include "solver/lengths.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -12,8 +13,8 @@ namespace springtower {
 
 namespace {
 
-// Two blocks touch along the face normals while these are within this of parallel: an edge direction that separates slightly
-// tilted crossed blocks a little better would turn four points into one (cosine of 18 degrees).
+// Faces within this of parallel touch as such: an edge direction that separates slightly tilted crossed blocks a little better
+// would turn four points into one (cosine of 18 degrees).
 constexpr double kFaceCosine = 0.951;
 
 ManifoldLimits limitsOf(const Simulation& simulation) {
@@ -36,14 +37,23 @@ void faceManifold(const Separation& separation, const CornerView& a, const Corne
                     referenceIsB ? separation.faceOfB : separation.faceOfA, limits, fresh);
 }
 
-// Depth of the deepest point of a face manifold, m.
-double deepestPoint(const Manifold& manifold, const CornerView& upper, const CornerView& lower) {
-  const FaceFrame face = faceFrame(lower, manifold.referenceFace);
+// How deep the deepest point of a face manifold lies, m, and how many lie as deep within `slack`.
+struct Deepest {
   double depth = -std::numeric_limits<double>::infinity();
+  int count = 0;
+};
+
+Deepest deepestPoints(const Manifold& manifold, const CornerView& upper, const CornerView& lower, double slack) {
+  const FaceFrame face = faceFrame(lower, manifold.referenceFace);
+  std::array<double, kManifoldPoints> depth{};
+  const auto end = depth.begin() + manifold.count;
   for (std::size_t i = 0; i < static_cast<std::size_t>(manifold.count); ++i) {
-    depth = std::max(depth, -face.normal.dot(pointOnIncidentFace(manifold, upper, i) - face.centre));
+    depth[i] = -face.normal.dot(pointOnIncidentFace(manifold, upper, i) - face.centre);
   }
-  return depth;
+  Deepest deepest;
+  for (auto d = depth.begin(); d != end; ++d) deepest.depth = std::max(deepest.depth, *d);
+  deepest.count = static_cast<int>(std::count_if(depth.begin(), end, [&](double d) { return d > deepest.depth - slack; }));
+  return deepest;
 }
 
 void edgeManifold(const Separation& separation, const NearPair& pair, Manifold& fresh) {
@@ -57,29 +67,33 @@ void edgeManifold(const Separation& separation, const NearPair& pair, Manifold& 
   fresh.scale.fill(1.0);
 }
 
+// Whether faces touch although edges separate better: at more than a point, which lies as deep as the edges do. A crossing that
+// runs along both edges would be a new point of the outline each time, and sink unresisted. Faces far from parallel touch along
+// a line at most, and then separate as well as the edges.
+bool sharesOutline(const Separation& separation, double face, const CornerView& upper, const CornerView& lower, double slack,
+                   const Manifold& fresh) {
+  if (fresh.count < 2) return false;
+  const Deepest deepest = deepestPoints(fresh, upper, lower, slack);
+  if (deepest.count < 2 || deepest.depth > slack - separation.edge) return false;
+  const Vec3 incident = faceFrame(upper, fresh.incidentFace).normal;
+  const Vec3 reference = faceFrame(lower, fresh.referenceFace).normal;
+  return std::abs(incident.dot(reference)) >= kFaceCosine ||
+         (face > separation.edge - slack && deepest.depth > -separation.edge - slack);
+}
+
 // The faces or edges that touch, given what separates the blocks best. A face that was the reference stays so until the other is
-// clearly better. Faces are preferred to edges that separate better as long as they are nearly parallel, share more than a point,
-// and the outline they share is no deeper than the edges. Where they share nothing the next best direction is taken.
+// clearly better. Faces are preferred to edges that separate better where they touch as well. Where they share nothing the next
+// best direction is taken.
 void chooseManifold(const Separation& separation, const CornerView& a, const CornerView& b, const ManifoldLimits& limits,
                     double slack, double edgeSlack, const NearPair& pair, Manifold& fresh) {
   const bool wasA = pair.manifold.touch == Touch::face && pair.manifold.lower == pair.a;
   const bool wasB = pair.manifold.touch == Touch::face && pair.manifold.lower == pair.b;
   const bool referenceIsB = separation.faceB + (wasB ? slack : 0.0) >= separation.faceA + (wasA ? slack : 0.0);
-  const Vec3& normal = referenceIsB ? separation.normalFaceB : separation.normalFaceA;
   const double face = referenceIsB ? separation.faceB : separation.faceA;
   const bool crossed = separation.edge > face + slack;
-  if (crossed) {
-    const CornerView& incidentBlock = referenceIsB ? a : b;
-    const int incident = incidentFaceOf(incidentBlock, referenceIsB ? normal : Vec3(-normal));
-    if (std::abs(faceFrame(incidentBlock, incident).normal.dot(normal)) < kFaceCosine) {
-      edgeManifold(separation, pair, fresh);
-      return;
-    }
-  }
   faceManifold(separation, a, b, limits, pair, referenceIsB, fresh);
   const bool upperIsA = fresh.upper == pair.a;
-  if (crossed && (fresh.count == 1 ||
-                  (fresh.count > 1 && deepestPoint(fresh, upperIsA ? a : b, upperIsA ? b : a) > edgeSlack - separation.edge))) {
+  if (crossed && !sharesOutline(separation, face, upperIsA ? a : b, upperIsA ? b : a, edgeSlack, fresh)) {
     edgeManifold(separation, pair, fresh);
     return;
   }

@@ -1,5 +1,7 @@
 #include "solver/implicit.h"
 
+#include "solver/meeting.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -13,8 +15,6 @@ constexpr int kCalmSteps = 1;
 constexpr double kCalm = 0.1;
 // Angle by which a block may turn in an implicit step, rad: the two-step formula turns along chords.
 constexpr double kMostTurn = 0.01;
-// Distance that blocks may close in an implicit step that makes them meet, in tolerances.
-constexpr double kMostClosing = 0.5;
 
 // Whether the island does so little that one step tells it as well as four. What a hand or a force begins to move is not calm.
 bool isCalm(const IslandStep& step) {
@@ -49,40 +49,6 @@ double turningSpeed(const AffineField& place, const AffineField& motion) {
     fastest = std::max(fastest, (rate[0] * rate[0] + rate[1] * rate[1] + rate[2] * rate[2]) / length);
   }
   return std::sqrt(fastest);
-}
-
-// How fast the gap of a pair that is apart closes along what separates it, m/s; and the gap.
-struct Closing {
-  double gap;
-  double speed;
-};
-
-Closing closingOf(const Simulation& simulation, const NearPair& pair) {
-  const auto a = static_cast<std::size_t>(pair.a);
-  const CornerArray& x = simulation.state.position;
-  const CornerArray& v = simulation.state.velocity;
-  double least = 1e300;
-  double leastSoon = 1e300;
-  const double soon = simulation.scene.settings.frame_s;
-  for (std::size_t c = 0; c < kCorners; ++c) {
-    const double along = pair.witness.dot(x.at(a, c));
-    least = std::min(least, along);
-    leastSoon = std::min(leastSoon, along + soon * pair.witness.dot(v.at(a, c)));
-  }
-  double most = 0.0;
-  double mostSoon = 0.0;
-  if (pair.b >= 0) {
-    const auto b = static_cast<std::size_t>(pair.b);
-    most = mostSoon = -1e300;
-    for (std::size_t c = 0; c < kCorners; ++c) {
-      const double along = pair.witness.dot(x.at(b, c));
-      most = std::max(most, along);
-      mostSoon = std::max(mostSoon, along + soon * pair.witness.dot(v.at(b, c)));
-    }
-  }
-  const double gap = least - most;
-  const double gapSoon = leastSoon - mostSoon;
-  return {gap, (gap - gapSoon) / soon};
 }
 
 }  // namespace
@@ -127,19 +93,10 @@ void setJacobians(IslandStep& step, double effective_s) {
 
 bool implicitStepsFit(const IslandStep& step, double step_s) {
   const Simulation& simulation = step.simulation;
-  const double frame_s = simulation.scene.settings.frame_s;
-  bool touches = false;
-  for (const std::int32_t at : step.pairs) {
-    const NearPair& pair = step.engine.pairs[static_cast<std::size_t>(at)];
-    if (pair.manifold.touch != Touch::apart) {
-      touches = true;
-      continue;
-    }
-    const Closing closing = closingOf(simulation, pair);
-    const double reach = frame_s * (std::max(0.0, closing.speed) + 0.5 * frame_s * simulation.scene.gravity.magnitude);
-    if (closing.gap < reach && closing.speed * step_s > kMostClosing * simulation.tolerance_m) return false;
-  }
-  if (!touches) return false;
+  const bool touches = std::any_of(step.pairs.begin(), step.pairs.end(), [&](std::int32_t at) {
+    return step.engine.pairs[static_cast<std::size_t>(at)].manifold.touch != Touch::apart;
+  });
+  if (!touches || meetsSoon(step, step_s)) return false;
   for (const std::int32_t block : step.blocks) {
     const auto b = static_cast<std::size_t>(block);
     if (step.engine.clock[b].explicitFrames > 0) return false;

@@ -27,7 +27,8 @@ struct IslandOutcome {
 /// came to. What is left is for explicit steps.
 IslandOutcome runImplicitSteps(IslandStep& step, double& reached_s);
 
-/// One implicit step of step.drift_s. Returns false when it does not converge; everything is then as before.
+/// One implicit step of step.drift_s. Returns false when it does not converge, or when blocks meet at speed in it; everything is
+/// then as before.
 bool stepImplicit(IslandStep& step);
 
 /// One step of implicit Euler from rest, of `effective_s`; a step towards static equilibrium. The contact memory ages by more

@@ -3,6 +3,7 @@
 #include "solver/implicit.h"
 #include "solver/implicit_history.h"
 #include "solver/inertia.h"
+#include "solver/meeting.h"
 #include "solver/stage_clock.h"
 
 #include <algorithm>
@@ -16,6 +17,8 @@ namespace {
 constexpr int kMostIterations = 12;
 // While points begin or cease to push or slide: a front of load takes an iteration a row.
 constexpr int kMostContactIterations = 40;
+// How often a step is solved again with contacts that it turned out to make.
+constexpr int kMostMeetings = 4;
 // Residual force at which a step is taken, in weights of the block; in metres it is this share of the compression under its own
 // weight. Displacements are no measure: a sliding block hardly moves and is still wrong by a tenth of its friction.
 constexpr double kResidual = 1e-5;
@@ -208,7 +211,8 @@ void accept(IslandStep& step, ImplicitIsland& island) {
   ++step.counters.implicitSteps;
 }
 
-void reject(IslandStep& step) {
+// Puts the blocks back where the step began.
+void goBack(IslandStep& step) {
   Engine& engine = step.engine;
   for (const std::int32_t block : step.blocks) {
     const auto b = static_cast<std::size_t>(block);
@@ -216,8 +220,15 @@ void reject(IslandStep& step) {
       std::copy_n(engine.previous.values(a, b), kCorners, step.simulation.state.position.values(a, b));
       std::copy_n(engine.previousVelocity.values(a, b), kCorners, step.simulation.state.velocity.values(a, b));
     }
-    engine.clock[b].history_s = 0.0;
-    engine.clock[b].lastDrift_s = 0.0;
+  }
+}
+
+void reject(IslandStep& step) {
+  goBack(step);
+  for (const std::int32_t block : step.blocks) {
+    BlockClock& clock = step.engine.clock[static_cast<std::size_t>(block)];
+    clock.history_s = 0.0;
+    clock.lastDrift_s = 0.0;
   }
   ++step.counters.handedOver;
 }
@@ -281,7 +292,7 @@ double predict(IslandStep& step, ImplicitIsland& island, double effective_s, Sta
   return evaluateResidual(step, island, effective_s, clock);
 }
 
-// Newton's iteration for the state at the step's end, from engine.target and engine.history.
+// Newton's iteration for the state at the step's end, from engine.target and engine.history. Returns whether it converged.
 bool solveStep(IslandStep& step, double effective_s, int mostContactIterations) {
   ImplicitIsland& island = islandOf(step);
   StageClock clock(step.times);
@@ -306,14 +317,22 @@ bool solveStep(IslandStep& step, double effective_s, int mostContactIterations) 
     converged = residual <= 1.0;
     if (converged || !std::isfinite(residual)) break;
   }
-  island.forcesKnown = converged;
-  if (converged) {
+  clock.lap(Stage::integration);
+  return converged;
+}
+
+// Takes the state that was found, or goes back to the step's start.
+bool finishStep(IslandStep& step, bool taken) {
+  StageClock clock(step.times);
+  ImplicitIsland& island = islandOf(step);
+  island.forcesKnown = taken;
+  if (taken) {
     accept(step, island);
   } else {
     reject(step);
   }
   clock.lap(Stage::integration);
-  return converged;
+  return taken;
 }
 
 }  // namespace
@@ -328,7 +347,16 @@ bool stepImplicit(IslandStep& step) {
   } else {
     foretell(step, effective_s);
   }
-  return solveStep(step, effective_s, kMostContactIterations);
+  bool converged = solveStep(step, effective_s, kMostContactIterations);
+  for (int trial = 0; converged && trial < kMostMeetings; ++trial) {
+    const Meetings met = meetingsIn(step);
+    if (met == Meetings::atSpeed) return finishStep(step, false);
+    if (met == Meetings::none) break;
+    goBack(step);
+    evaluateForces(step, step.simulation.state, step.simulation.state.velocity, 0.0, Memory::trial);
+    converged = solveStep(step, effective_s, kMostContactIterations);
+  }
+  return finishStep(step, converged);
 }
 
 bool stepFromRest(IslandStep& step, double effective_s) {
@@ -336,7 +364,7 @@ bool stepFromRest(IslandStep& step, double effective_s) {
   evaluateForces(step, step.simulation.state, step.simulation.state.velocity, 0.0, Memory::trial);
   foretellOneStep(step, effective_s);
   // The weight of a tower that is laid down comes to its foot row by row.
-  return solveStep(step, effective_s, std::max(kMostContactIterations, static_cast<int>(step.blocks.size())));
+  return finishStep(step, solveStep(step, effective_s, std::max(kMostContactIterations, static_cast<int>(step.blocks.size()))));
 }
 
 }  // namespace springtower

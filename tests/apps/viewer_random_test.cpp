@@ -118,6 +118,7 @@ void play(Viewer& viewer, double seconds, Dice& dice) {
   const double frame_s = viewer.session.scene.settings.frame_s;
   for (int i = 0; i < seconds / frame_s; ++i) {
     act(viewer, dice);
+    viewer.session.frame_ms = 0.0;  // what a slow machine leaves out would not repeat
     advance(viewer, frame_s);
     pictureOf(viewer);
   }

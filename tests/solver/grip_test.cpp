@@ -289,6 +289,49 @@ TEST(Grip, PushedAtFullForceNothingPenetratesAMillimetre) {
   }
 }
 
+// A hand that jerks its block to and fro: at the frame's begin nothing yet moves towards the neighbour that it hits in it.
+TEST(Grip, ABlockJerkedAgainstItsNeighbourStaysOutside) {
+  for (const Method method : {Method::semiImplicitEuler, Method::implicit}) {
+    for (const double gap_m : {0.0002, 0.0005, 0.001, 0.002, 0.005}) {
+      Scene scene = oneBlockScene(true);
+      scene.settings.method = method;
+      scene.blocks.push_back(scene.blocks[0]);
+      scene.blocks[1].centre.y() += scene.blocks[0].dimensions.y() + gap_m;
+      Held held(scene);
+      wait(held, 30);
+      Hand hand = handOn(held.simulation, blockId(0));
+      double depth = 0.0;
+      for (const double way_m : {0.1, -0.2, 0.2}) {
+        hand.place.y() += way_m;
+        depth = std::max(depth, deepest(held, hand, 2));
+      }
+      EXPECT_LT(depth, 6e-4) << nameOf(method) << ", gap " << gap_m;  // an impact aims at 0.4 mm
+    }
+  }
+}
+
+// Held still just above another block and let go: so calm that one implicit step would do for the frame, in which it falls by
+// more than a millimetre.
+TEST(Grip, ABlockLetGoJustAboveAnotherLandsOnIt) {
+  for (const double gap_m : {0.00005, 0.0001, 0.0002, 0.0005, 0.001}) {
+    Scene scene = oneBlockScene(true);
+    scene.settings.method = Method::implicit;
+    scene.blocks.push_back(scene.blocks[0]);
+    scene.blocks[1].centre += Vec3(0.03, 0.0, scene.blocks[0].dimensions.z() + 0.001 + gap_m);
+    Held held(scene);
+    Hand hand = handOn(held.simulation, blockId(1));
+    lead(held, hand, {0.0, 0.0, -0.001}, 0.005, 1.0);
+    letGo(held.simulation);
+    PenetrationWorkspace workspace;
+    double depth = 0.0;
+    for (int i = 0; i < 60; ++i) {
+      stepFrame(held.simulation);
+      depth = std::max(depth, maxPenetration(held.simulation.state.position, true, workspace).depth);
+    }
+    EXPECT_LT(depth, 2.5e-4) << "gap " << gap_m;
+  }
+}
+
 // The same with a block in the hand as the tool, brought up from outside against the side of the tower.
 TEST(Grip, AToolPushedIntoTheSideOfTheTowerStaysOutside) {
   Scene scene = towerScene(6);

@@ -1,4 +1,5 @@
 #include "core/error.h"
+#include "core/random.h"
 #include "core/scene.h"
 #include "solver/measures.h"
 #include "solver/penetration.h"
@@ -6,6 +7,8 @@
 #include "solver/simulation.h"
 #include "tests/support/block_scenes.h"
 
+#include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <numbers>
@@ -142,6 +145,38 @@ TEST(TwoBlocks, ThrownAtEachOtherKeepTheirBounds) {
   expectCleanImpact(result);
   PenetrationWorkspace workspace;
   EXPECT_LE(maxPenetration(simulation.state.position, true, workspace).depth, simulation.tolerance_m);
+}
+
+// A tilted block that comes down on a flat one anywhere, at any angle, and slides off it or stays: edges cross, faces share a
+// line or a corner, and one turns into the other. Nothing may slip in between.
+TEST(TwoBlocks, MeetingAtAnyAngleStayOutsideEachOther) {
+  for (const Method method : {Method::semiImplicitEuler, Method::implicit}) {
+    for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+      RandomStream random(seed, 1);
+      const auto between = [&](double least, double most) { return least + (most - least) * random.uniform(); };
+      Scene scene = oneBlockScene(true);
+      scene.settings.method = method;
+      BlockSpec block;
+      const double tilt = between(0.03, 0.5);
+      const double direction = between(0.0, 2.0 * std::numbers::pi);
+      const double yaw = between(0.0, 2.0 * std::numbers::pi);
+      block.orientation =
+          Eigen::AngleAxisd(tilt, Vec3(std::cos(direction), std::sin(direction), 0.0)) * Eigen::AngleAxisd(yaw, Vec3::UnitZ());
+      // Half a millimetre above the other's top with its lowest corner.
+      const Eigen::Matrix3d axes = block.orientation.toRotationMatrix();
+      const double reach = 0.5 * axes.row(2).cwiseAbs().dot(block.dimensions);
+      block.centre = {between(-0.05, 0.05), between(-0.02, 0.02), kBlockHeight_m + 0.0005 + reach};
+      block.velocity = {between(-0.3, 0.3), between(-0.3, 0.3), -0.05};
+      scene.blocks.push_back(block);
+      Simulation simulation(scene);
+      double deepest = 0.0;
+      for (int i = 0; i < 90; ++i) {
+        stepFrame(simulation);
+        deepest = std::max(deepest, overlapDepth(simulation.state.position, 0, 1));
+      }
+      EXPECT_LT(deepest, 1e-3) << nameOf(method) << ", seed " << seed;
+    }
+  }
 }
 
 // Head on in flight, without floor or gravity's help: they must part again and keep their momentum, which is nil.
