@@ -137,6 +137,12 @@ struct Engine {
   std::vector<int> islandOutcome;  ///< steps of each island, -1 where a block left its swept box
 };
 
+/// How far both blocks of a pair have travelled, m; it only ever grows.
+inline double travelOf(const Engine& engine, const NearPair& pair) {
+  const double first = engine.clock[static_cast<std::size_t>(pair.a)].travel;
+  return pair.b < 0 ? first : first + engine.clock[static_cast<std::size_t>(pair.b)].travel;
+}
+
 /// The velocities that carried the positions during the last step: those of the state, or the mean over the stages of a
 /// multi-stage method.
 const CornerArray& carriedVelocities(const Simulation& simulation);

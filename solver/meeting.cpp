@@ -83,11 +83,6 @@ double bearableClosing(const IslandStep& step, const NearPair& pair) {
   return 0.25 * step.law.impactPenetration_m * std::sqrt(stiffness / reduced) * step.drift_s;
 }
 
-double travelOf(const Engine& engine, const NearPair& pair) {
-  return engine.clock[static_cast<std::size_t>(pair.a)].travel +
-         (pair.b < 0 ? 0.0 : engine.clock[static_cast<std::size_t>(pair.b)].travel);
-}
-
 // How a pair that was apart has met in the step just found: by how much its blocks overlap now, m, negative where they do not,
 // and by how much they closed, m. `way` as above.
 struct Meeting {

@@ -54,11 +54,6 @@ bool addTravel(IslandStep& step) {
 
 namespace {
 
-double travelOf(const Engine& engine, const NearPair& pair) {
-  return engine.clock[static_cast<std::size_t>(pair.a)].travel +
-         (pair.b < 0 ? 0.0 : engine.clock[static_cast<std::size_t>(pair.b)].travel);
-}
-
 void updatePair(IslandStep& step, std::int32_t at, Counters& counters) {
   NearPair& pair = step.engine.pairs[static_cast<std::size_t>(at)];
   const double travel = travelOf(step.engine, pair);
