@@ -134,7 +134,7 @@ void printResult(const Simulation& simulation, const RunResult& result, int thre
   row("method",
       fmt::format("{}, {} inertia, sleep {}", nameOf(settings.method), nameOf(settings.inertia), nameOf(settings.sleep)));
   row("tolerance", fmt::format("{:.4g} mm{}", kMillimetres * simulation.tolerance_m,
-                               settings.substeps > 0 && !settings.tolerance_m ? ", as the substeps allow" : ""));
+                               simulation.fixedSubsteps > 0 && !settings.tolerance_m ? ", as the substeps allow" : ""));
   row("contact stiffness", fmt::format("{:.4g} kN/m", 1e-3 * simulation.contactStiffness_n_m));
   row("substeps", fmt::format("{} in the last awake frame, {} in all", result.substeps, result.counters.steps));
   if (result.standing.stands) {

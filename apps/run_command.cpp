@@ -27,7 +27,8 @@ constexpr std::string_view kRunExamples = R"help(examples:
   springtower run "(010)-(010)-(011)" --picture a.png    a bit code: rows from the bottom, 1 present, 0 absent, L loose
   springtower run tower:18 --gravity-tilt 14.5 --report collapse.json --poses collapse.csv --poses-every 0.05
   springtower run tower:18 --heights-sigma 0.0002 --seed 3
-  springtower run tower:18 --substeps 50                 prints the tolerance that 50 steps a frame allow)help";
+  springtower run tower:18 --method semi-implicit-euler --substeps 50
+                                                         prints the tolerance that 50 steps a frame allow)help";
 
 Gravity withOptions(Gravity gravity, const RunCommand& command) {
   if (command.tilt_deg) gravity.tilt_deg = *command.tilt_deg;

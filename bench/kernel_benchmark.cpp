@@ -144,7 +144,8 @@ void watchedPairs(benchmark::State& run) {
   StageTimes times;
   IslandStep step = islandStep(s, counters, times);
   s.engine->previous = s.state.position;
-  for (auto iteration : run) benchmark::DoNotOptimize(updateContacts(step));
+  const RenewalTravel renewal = renewalOfExplicitSteps(s);
+  for (auto iteration : run) benchmark::DoNotOptimize(updateContacts(step, renewal));
   const auto pairs = static_cast<double>(step.pairs.size());
   rate(run, pairs, 0.0, pairs * 32.0 + static_cast<double>(step.blocks.size()) * 2.0 * kCornerBytes);
 }

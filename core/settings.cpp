@@ -34,7 +34,7 @@ constexpr auto kSettingTable = std::to_array<SettingRow>({
      0.25, &Settings::dampingTime},
     {"impact_penetration", "", "largest penetration aimed at in an impact, in tolerances (not less than the default one)", 1,
      1000, &Settings::impactPenetration},
-    {"continuous_tests", "", "finds collisions by the cubic tests; off shows what a test at the ends of steps misses", 0, 1,
+    {"continuous_tests", "", "finds collisions by the cubic tests; off, blocks that come together go through each other", 0, 1,
      &Settings::continuousTests},
     {"rest_speed", "sqrt(g h)", "a block slower than this may be at rest", 0, 1, &Settings::restSpeed},
     {"rest_time", "sqrt(h / g)", "how long it must have been slower before it sleeps", 0, 1e6, &Settings::restTime},

@@ -63,7 +63,8 @@ struct Settings {
   /// blocks.
   double dampingTime = 6.965e-4;
   double impactPenetration = 8.0;  ///< largest penetration aimed at in an impact, in tolerances, default ones at least
-  bool continuousTests = true;     ///< find collisions by the cubic tests; off shows what a discrete method misses
+  bool continuousTests =
+      true;  ///< find collisions by the cubic tests; without them none is found but where blocks touch at the start
   double restSpeed =
       2.5e-4;              ///< in sqrt(g h); a block slower than this (corner speed of its rigid motion) is a candidate for sleep
   double restTime = 12.0;  ///< in sqrt(h / g); how long it must have been at rest

@@ -3,6 +3,7 @@
 #include "core/ids.h"
 #include "narrowphase/separation.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 
@@ -39,6 +40,11 @@ struct Manifold : PointMemory {
   std::int8_t referenceFace = 0;  ///< of lower; for an edge manifold its edge
   Touch touch = Touch::apart;
 };
+
+/// Whether any point of a manifold touches.
+inline bool pushes(const Manifold& manifold) {
+  return std::any_of(manifold.live.begin(), manifold.live.begin() + manifold.count, [](double live) { return live != 0.0; });
+}
 
 /// A face's frame: its centre, its two mean sides and its unit outward normal, from its four corners.
 struct FaceFrame {

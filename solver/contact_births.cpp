@@ -3,6 +3,7 @@
 #include "narrowphase/crossing.h"
 #include "solver/contact_memory.h"
 #include "solver/lengths.h"
+#include "solver/stage_clock.h"
 
 #include <algorithm>
 #include <array>
@@ -107,10 +108,6 @@ void part(NearPair& pair, const Vec3& witness, double margin) {
   pair.margin = margin;
 }
 
-bool anyLive(const Manifold& manifold) {
-  return std::any_of(manifold.live.begin(), manifold.live.begin() + manifold.count, [](double live) { return live != 0.0; });
-}
-
 // How far a block's corners are from its affine part, m. The separating axes of two blocks are exact for those parts, from which
 // corners and faces both may differ by this: an overlap by them of up to twice both warps may be none of the faces.
 double warp(const CornerArray& position, std::size_t block) {
@@ -165,7 +162,17 @@ double refreshTravel(const Simulation& simulation) {
   return kRefreshTravel * simulation.lengths.blockHeight_m;
 }
 
-void watchApart(IslandStep& step, NearPair& pair, Counters& counters) {
+RenewalTravel renewalOfExplicitSteps(const Simulation& simulation) {
+  const double travel_m = refreshTravel(simulation);
+  return {travel_m, travel_m, kRollingRefreshTravel * simulation.lengths.blockHeight_m};
+}
+
+RenewalTravel renewalOfImplicitSteps(const Simulation& simulation) {
+  const double travel_m = refreshTravel(simulation);
+  return {travel_m, kSlidingRefreshTravel * simulation.lengths.blockHeight_m, travel_m};
+}
+
+void watchApart(IslandStep& step, NearPair& pair, Counters& counters, StageTimes& times) {
   if (pair.b < 0) {
     watchFloor(step, pair, counters);
     return;
@@ -191,7 +198,13 @@ void watchApart(IslandStep& step, NearPair& pair, Counters& counters) {
 
   // Features that nothing has moved need not share a point where blocks touch: rounding may have put them inside by a bit.
   const bool laidTogether = step.simulation.frame == 0 && before.best() <= touching;
-  if (!step.simulation.scene.settings.continuousTests || (!featuresMeet(movingA, movingB, counters) && !laidTogether)) {
+  bool meet = false;
+  if (step.simulation.scene.settings.continuousTests) {
+    StageClock clock(times);
+    meet = featuresMeet(movingA, movingB, counters) || laidTogether;
+    clock.lap(Stage::cubicTests);
+  }
+  if (!meet) {
     pair.margin = 0.0;
     return;
   }
@@ -217,7 +230,7 @@ void renewManifold(IslandStep& step, NearPair& pair, Counters& counters) {
   if (pair.b < 0) {
     const CornerView block = cornersOf(position, static_cast<std::size_t>(pair.a));
     const double gap = lowestCorner(block);
-    if (gap > partingGap && !anyLive(pair.manifold)) {
+    if (gap > partingGap && !pushes(pair.manifold)) {
       part(pair, Vec3::UnitZ(), gap);
       return;
     }
@@ -227,7 +240,7 @@ void renewManifold(IslandStep& step, NearPair& pair, Counters& counters) {
     const CornerView a = cornersOf(position, static_cast<std::size_t>(pair.a));
     const CornerView b = cornersOf(position, static_cast<std::size_t>(pair.b));
     const Separation separation = findSeparation(a, b);
-    if (separation.best() > partingGap && !anyLive(pair.manifold)) {
+    if (separation.best() > partingGap && !pushes(pair.manifold)) {
       part(pair, separation.bestNormal(), separation.best());
       return;
     }

@@ -5,8 +5,9 @@
 namespace springtower {
 
 /// Looks at a pair that was apart and whose margin is used up, after a step: a direction that separates the blocks all through
-/// the step renews the margin; otherwise the cubic tests decide, and if features meet a contact is born.
-void watchApart(IslandStep& step, NearPair& pair, Counters& counters);
+/// the step renews the margin; otherwise the cubic tests decide, and if features meet a contact is born. The time of the cubic
+/// tests is added to `times`.
+void watchApart(IslandStep& step, NearPair& pair, Counters& counters, StageTimes& times);
 
 /// Renews the manifold of a touching pair from the positions now, keeping its memory; lets the pair go when it has parted.
 void renewManifold(IslandStep& step, NearPair& pair, Counters& counters);

@@ -42,6 +42,10 @@ SPRINGTOWER_INLINE void storePoints(const PointLanes& p, std::size_t first, Poin
   store(p.sliding, m.sliding.data() + first);
 }
 
+// Inverse mass of a point of a face whose four points are pushed alike, over that of the block: 4 (1 + 3), as it moves and
+// squashes.
+constexpr double kFlatInverse = 16.0;
+
 struct LawStep {
   const ContactLaw& law;
   const ContactStep& step;
@@ -49,6 +53,7 @@ struct LawStep {
   double impactFactor;  // stiffness scale per squared approach speed
   double scaleKeep;     // what is left of a scale's excess after the step
   double relaxGain;     // how much of its lag the relaxing branch forgets in the step
+  double pointMass;     // kg that a point moves at least: all four of a face that is hit flat push and squash the block
 };
 
 SPRINGTOWER_INLINE LawStep lawStep(const Manifold& m, const ContactLaw& law, const ContactStep& step, double reducedMass) {
@@ -59,7 +64,8 @@ SPRINGTOWER_INLINE LawStep lawStep(const Manifold& m, const ContactLaw& law, con
           stiffness,
           reducedMass / (stiffness * aim * aim),
           1.0 / (1.0 + step.advance_s / law.scaleTime_s),
-          step.advance_s / (law.relaxingTime_s + step.advance_s)};
+          step.advance_s / (law.relaxingTime_s + step.advance_s),
+          reducedMass / kFlatInverse};
 }
 
 SPRINGTOWER_INLINE bool any(const LaneMask& mask) {
@@ -96,6 +102,15 @@ SPRINGTOWER_INLINE void pointLaw(const LawStep& s, const Lanes& depth, const Lan
   const Lanes stiffness = s.stiffness * p.scale;
   Lanes push = stiffness * (elastic + law.relaxingRatio * (elastic - p.relaxed) + law.dampingTime_s * closing);
   push = touching & (push > zero) & (elastic > zero) ? push : zero;
+  if (s.step.kick_s > 0.0 && any(p.scale > one)) {
+    // A point that is thrown back within the step is given no more energy than it came with and its spring stores.
+    const Lanes spring = stiffness * (elastic + law.relaxingRatio * (elastic - p.relaxed));
+    const Lanes given = closing * closing + spring * (elastic - closing * s.step.kick_s) / s.pointMass;
+    Lanes back;
+    squareRoot(given > zero ? given : zero, back);
+    const Lanes most = (closing + back) * (s.pointMass / s.step.kick_s);
+    push = (p.scale > one) & (push > most) ? (most > zero ? most : zero) : push;
+  }
   p.normalForce = push;
 
   // Friction: carry the stretch along, keep it tangential, and bound it by the cone.
@@ -379,22 +394,6 @@ PointForces pointForces(const Manifold& manifold, const ContactSide& upper, cons
   const ContactStep now;
   evaluate(manifold, upper, lower, lawStep(manifold, law, now, 0.0), nullptr, unused, &report);
   return report;
-}
-
-double manifoldEnergy(const Manifold& manifold, const PointForces& points, const ContactLaw& law) {
-  double energy = 0.0;
-  const double stiffness = manifold.lower < 0 ? law.floorStiffness_n_m : law.stiffness_n_m;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(manifold.count); ++i) {
-    const double elastic = points.depth[i] - manifold.offset[i];
-    if (manifold.live[i] == 0.0 || elastic <= 0.0) continue;
-    const double lag =
-        elastic - std::min(manifold.relaxed[i], elastic * (1.0 + 1.0 / std::max(law.relaxingRatio, kLeastRelaxingRatio)));
-    const double stretch = manifold.stretchX[i] * manifold.stretchX[i] + manifold.stretchY[i] * manifold.stretchY[i] +
-                           manifold.stretchZ[i] * manifold.stretchZ[i];
-    energy +=
-        0.5 * stiffness * manifold.scale[i] * (elastic * elastic + law.relaxingRatio * lag * lag + law.tangentialRatio * stretch);
-  }
-  return energy;
 }
 
 }  // namespace springtower

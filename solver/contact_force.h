@@ -31,6 +31,7 @@ struct ContactStep {
   /// Where a point that is reached now starts to push: at 1 from the depth it is found at, which adds no energy; at 0 from the
   /// surface, which an implicit step needs, as it looks at the step's end alone.
   double bornOffset = 1.0;
+  double kick_s = 0.0;  ///< s for which the force acts on the velocities of a leapfrog step; 0 in other steps
 };
 
 /// Forces of one manifold on its two blocks, as sums over their affine coordinates (solver/block_frames.h), N.
@@ -65,9 +66,6 @@ void manifoldForces(const Manifold& manifold, const ContactSide& upper, const Co
 
 /// The same for reports: evaluates without advancing or keeping anything.
 PointForces pointForces(const Manifold& manifold, const ContactSide& upper, const ContactSide& lower, const ContactLaw& law);
-
-/// Energy stored in a manifold's springs, branches and anchors, J.
-double manifoldEnergy(const Manifold& manifold, const PointForces& points, const ContactLaw& law);
 
 /// Adds one affine field of forces to another.
 inline void addForce(const AffineField& part, AffineField& sum) {

@@ -132,6 +132,7 @@ struct Engine {
   CornerArray frameStartPrevious;           ///< m, and for implicit steps what they started from
   CornerArray frameStartPreviousVelocity;   ///< m/s
   std::vector<Counters> chunkCounters;      ///< of ranges of pairs inside a large island
+  std::vector<StageTimes> chunkTimes;       ///< and their times, s of one thread each
   std::vector<Counters> islandCounters;
   std::vector<StageTimes> islandTimes;
   std::vector<int> islandOutcome;  ///< steps of each island, -1 where a block left its swept box

@@ -16,13 +16,6 @@ using Range = tbb::blocked_range<std::size_t>;
 constexpr std::size_t kBlockGrain = 64;
 constexpr std::size_t kPairGrain = 128;
 
-double reducedMass(const BlockModel& model, const Manifold& manifold) {
-  const double upper = model.mass[static_cast<std::size_t>(manifold.upper)];
-  if (manifold.lower < 0) return upper;
-  const double lower = model.mass[static_cast<std::size_t>(manifold.lower)];
-  return upper * lower / (upper + lower);
-}
-
 // Runs a kernel over the island's blocks: at once, or in ranges on many threads.
 template <class Kernel>
 void overBlocks(const IslandStep& step, bool parallel, const Kernel& kernel) {
@@ -135,8 +128,9 @@ void evaluateForces(IslandStep& step, const MotionState& state, const CornerArra
   StageClock clock(step.times);
   Engine& engine = step.engine;
   const bool parallel = step.blocks.size() >= kParallelBlocks;
-  const Evaluation evaluation{
-      {advance_s, step.scaleMost, memory == Memory::trial ? 0.0 : 1.0}, &carried == &state.velocity, memory};
+  const bool sameMotion = &carried == &state.velocity;
+  const double kick_s = sameMotion && memory == Memory::advance ? step.kick_s : 0.0;
+  const Evaluation evaluation{{advance_s, step.scaleMost, memory == Memory::trial ? 0.0 : 1.0, kick_s}, sameMotion, memory};
   using Blocks = std::span<const std::int32_t>;
   overBlocks(step, parallel, [&](Blocks blocks) {
     computeFrames(state.position, blocks, engine.frames);

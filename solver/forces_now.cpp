@@ -15,6 +15,11 @@ namespace {
 // In which the stiffening of a contact that is hit fades, in sqrt(h / g); lowering a stiffness only takes energy out.
 constexpr double kStiffeningTime = 0.2322;
 
+// Whether explicit steps of this method have velocities half a step behind.
+bool isLeapfrog(Method method) {
+  return method == Method::semiImplicitEuler || isImplicit(method);
+}
+
 // A manifold as it stands at the positions now: frames of its blocks, and its memory brought up to date on a copy.
 struct ManifoldNow {
   Manifold manifold;
@@ -32,7 +37,8 @@ struct ManifoldNow {
     const ContactSide low{&frames[1], &motion[1], &carriedBy[1]};
     const ContactLaw law = contactLaw(simulation);
     const double behind = simulation.engine->clock[upper].lastDrift_s;
-    manifoldForces(manifold, up, low, law, {behind, 1.0, 1.0}, 0.0, &manifold, force);
+    const double kick = isLeapfrog(simulation.scene.settings.method) ? behind : 0.0;
+    manifoldForces(manifold, up, low, law, {behind, 1.0, 1.0, kick}, reducedMass(simulation.model, stored), &manifold, force);
     points = pointForces(manifold, up, low, law);
     if (isRigid(simulation.scene.settings.method)) {
       manifold = stored;
@@ -40,6 +46,21 @@ struct ManifoldNow {
     }
   }
 };
+
+// Stored in a manifold's springs, branches and anchors, J.
+double energyOf(const ManifoldNow& now, const ContactLaw& law) {
+  const Manifold& m = now.manifold;
+  const double stiffness = m.lower < 0 ? law.floorStiffness_n_m : law.stiffness_n_m;
+  double energy = 0.0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(m.count); ++i) {
+    const double elastic = now.points.depth[i] - m.offset[i];
+    if (m.live[i] == 0.0 || elastic <= 0.0) continue;
+    const double lag = elastic - m.relaxed[i];
+    const double stretch = Vec3(m.stretchX[i], m.stretchY[i], m.stretchZ[i]).squaredNorm();
+    energy += 0.5 * stiffness * m.scale[i] * (elastic * elastic + law.relaxingRatio * lag * lag + law.tangentialRatio * stretch);
+  }
+  return energy;
+}
 
 }  // namespace
 
@@ -114,31 +135,44 @@ Energy energy(const Simulation& simulation) {
   for (const NearPair& pair : simulation.engine->pairs) {
     if (pair.manifold.touch == Touch::apart) continue;
     const ManifoldNow now(simulation, pair.manifold);
-    energy.contacts += manifoldEnergy(now.manifold, now.points, law);
+    energy.contacts += energyOf(now, law);
     addForce(now.force.upper, contactForce[static_cast<std::size_t>(pair.manifold.upper)]);
     if (pair.manifold.lower >= 0) addForce(now.force.lower, contactForce[static_cast<std::size_t>(pair.manifold.lower)]);
   }
   springForces(model, state, all, contactForce, force);
   const InverseMass inverse = inverseMass(settings.inertia);
   CornerArray coming = state.velocity;
+  CornerArray change;
+  change.resize(model.blockCount());
   for (std::size_t b = 0; b < model.blockCount(); ++b) {
     energy.springs += springEnergy(model, state.position, b);
     energy.gravity -= model.mass[b] * gravity.dot(centre(state.position, b));
-    const bool leapfrog =
-        (settings.method == Method::semiImplicitEuler || isImplicit(settings.method)) && simulation.asleep[b] == 0;
-    const double kick = leapfrog ? simulation.engine->clock[b].lastDrift_s : 0.0;
+    const double kick = isLeapfrog(settings.method) && simulation.asleep[b] == 0 ? simulation.engine->clock[b].lastDrift_s : 0.0;
     for (std::size_t a = 0; a < 3; ++a) {
       const double* f = force.values(a, b);
       double* v = coming.values(a, b);
+      double* acceleration = change.values(a, b);
       double sum = 0.0;
       for (std::size_t c = 0; c < kCorners; ++c) sum += f[c];
       for (std::size_t c = 0; c < kCorners; ++c) {
-        v[c] += kick * ((inverse.own * f[c] - inverse.shared * sum) / model.mass[b] + gravity[static_cast<Eigen::Index>(a)]);
+        acceleration[c] = (inverse.own * f[c] - inverse.shared * sum) / model.mass[b] + gravity[static_cast<Eigen::Index>(a)];
+        v[c] += kick * acceleration[c];
       }
     }
+    energy.step_s.push_back(kick);
+    energy.stepShare_j_s2.push_back(0.125 * model.mass[b] * massProduct(settings.inertia, change, change, b));
     energy.kinetic += 0.5 * model.mass[b] * massProduct(settings.inertia, state.velocity, coming, b);
   }
   return energy;
+}
+
+double energyRise(const Energy& before, const Energy& after) {
+  double rise = after.total() - before.total();
+  for (std::size_t b = 0; b < before.step_s.size(); ++b) {
+    const double longer = before.step_s[b] * before.step_s[b] - after.step_s[b] * after.step_s[b];
+    rise -= longer * before.stepShare_j_s2[b];
+  }
+  return rise;
 }
 
 }  // namespace springtower

@@ -43,10 +43,6 @@ double fastestCorner(const CornerArray& velocity, std::size_t block, const Vec3&
   return std::sqrt(squared);
 }
 
-bool pushes(const Manifold& manifold) {
-  return std::any_of(manifold.live.begin(), manifold.live.begin() + manifold.count, [](double live) { return live != 0.0; });
-}
-
 Approach approachOf(const IslandStep& step) {
   const Simulation& simulation = step.simulation;
   std::vector<std::int32_t>& beginning = step.engine.beginning;
@@ -202,7 +198,8 @@ IslandOutcome runIsland(IslandStep& step) {
     step.advance_s = last;
     stepIsland(settings.method, step);
     last = step.drift_s;
-    outcome.inside = settings.method == Method::report ? acceptReportStep(step) : updateContacts(step);
+    outcome.inside =
+        settings.method == Method::report ? acceptReportStep(step) : updateContacts(step, renewalOfExplicitSteps(simulation));
     if (!outcome.inside) break;
   }
   for (const std::int32_t block : step.blocks) {

@@ -21,10 +21,11 @@ bool isCalm(const IslandStep& step) {
   const Simulation& simulation = step.simulation;
   const double most = kCalm * simulation.tolerance_m / simulation.scene.settings.frame_s;
   for (const std::int32_t block : step.blocks) {
-    // What has just been let go of has no speed yet.
-    if (!(simulation.restTime_s[static_cast<std::size_t>(block)] > 0.0)) return false;
+    // What has just been let go of has no speed yet, and what explicit steps brought here may be at a bounce's turn.
+    const auto b = static_cast<std::size_t>(block);
+    if (!(simulation.restTime_s[b] > 0.0) || step.engine.clock[b].lastDrift_s > 0.0) return false;
     for (std::size_t a = 0; a < 3; ++a) {
-      const double* v = simulation.state.velocity.values(a, static_cast<std::size_t>(block));
+      const double* v = simulation.state.velocity.values(a, b);
       for (std::size_t c = 0; c < kCorners; ++c) {
         if (!(std::abs(v[c]) <= most)) return false;
       }
@@ -96,7 +97,7 @@ bool implicitStepsFit(const IslandStep& step, double step_s) {
   const bool touches = std::any_of(step.pairs.begin(), step.pairs.end(), [&](std::int32_t at) {
     return step.engine.pairs[static_cast<std::size_t>(at)].manifold.touch != Touch::apart;
   });
-  if (!touches || meetsSoon(step, step_s)) return false;
+  if (!touches || meetsSoon(step, step_s) || bounces(step, step_s)) return false;
   for (const std::int32_t block : step.blocks) {
     const auto b = static_cast<std::size_t>(block);
     if (step.engine.clock[b].explicitFrames > 0) return false;
@@ -145,7 +146,7 @@ IslandOutcome runImplicitSteps(IslandStep& step, double& reached_s) {
     ++outcome.substeps;
     reached_s = simulation.scene.settings.frame_s * (i + 1) / steps;
     const std::uint64_t looked = step.counters.manifoldRefreshes + step.counters.contactsBorn;
-    outcome.inside = updateContacts(step);
+    outcome.inside = updateContacts(step, renewalOfImplicitSteps(simulation));
     if (!outcome.inside) return outcome;
     if (looked != step.counters.manifoldRefreshes + step.counters.contactsBorn) {
       island.forcesKnown = false;

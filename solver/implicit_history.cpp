@@ -20,6 +20,7 @@ void synchronise(IslandStep& step) {
     behind_s = std::max(behind_s, engine.clock[static_cast<std::size_t>(block)].lastDrift_s);
   if (behind_s == 0.0) return;
   CornerArray& velocity = step.simulation.state.velocity;
+  step.kick_s = behind_s;
   evaluateForces(step, step.simulation.state, velocity, behind_s, Memory::advance);
   for (const std::int32_t block : step.blocks) {
     const auto b = static_cast<std::size_t>(block);

@@ -2,6 +2,7 @@
 
 #include "core/settings.h"
 #include "core/state.h"
+#include "narrowphase/manifold.h"
 
 namespace springtower {
 
@@ -21,6 +22,14 @@ constexpr InverseMass inverseMass(Inertia inertia) {
 /// weights on the eight corners have the squares' sum 1/2.
 constexpr double affineCornerInverseMass(Inertia inertia) {
   return 0.5 * inverseMass(inertia).own - inverseMass(inertia).shared;
+}
+
+/// Mass that two blocks have towards each other, kg; that of the upper one on the floor.
+inline double reducedMass(const BlockModel& model, const Manifold& manifold) {
+  const double upper = model.mass[static_cast<std::size_t>(manifold.upper)];
+  if (manifold.lower < 0) return upper;
+  const double lower = model.mass[static_cast<std::size_t>(manifold.lower)];
+  return upper * lower / (upper + lower);
 }
 
 /// Inner product p^T M q of two fields on a block's corners, in units of its mass: the mean's part counts fully, what differs

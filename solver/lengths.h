@@ -7,6 +7,12 @@ namespace springtower {
 /// A manifold is renewed when its blocks have moved this far together. Between renewals its points are fixed on the upper block's
 /// face and slide over the lower one's, which is exact for the depth; only the outline of the overlap is late by this much.
 inline constexpr double kRefreshTravel = 0.02;
+/// The same for blocks that slide in implicit steps, of which a frame has few: an outline that is renewed in every other step
+/// makes the load jump to and fro.
+inline constexpr double kSlidingRefreshTravel = 0.002;
+/// The same for blocks that touch at one or two points and may roll, in explicit steps: at each renewal they sink by what the
+/// outline was late.
+inline constexpr double kRollingRefreshTravel = 0.004;
 /// Points higher above the reference face than this are left out; three renewals away, so none can be missed.
 inline constexpr double kManifoldReach = 0.06;
 /// Points of a manifold nearer to each other are one: flush corners would else be held twice and take turns.

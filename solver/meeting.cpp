@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace springtower {
 
@@ -56,20 +57,17 @@ Closing closingOf(const Simulation& simulation, const NearPair& pair) {
   return {gap, (gap - gapSoon) / soon};
 }
 
-// The longest way of a corner in the step just found, m; no less than that.
-double longestWay(const IslandStep& step) {
-  double longest = 0.0;
-  for (const std::int32_t block : step.blocks) {
-    const auto b = static_cast<std::size_t>(block);
-    double largest = 0.0;
-    for (std::size_t a = 0; a < 3; ++a) {
-      const double* now = step.simulation.state.position.values(a, b);
-      const double* before = step.engine.previous.values(a, b);
-      for (std::size_t c = 0; c < kCorners; ++c) largest = std::max(largest, std::abs(now[c] - before[c]));
-    }
-    longest = std::max(longest, largest);
+// The longest way of a corner of a block in the step just found, m, or a little more; the floor and what sleeps go none.
+double wayOf(const IslandStep& step, std::int32_t block) {
+  if (sleeps(step.simulation, block)) return 0.0;
+  const auto b = static_cast<std::size_t>(block);
+  double largest = 0.0;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const double* now = step.simulation.state.position.values(a, b);
+    const double* before = step.engine.previous.values(a, b);
+    for (std::size_t c = 0; c < kCorners; ++c) largest = std::max(largest, std::abs(now[c] - before[c]));
   }
-  return std::sqrt(3.0) * longest;
+  return std::sqrt(3.0) * largest;
 }
 
 // How far a pair may close in the step in which it meets, m: at a quarter of the speed that contacts as stiff as at rest stop
@@ -84,7 +82,7 @@ double bearableClosing(const IslandStep& step, const NearPair& pair) {
 }
 
 // How a pair that was apart has met in the step just found: by how much its blocks overlap now, m, negative where they do not,
-// and by how much they closed, m. `way` as above.
+// and by how much they closed, m. `way`: by how much they may have closed.
 struct Meeting {
   double overlap = -1.0;
   double closed = 0.0;
@@ -92,7 +90,7 @@ struct Meeting {
 
 Meeting meetingOf(const IslandStep& step, const NearPair& pair, double way) {
   const Engine& engine = step.engine;
-  if (travelOf(engine, pair) - pair.checkedTravel + 2.0 * way < pair.margin) return {};
+  if (travelOf(engine, pair) - pair.checkedTravel + way < pair.margin) return {};
   const CornerArray& now = step.simulation.state.position;
   Vec3 direction = pair.b >= 0 ? pair.witness : Vec3::UnitZ();
   if (gapOf(pair, direction, now) > 0.0) return {};
@@ -114,7 +112,7 @@ std::array<double, kManifoldPoints> depthsAt(const IslandStep& step, const Manif
 }
 
 // Whether a touching pair has met anew in the step just found: points that push only since closed at speed, or the blocks overlap
-// otherwise than their points know. `way` as above.
+// otherwise than their points know by more than `most`. `way`: how far they went together, m.
 bool metAnew(const IslandStep& step, const NearPair& pair, const PointMemory& trial, double way, double most) {
   const Manifold& manifold = pair.manifold;
   const auto count = static_cast<std::size_t>(manifold.count);
@@ -124,7 +122,7 @@ bool metAnew(const IslandStep& step, const NearPair& pair, const PointMemory& tr
     pushes = pushes || trial.live[i] != 0.0;
     begins = begins || (trial.live[i] != 0.0 && manifold.live[i] == 0.0);
   }
-  const bool late = pair.b >= 0 && (!pushes || 2.0 * way > refreshTravel(step.simulation));
+  const bool late = pair.b >= 0 && (!pushes || way > refreshTravel(step.simulation));
   if (!begins && !late) return false;
   const CornerArray& now = step.simulation.state.position;
   const std::array<double, kManifoldPoints> depth = depthsAt(step, manifold, now);
@@ -141,7 +139,61 @@ bool metAnew(const IslandStep& step, const NearPair& pair, const PointMemory& tr
               .best() > known + most;
 }
 
+// Velocity of a place on a block, m/s.
+Vec3 velocityAt(const BlockFrame& frame, const AffineField& motion, const Vec3& place) {
+  Vec3 velocity(motion.centre[0], motion.centre[1], motion.centre[2]);
+  const Vec3 arm = place - Vec3(frame.place.centre[0], frame.place.centre[1], frame.place.centre[2]);
+  for (std::size_t a = 0; a < 3; ++a) {
+    const double share = frame.dual[a][0] * arm[0] + frame.dual[a][1] * arm[1] + frame.dual[a][2] * arm[2];
+    velocity += share * Vec3(motion.side[a][0], motion.side[a][1], motion.side[a][2]);
+  }
+  return velocity;
+}
+
+// How fast the points of a manifold open or close, the slowest of them, m/s; of those that push, where any does.
+double slowestRate(const IslandStep& step, const Manifold& manifold) {
+  const MotionState& state = step.simulation.state;
+  const auto u = static_cast<std::size_t>(manifold.upper);
+  const auto l = static_cast<std::size_t>(std::max(manifold.lower, 0));
+  const AffineField still{};
+  const BlockFrame upper = blockFrame(state.position, u);
+  const BlockFrame lower = blockFrame(state.position, l);
+  const AffineField upperMotion = affineField(state.velocity, u);
+  const AffineField lowerMotion = manifold.lower < 0 ? still : affineField(state.velocity, l);
+  const PointForces points =
+      pointForces(manifold, {&upper, &still, &still}, {manifold.lower < 0 ? nullptr : &lower, &still, &still}, step.law);
+  const bool any = pushes(manifold);
+  double slowest = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < static_cast<std::size_t>(manifold.count); ++i) {
+    if (any && manifold.live[i] == 0.0) continue;
+    const Vec3 apart = velocityAt(upper, upperMotion, points.place[i]) - velocityAt(lower, lowerMotion, points.lowerPlace[i]);
+    slowest = std::min(slowest, std::abs(points.direction.dot(apart)));
+  }
+  return slowest;
+}
+
+double fastestCorner(const IslandStep& step, std::int32_t block) {
+  if (sleeps(step.simulation, block)) return 0.0;
+  double fastest = 0.0;
+  for (std::size_t c = 0; c < kCorners; ++c)
+    fastest = std::max(fastest, step.simulation.state.velocity.at(static_cast<std::size_t>(block), c).squaredNorm());
+  return std::sqrt(fastest);
+}
+
 }  // namespace
+
+bool bounces(const IslandStep& step, double step_s) {
+  const double most = kMostClosing * step.simulation.tolerance_m / step_s;
+  double fastest = 0.0;
+  for (const std::int32_t block : step.blocks) fastest = std::max(fastest, fastestCorner(step, block));
+  if (2.0 * fastest <= most) return false;
+  return std::any_of(step.pairs.begin(), step.pairs.end(), [&](std::int32_t at) {
+    const NearPair& pair = step.engine.pairs[static_cast<std::size_t>(at)];
+    if (pair.manifold.touch == Touch::apart) return false;
+    if (fastestCorner(step, pair.a) + fastestCorner(step, pair.b) <= most) return false;
+    return slowestRate(step, pair.manifold) > most;
+  });
+}
 
 bool meetsSoon(const IslandStep& step, double step_s) {
   const Simulation& simulation = step.simulation;
@@ -156,12 +208,15 @@ bool meetsSoon(const IslandStep& step, double step_s) {
 }
 
 Meetings meetingsIn(IslandStep& step) {
-  const double way = longestWay(step);
   const double most = kMostOverlap * step.simulation.tolerance_m;
-  if (2.0 * way <= most) return Meetings::none;
+  double longest = 0.0;
+  for (const std::int32_t block : step.blocks) longest = std::max(longest, wayOf(step, block));
+  if (2.0 * longest <= most) return Meetings::none;
   Meetings found = Meetings::none;
   for (const std::int32_t at : step.pairs) {
     NearPair& pair = step.engine.pairs[static_cast<std::size_t>(at)];
+    const double way = wayOf(step, pair.a) + wayOf(step, pair.b);
+    if (way <= most) continue;
     if (pair.manifold.touch != Touch::apart) {
       if (metAnew(step, pair, step.engine.trial[static_cast<std::size_t>(at)], way, most)) return Meetings::atSpeed;
       continue;
@@ -172,7 +227,7 @@ Meetings meetingsIn(IslandStep& step) {
     if (meeting.overlap <= most) continue;
     keepPair(step.engine, static_cast<std::size_t>(at));
     pair.checkedTravel = travelOf(step.engine, pair);
-    watchApart(step, pair, step.counters);
+    watchApart(step, pair, step.counters, step.times);
     if (pair.manifold.touch != Touch::apart) found = Meetings::broughtIn;
   }
   return found;

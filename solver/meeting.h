@@ -4,6 +4,10 @@
 
 namespace springtower {
 
+/// Whether a contact opens or closes as a whole, by more than an implicit step of `step_s` follows: in the midst of a bounce an
+/// implicit step throws a block back with more than it came with.
+bool bounces(const IslandStep& step, double step_s);
+
 /// Whether blocks of the island that are apart come together within the frame, as they move now, at a speed that an implicit
 /// step of `step_s` does not follow.
 bool meetsSoon(const IslandStep& step, double step_s);

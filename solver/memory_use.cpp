@@ -54,7 +54,7 @@ MemoryUse memoryUse(const Simulation& simulation) {
                       engine.pairForce, engine.clock, engine.lostPartner, engine.toWake, engine.pushed, engine.change,
                       engine.beginning, engine.restless, engine.parent, engine.joined, engine.touched, engine.rest, engine.report,
                       engine.frameStart, engine.frameStartClock, engine.frameStartPoints, engine.pairKept, engine.chunkCounters,
-                      engine.islandCounters, engine.islandTimes, engine.islandOutcome);
+                      engine.chunkTimes, engine.islandCounters, engine.islandTimes, engine.islandOutcome);
   use.working += sumOf(engine.sweep.order, engine.sweep.place, engine.sweep.columns, engine.sweep.awake, engine.sweep.renewed,
                        engine.sweep.ascending, engine.sweep.outOfOrder);
   for (const MotionState& stage : engine.stage) use.working += bytesOf(stage);

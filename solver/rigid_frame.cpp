@@ -225,7 +225,7 @@ IslandOutcome runRigidSteps(IslandStep& step) {
     for (int repeat = 0;; ++repeat) {
       const std::uint64_t born = step.counters.contactsBorn;
       stepOnce(step);
-      outcome.inside = updateContacts(step);
+      outcome.inside = updateContacts(step, renewalOfExplicitSteps(simulation));
       if (!outcome.inside || born == step.counters.contactsBorn || repeat == kMostRepeats) break;
       backToStart(step);
     }

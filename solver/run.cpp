@@ -30,7 +30,7 @@ bool allAsleep(const Simulation& simulation) {
 struct FrameMeasures {
   Penetration penetration;
   double meanSquareSpeed = 0.0;
-  double energy_j = 0.0;  // when last measured
+  Energy energy;  // when last measured
 };
 
 // Everything about a run that grows from frame to frame.
@@ -48,7 +48,7 @@ class Recorder {
     lastSecond_.assign(static_cast<std::size_t>(std::max(1L, framesInASecond)), 0.0);
     measure(simulation);
     result_.energyStart = energy(simulation);
-    now_.energy_j = result_.energyStart.total();
+    now_.energy = result_.energyStart;
   }
 
   // `unchanged`: nothing moved in this frame, so that the measures of the frame before still hold.
@@ -64,7 +64,7 @@ class Recorder {
     if (firstRest || (!settled_ && ran_s > kSettledTime_s)) settle(simulation);
     if (!unchanged && options_.measureEveryFrame) {
       measure(simulation);
-      if (!resting || !rested_) measureEnergy(energy(simulation).total());
+      if (!resting || !rested_) measureEnergy(energy(simulation));
     }
     rested_ = resting;
     if (settled_) settledPenetration_m_ = std::max(settledPenetration_m_, now_.penetration.depth);
@@ -88,7 +88,7 @@ class Recorder {
     result_.jitter_m_s = options_.measureEveryFrame ? jitter() : std::sqrt(now_.meanSquareSpeed);
     result_.topHeightError_m = topHeightError(closed_, simulation.state.position);
     result_.energyEnd = energy(simulation);
-    measureEnergy(result_.energyEnd.total());
+    measureEnergy(result_.energyEnd);
     const double scale_j = std::abs(result_.energyStart.total());
     if (options_.measureEveryFrame && scale_j > 0.0) result_.maxEnergyRise = largestRise_j_ / scale_j;
     result_.asleepBlocks = static_cast<std::size_t>(std::count(simulation.asleep.begin(), simulation.asleep.end(), 1));
@@ -122,9 +122,9 @@ class Recorder {
     now_.meanSquareSpeed = speed * speed;
   }
 
-  void measureEnergy(double total_j) {
-    largestRise_j_ = std::max(largestRise_j_, total_j - now_.energy_j);
-    now_.energy_j = total_j;
+  void measureEnergy(Energy energy) {
+    largestRise_j_ = std::max(largestRise_j_, energyRise(now_.energy, energy));
+    now_.energy = std::move(energy);
   }
 
   // From here on penetration and creep are those of a settled scene. Rest that comes after kSettledTime_s starts them afresh.

@@ -65,10 +65,16 @@ struct Energy {
   double kinetic = 0.0;
   double gravity = 0.0;  ///< against the floor z = 0, with the gravity of the moment
   double springs = 0.0;
-  double contacts = 0.0;  ///< stored in contact springs: normal, relaxing branch, friction anchors
+  double contacts = 0.0;       ///< stored in contact springs: normal, relaxing branch, friction anchors
+  std::vector<double> step_s;  ///< of each block: the step of that kick; 0 where its velocity is that of its position's time
+  std::vector<double> stepShare_j_s2;  ///< of each block: what the kinetic energy lacks for it, over the square of the step
   [[nodiscard]] double total() const { return kinetic + gravity + springs + contacts; }
 };
 Energy energy(const Simulation& simulation);
+
+/// By how much the energy rose between the ends of two frames, J, both as the later one's steps conserve it: where a frame takes
+/// shorter steps than the one before nothing has risen yet.
+double energyRise(const Energy& before, const Energy& after);
 
 /// One contact point as it acts now, for reports, overlays and tests: the force on `upper` from `lower` (kFloor: the floor).
 struct ContactForce {

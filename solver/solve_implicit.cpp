@@ -292,15 +292,33 @@ double predict(IslandStep& step, ImplicitIsland& island, double effective_s, Sta
   return evaluateResidual(step, island, effective_s, clock);
 }
 
-// Newton's iteration for the state at the step's end, from engine.target and engine.history. Returns whether it converged.
-bool solveStep(IslandStep& step, double effective_s, int mostContactIterations) {
+// Whether the step begins where the blocks are carried, whatever the forces are where they are: all have a history, and one moves
+// so fast that its inertia alone asks for it.
+bool isCarried(const IslandStep& step, double effective_s) {
+  const double gravity = std::max(step.simulation.scene.gravity.magnitude, 1.0);
+  const double most = kPredicted * kResidual * gravity * effective_s * effective_s / step.drift_s;
+  bool moves = false;
+  for (const std::int32_t block : step.blocks) {
+    const auto b = static_cast<std::size_t>(block);
+    if (!(step.engine.clock[b].history_s > 0.0)) return false;
+    for (std::size_t a = 0; a < 3 && !moves; ++a) {
+      const double* v = step.simulation.state.velocity.values(a, b);
+      for (std::size_t c = 0; c < kCorners; ++c) moves = moves || std::abs(v[c]) > most;
+    }
+  }
+  return moves;
+}
+
+// Newton's iteration for the state at the step's end, from engine.target and engine.history. Unless the blocks are `carried` the
+// forces are known where they are. Returns whether it converged.
+bool solveStep(IslandStep& step, double effective_s, bool carried, int mostContactIterations) {
   ImplicitIsland& island = islandOf(step);
   StageClock clock(step.times);
   layOut(step, island);
   island.moved = false;
   if (island.step_s != effective_s || tetherStiffness(step, effective_s) != island.tether) island.factorised = false;
-  double residual = island.tooDense ? 0.0 : findResidual(step, island, effective_s);
-  if (residual > kPredicted) residual = predict(step, island, effective_s, clock);
+  double residual = island.tooDense || carried ? 0.0 : findResidual(step, island, effective_s);
+  if (!island.tooDense && (carried || residual > kPredicted)) residual = predict(step, island, effective_s, clock);
   bool converged = false;
   int most = island.tooDense ? 0 : kMostIterations;
   bool slow = false;
@@ -340,21 +358,24 @@ bool finishStep(IslandStep& step, bool taken) {
 bool stepImplicit(IslandStep& step) {
   const double effective_s = endShare(step.simulation.scene.settings.method) * step.drift_s;
   synchronise(step);
-  if (!islandOf(step).forcesKnown)
+  const bool carried = !islandOf(step).forcesKnown && isCarried(step, effective_s);
+  if (!islandOf(step).forcesKnown && !carried)
     evaluateForces(step, step.simulation.state, step.simulation.state.velocity, 0.0, Memory::trial);
   if (step.simulation.scene.settings.method == Method::implicitEuler) {
     foretellOneStep(step, effective_s);
   } else {
     foretell(step, effective_s);
   }
-  bool converged = solveStep(step, effective_s, kMostContactIterations);
+  bool converged = solveStep(step, effective_s, carried, kMostContactIterations);
   for (int trial = 0; converged && trial < kMostMeetings; ++trial) {
+    StageClock clock(step.times);
     const Meetings met = meetingsIn(step);
+    clock.lap(Stage::candidates);
     if (met == Meetings::atSpeed) return finishStep(step, false);
     if (met == Meetings::none) break;
     goBack(step);
     evaluateForces(step, step.simulation.state, step.simulation.state.velocity, 0.0, Memory::trial);
-    converged = solveStep(step, effective_s, kMostContactIterations);
+    converged = solveStep(step, effective_s, false, kMostContactIterations);
   }
   return finishStep(step, converged);
 }
@@ -364,7 +385,8 @@ bool stepFromRest(IslandStep& step, double effective_s) {
   evaluateForces(step, step.simulation.state, step.simulation.state.velocity, 0.0, Memory::trial);
   foretellOneStep(step, effective_s);
   // The weight of a tower that is laid down comes to its foot row by row.
-  return finishStep(step, solveStep(step, effective_s, std::max(kMostContactIterations, static_cast<int>(step.blocks.size()))));
+  return finishStep(step,
+                    solveStep(step, effective_s, false, std::max(kMostContactIterations, static_cast<int>(step.blocks.size()))));
 }
 
 }  // namespace springtower

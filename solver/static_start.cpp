@@ -1,5 +1,6 @@
 #include "solver/static_start.h"
 
+#include "solver/contact_births.h"
 #include "solver/frame_start.h"
 #include "solver/implicit.h"
 #include "solver/inertia.h"
@@ -61,6 +62,7 @@ double stop(IslandStep& step) {
 bool settle(IslandStep& step) {
   const double tolerance = step.simulation.tolerance_m;
   const double fallTime_s = step.simulation.lengths.fallTime_s;
+  const double travel_m = refreshTravel(step.simulation);  // blocks slide by tolerances at most here
   double effective_s = kFirstStep * fallTime_s;
   int retries = 0;
   for (int i = 0; i < kMostSteps; ++i) {
@@ -71,7 +73,7 @@ bool settle(IslandStep& step) {
       continue;
     }
     const double farthest = stop(step);
-    if (!(farthest < kFarthest * tolerance) || !updateContacts(step)) return false;
+    if (!(farthest < kFarthest * tolerance) || !updateContacts(step, {travel_m, travel_m, travel_m})) return false;
     if (effective_s >= kLastStep * fallTime_s && farthest < kSettled * tolerance) return true;
     effective_s = std::min(kLastStep * fallTime_s, kGrowth * effective_s);
   }

@@ -54,7 +54,24 @@ bool addTravel(IslandStep& step) {
 
 namespace {
 
-void updatePair(IslandStep& step, std::int32_t at, Counters& counters) {
+bool slides(const Manifold& manifold) {
+  return std::any_of(manifold.sliding.begin(), manifold.sliding.begin() + manifold.count,
+                     [](double share) { return share != 0.0; });
+}
+
+// Whether blocks touch at a corner or along a line only, where one rolls on the other.
+bool rolls(const Manifold& manifold) {
+  const auto live = std::count(manifold.live.begin(), manifold.live.begin() + manifold.count, 1.0);
+  return live == 1 || live == 2;
+}
+
+// Path after which a pair's manifold is renewed, m.
+double renewalTravel(const Manifold& manifold, const RenewalTravel& travel) {
+  if (slides(manifold)) return travel.sliding_m;
+  return rolls(manifold) ? travel.rolling_m : travel.resting_m;
+}
+
+void updatePair(IslandStep& step, std::int32_t at, const RenewalTravel& renewal, Counters& counters, StageTimes& times) {
   NearPair& pair = step.engine.pairs[static_cast<std::size_t>(at)];
   const double travel = travelOf(step.engine, pair);
   const double used = travel - pair.checkedTravel;
@@ -63,8 +80,8 @@ void updatePair(IslandStep& step, std::int32_t at, Counters& counters) {
     ++counters.marginsSpent;
     keepPair(step.engine, static_cast<std::size_t>(at));
     pair.checkedTravel = travel;
-    watchApart(step, pair, counters);
-  } else if (used > refreshTravel(step.simulation)) {
+    watchApart(step, pair, counters, times);
+  } else if (used > renewalTravel(pair.manifold, renewal)) {
     keepPair(step.engine, static_cast<std::size_t>(at));
     pair.checkedTravel = travel;
     renewManifold(step, pair, counters);
@@ -77,30 +94,51 @@ void findTouching(IslandStep& step) {
   for (const std::int32_t at : step.pairs) {
     NearPair& pair = step.engine.pairs[static_cast<std::size_t>(at)];
     keepPair(step.engine, static_cast<std::size_t>(at));
-    if (pair.manifold.touch == Touch::apart) watchApart(step, pair, step.counters);
+    if (pair.manifold.touch == Touch::apart) watchApart(step, pair, step.counters, step.times);
   }
 }
 
-bool updateContacts(IslandStep& step) {
+bool updateContacts(IslandStep& step, const RenewalTravel& renewal) {
   StageClock clock(step.times);
+  double& candidates_s = step.times.seconds[static_cast<std::size_t>(Stage::candidates)];
+  double& cubicTests_s = step.times.seconds[static_cast<std::size_t>(Stage::cubicTests)];
+  const double cubicBefore_s = cubicTests_s;
   const bool inside = addTravel(step);
-  if (step.blocks.size() >= kParallelBlocks) {
-    constexpr std::size_t kChunk = 256;
-    const std::size_t chunks = (step.pairs.size() + kChunk - 1) / kChunk;
-    std::vector<Counters>& counted = step.engine.chunkCounters;
-    if (counted.size() < chunks) counted.resize(chunks);
-    tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t chunk) {
-      counted[chunk] = Counters{};
-      const std::size_t last = std::min(step.pairs.size(), (chunk + 1) * kChunk);
-      for (std::size_t i = chunk * kChunk; i < last; ++i) {
-        updatePair(step, step.pairs[i], counted[chunk]);
-      }
-    });
-    for (std::size_t chunk = 0; chunk < chunks; ++chunk) step.counters += counted[chunk];
-  } else {
-    for (const std::int32_t at : step.pairs) updatePair(step, at, step.counters);
+  if (step.blocks.size() < kParallelBlocks) {
+    for (const std::int32_t at : step.pairs) updatePair(step, at, renewal, step.counters, step.times);
+    clock.lap(Stage::candidates);
+    candidates_s -= cubicTests_s - cubicBefore_s;  // they were timed inside
+    return inside;
   }
+
+  constexpr std::size_t kChunk = 256;
+  const std::size_t chunks = (step.pairs.size() + kChunk - 1) / kChunk;
+  std::vector<Counters>& counted = step.engine.chunkCounters;
+  std::vector<StageTimes>& timed = step.engine.chunkTimes;
+  if (counted.size() < chunks) counted.resize(chunks);
+  if (timed.size() < chunks) timed.resize(chunks);
+  tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t chunk) {
+    counted[chunk] = Counters{};
+    timed[chunk] = StageTimes{};
+    StageClock all(timed[chunk]);
+    const std::size_t last = std::min(step.pairs.size(), (chunk + 1) * kChunk);
+    for (std::size_t i = chunk * kChunk; i < last; ++i) {
+      updatePair(step, step.pairs[i], renewal, counted[chunk], timed[chunk]);
+    }
+    all.lap(Stage::candidates);
+  });
+  StageTimes sum;
+  for (std::size_t chunk = 0; chunk < chunks; ++chunk) {
+    step.counters += counted[chunk];
+    sum += timed[chunk];
+  }
+  // On many threads the cubic tests take their share of the time that passed.
+  const double before_s = candidates_s;
   clock.lap(Stage::candidates);
+  const double all_s = sum.seconds[static_cast<std::size_t>(Stage::candidates)];
+  const double share = all_s > 0.0 ? sum.seconds[static_cast<std::size_t>(Stage::cubicTests)] / all_s : 0.0;
+  cubicTests_s += share * (candidates_s - before_s);
+  candidates_s -= share * (candidates_s - before_s);
   return inside;
 }
 
