@@ -1,5 +1,5 @@
 // springtower chart --maps, run as a user would.
-#include "tests/apps/program.h"
+#include "tests/support/program.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

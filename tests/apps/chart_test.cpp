@@ -1,5 +1,5 @@
 // springtower chart, run as a user would.
-#include "tests/apps/program.h"
+#include "tests/support/program.h"
 
 #include <algorithm>
 #include <filesystem>

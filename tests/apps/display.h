@@ -1,6 +1,6 @@
 #pragma once
 
-#include "tests/apps/program.h"
+#include "tests/support/program.h"
 
 #include <string>
 #include <string_view>

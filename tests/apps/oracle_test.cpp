@@ -1,5 +1,5 @@
 #include "core/random.h"
-#include "tests/apps/program.h"
+#include "tests/support/program.h"
 
 #include <algorithm>
 #include <fstream>

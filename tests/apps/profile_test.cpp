@@ -1,5 +1,5 @@
 // springtower profile, run as a user would.
-#include "tests/apps/program.h"
+#include "tests/support/program.h"
 
 #include <algorithm>
 #include <cairo.h>

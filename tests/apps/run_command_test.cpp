@@ -1,4 +1,4 @@
-#include "tests/apps/program.h"
+#include "tests/support/program.h"
 
 #include <array>
 #include <cmath>
@@ -130,9 +130,20 @@ TEST(Program, SaysItsVersion) {
 
 TEST(Program, AFullDiskBehindStandardOutputIsAnError) {
   ASSERT_TRUE(std::ofstream("/dev/full")) << "every Linux has it";
+  const std::string list = "{\"id\":\"a\",\"config\":\"(010)\"}\n";
+  for (const std::vector<std::string>& arguments :
+       std::vector<std::vector<std::string>>{{"run", "tower:1", "--seconds", "0.1"}, {"verdict", "-"}, {"statics", "-"}}) {
+    const ProgramResult result = runProgram("springtower", arguments, list, "/dev/full");
+    EXPECT_EQ(result.exitCode, 2) << arguments[0];
+    EXPECT_EQ(result.error, "springtower: standard output: writing failed\n") << arguments[0];
+  }
+}
+
+TEST(Program, AFullDiskBehindTheReportIsAnError) {
+  ASSERT_TRUE(std::ofstream("/dev/full")) << "every Linux has it";
   const ProgramResult result = run({"tower:1", "--seconds", "0.1", "--report", "/dev/full"});
   EXPECT_EQ(result.exitCode, 2);
-  EXPECT_THAT(result.error, HasSubstr("--report"));
+  EXPECT_THAT(result.error, HasSubstr("--report: cannot write '/dev/full'"));
 }
 
 TEST(RunCommand, ReportsEverythingByName) {

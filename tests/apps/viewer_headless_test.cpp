@@ -1,5 +1,5 @@
 // The viewer without a window: pictures, films, and what it says to bad arguments.
-#include "tests/apps/program.h"
+#include "tests/support/program.h"
 
 #include <cstdlib>
 #include <filesystem>

@@ -5,8 +5,8 @@
 #include "core/error.h"
 #include "solver/measures.h"
 #include "tests/apps/loose_tower.h"
-#include "tests/apps/program.h"
 #include "tests/apps/viewer_play.h"
+#include "tests/support/program.h"
 
 #include <fstream>
 #include <gmock/gmock.h>

@@ -1,4 +1,4 @@
-#include "tests/apps/program.h"
+#include "tests/support/program.h"
 
 #include <cerrno>
 #include <cstdlib>
@@ -28,12 +28,13 @@ namespace {
 
 }  // namespace
 
-ProgramResult runProgram(std::string_view name, const std::vector<std::string>& arguments, std::string_view input) {
+ProgramResult runProgram(std::string_view name, const std::vector<std::string>& arguments, std::string_view input,
+                         const std::string& output) {
   const std::string program = std::string(SPRINGTOWER_BINARY_DIR) + "/bin/" + std::string(name);
   if (access(program.c_str(), X_OK) != 0) throw std::runtime_error("not built: " + program);
   const ScratchFolder scratch;
   const std::string in = scratch.file("in");
-  const std::string out = scratch.file("out");
+  const std::string out = output.empty() ? scratch.file("out") : output;
   const std::string error = scratch.file("error");
   std::ofstream(in, std::ios::binary) << input;
   std::vector<std::string> words = {std::string(name)};
@@ -52,7 +53,7 @@ ProgramResult runProgram(std::string_view name, const std::vector<std::string>& 
   }
   ProgramResult result;
   result.exitCode = WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
-  result.output = contentOf(out);
+  if (output.empty()) result.output = contentOf(out);
   result.error = contentOf(error);
   if (result.exitCode == 127) throw std::runtime_error("cannot run " + program);
   return result;

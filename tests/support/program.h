@@ -15,8 +15,10 @@ struct ProgramResult {
 };
 
 /// Runs a program of this build (`name` in its folder bin) with the arguments as they are, no shell between; `input` is its
-/// standard input. Throws std::runtime_error when it cannot be run.
-ProgramResult runProgram(std::string_view name, const std::vector<std::string>& arguments, std::string_view input = {});
+/// standard input. Standard output goes to the file or device `output` instead of the result where one is given. Throws
+/// std::runtime_error when it cannot be run.
+ProgramResult runProgram(std::string_view name, const std::vector<std::string>& arguments, std::string_view input = {},
+                         const std::string& output = {});
 
 /// Lines of a text; a last line end does not begin another.
 std::vector<std::string> linesOf(const std::string& text);
