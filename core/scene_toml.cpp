@@ -1,6 +1,7 @@
 #include "core/error.h"
 #include "core/limits.h"
 #include "core/scene.h"
+#include "core/toml_keys.h"
 #include "core/toml_moves.h"
 #include "core/toml_table.h"
 
@@ -225,9 +226,11 @@ std::string textOf(const std::string& path, const std::string& file) {
 
 Scene sceneFromToml(const std::string& path, const TowerOptions& options) {
   const std::string file = onOneLine(path);
+  const std::string text = textOf(path, file);
+  refuseLongKeys(text, file);
   toml::table parsed;
   try {
-    parsed = toml::parse(textOf(path, file), path);
+    parsed = toml::parse(text, path);
   } catch (const toml::parse_error& error) {
     const toml::source_position& place = error.source().begin;
     throw InputError(fmt::format("{}:{}:{}: {}", file, place.line, place.column, onOneLine(error.description())));
