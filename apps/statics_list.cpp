@@ -2,6 +2,7 @@
 
 #include "apps/statics_report.h"
 #include "apps/verdict.h"
+#include "apps/verdict_json.h"
 #include "core/error.h"
 #include "core/limits.h"
 
@@ -73,9 +74,9 @@ Lines readLines(std::istream& input, const std::string& source) {
   std::string rest;
   std::string text;
   for (std::size_t number = 1; std::getline(input, text); ++number) {
-    Json json = Json::parse(text, nullptr, false);
+    const std::string where = fmt::format("{}: line {}", source, number);
+    Json json = isBlankLine(text) ? Json(nullptr) : parseVerdictLine(text, where);
     if (json.is_object() && (json.contains("remove") || json.contains("stands_after"))) {
-      const std::string where = fmt::format("{}: line {}", source, number);
       if (!json.contains("remove")) throw InputError(where + ": found stands_after without remove, allowed is both");
       found[number] = {json.at("remove"), json.contains("stands_after") ? json.at("stands_after") : Json(nullptr)};
       json.erase("remove");

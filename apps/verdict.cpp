@@ -29,6 +29,13 @@ constexpr std::string_view kVerdictExamples = R"help(a line of the input:
   {"id": "a", "config": "(010)-(010)-(011)", "mu": 0.4, "gravity_tilt_deg": 5, "gravity_direction_deg": 90,
    "offsets_m": [{"row": 1, "position": 2, "dx": 0.002, "dy": 0}], "lower_m": [{"row": 0, "position": 2, "by": 0.0003}]}
   id and config are needed; rows count from 0, positions from 1; expect is carried along: {"stands": true, "clear": true}
+a line of the output:
+  {"id": "a", "stands": false, "time_s": 0.0333, "steps": 77, "max_penetration_mm": null, "creep_mm": null, "expect": ...}
+  time_s                        when it had fallen or was at rest, null if neither came
+  steps                         how many were taken
+  max_penetration_mm, creep_mm  the largest since it was at rest, or since 5 s; null if it ended before
+  diverged                      only where the simulation diverged, says how: stands is null, time_s is when that was,
+                                steps are those of the whole frames until then
 examples:
   springtower verdict towers.jsonl > verdicts.jsonl
   echo '{"id": "a", "config": "(010)-(100)"}' | springtower verdict -
@@ -37,7 +44,8 @@ examples:
 // What came of one line.
 struct Verdict {
   RunResult result;
-  std::string divergence;  // empty unless the scene diverged
+  std::optional<double> time_s;  // when it had fallen, was at rest or diverged
+  std::string divergence;        // empty unless the scene diverged
 };
 
 Verdict judge(const VerdictLine& line, double seconds) {
@@ -47,10 +55,14 @@ Verdict judge(const VerdictLine& line, double seconds) {
   options.stopWhenAtRest = true;
   options.secondsAfterRest = kVerdictWatch_s;
   Verdict verdict;
+  std::optional<Simulation> simulation;
   try {
-    Simulation simulation(line.scene);
-    verdict.result = runScene(simulation, options);
+    simulation.emplace(line.scene);
+    verdict.result = runScene(*simulation, options);
+    verdict.time_s = verdict.result.standing.stands ? verdict.result.restTime_s : verdict.result.fallTime_s;
   } catch (const DivergenceError& error) {
+    if (simulation) verdict.result.counters = simulation->counters;
+    verdict.time_s = error.time_s;
     verdict.divergence = error.what();
   } catch (const InputError& error) {
     throw InputError(fmt::format("line {}: {}", line.number, error.what()));
@@ -73,20 +85,19 @@ std::vector<Verdict> judgeAll(const std::vector<VerdictLine>& lines, double seco
 }
 
 Json verdictJson(const VerdictLine& line, const Verdict& verdict) {
+  const RunResult& result = verdict.result;
+  const bool diverged = !verdict.divergence.empty();
+  const auto orNull = [](const std::optional<double>& number, double unit = 1.0) {
+    return number ? Json(unit * *number) : Json(nullptr);
+  };
   Json json;
   json["id"] = line.id;
-  if (!verdict.divergence.empty()) {
-    json["stands"] = nullptr;
-    json["diverged"] = verdict.divergence;
-  } else {
-    const RunResult& result = verdict.result;
-    const std::optional<double>& time = result.standing.stands ? result.restTime_s : result.fallTime_s;
-    json["stands"] = result.standing.stands;
-    json["time_s"] = time ? Json(*time) : Json(nullptr);
-    json["steps"] = result.counters.steps;
-    json["max_penetration_mm"] = result.maxPenetration_m ? Json(kMillimetres * *result.maxPenetration_m) : Json(nullptr);
-    json["creep_mm"] = result.creep_m ? Json(kMillimetres * *result.creep_m) : Json(nullptr);
-  }
+  json["stands"] = diverged ? Json(nullptr) : Json(result.standing.stands);
+  json["time_s"] = orNull(verdict.time_s);
+  json["steps"] = result.counters.steps;
+  json["max_penetration_mm"] = orNull(result.maxPenetration_m, kMillimetres);
+  json["creep_mm"] = orNull(result.creep_m, kMillimetres);
+  if (diverged) json["diverged"] = verdict.divergence;
   if (!line.expect.is_null()) json["expect"] = line.expect;
   return json;
 }

@@ -32,8 +32,8 @@ struct VerdictLine {
 };
 
 /// Reads JSON objects, one a line; empty lines are skipped. `source` names the input in messages. Throws InputError naming the
-/// line, what was found and what is allowed: broken JSON, unknown or missing keys, values of a wrong type or outside their range,
-/// bit codes with a typo, ids that appear twice.
+/// line, what was found and what is allowed: broken JSON, unknown or missing keys, keys that appear twice in an object, values of
+/// a wrong type or outside their range, bit codes with a typo, ids that appear twice.
 std::vector<VerdictLine> readVerdictLines(std::istream& input, const std::string& source);
 
 /// Whether a line is judged: its expectation is clear and says yes or no.

@@ -1,4 +1,5 @@
 #include "apps/verdict.h"
+#include "apps/verdict_json.h"
 #include "core/error.h"
 
 #include <cmath>
@@ -78,6 +79,27 @@ class Object {
   std::string where_;
 };
 
+// The tower of a line, built key by key, so that a complaint names the key that is to blame.
+Scene readTower(const std::string& code, const TowerOptions& options, const std::string& where) {
+  const char* key = "config";
+  try {
+    Scene scene = bitCodeScene(code);
+    if (!options.offsets.empty()) {
+      key = "offsets_m";
+      TowerOptions shifts;
+      shifts.offsets = options.offsets;
+      scene = bitCodeScene(code, shifts);
+    }
+    if (!options.loose.empty()) {
+      key = "lower_m";
+      scene = bitCodeScene(code, options);
+    }
+    return scene;
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: {}: {}", where, key, error.what()));
+  }
+}
+
 VerdictLine readLine(const Json& json, const std::string& where) {
   const Object object(json, where,
                       {"id", "config", "mu", "offsets_m", "lower_m", "gravity_tilt_deg", "gravity_direction_deg", "expect"});
@@ -92,12 +114,7 @@ VerdictLine readLine(const Json& json, const std::string& where) {
   }
   VerdictLine line;
   line.id = object.text("id");
-  const std::string code = object.text("config");
-  try {
-    line.scene = bitCodeScene(code, options);
-  } catch (const InputError& error) {
-    throw InputError(fmt::format("{}: config: {}", where, error.what()));
-  }
+  line.scene = readTower(object.text("config"), options, where);
   line.scene.staticFriction = object.number("mu", kFrictionRange, line.scene.staticFriction);
   line.scene.kineticFriction = line.scene.staticFriction;
   line.scene.gravity.tilt_deg = object.number("gravity_tilt_deg", kTiltRange, 0.0);
@@ -113,15 +130,9 @@ std::vector<VerdictLine> readVerdictLines(std::istream& input, const std::string
   std::set<std::string> ids;
   std::string text;
   for (std::size_t number = 1; std::getline(input, text); ++number) {
-    if (text.find_first_not_of(" \t\r") == std::string::npos) continue;
+    if (isBlankLine(text)) continue;
     const std::string where = fmt::format("{}: line {}", source, number);
-    Json json;
-    try {
-      json = Json::parse(text);
-    } catch (const Json::exception&) {
-      throw InputError(fmt::format("{}: found {}, allowed is a JSON object", where, inQuotes(text)));
-    }
-    lines.push_back(readLine(json, where));
+    lines.push_back(readLine(parseVerdictLine(text, where), where));
     lines.back().number = number;
     if (!ids.insert(lines.back().id).second) {
       throw InputError(fmt::format("{}: id: found {} for the second time, allowed is once", where, inQuotes(lines.back().id)));

@@ -171,6 +171,11 @@ TEST(StaticsList, NamesTheLineThatIsBroken) {
   EXPECT_THAT(broken("{\"id\":\"a\",\"config\":\"(010)\",\"remove\":[{\"row\":0,\"position\":1}]}"), HasSubstr("still there"));
   EXPECT_THAT(broken("{\"id\":\"a\",\"config\":\"(010)\",\"remove\":[],\"stands_after\":[]}"), HasSubstr("stands_after: found"));
   EXPECT_THAT(broken("{\"id\":\"a\",\"config\":\"(010)\",\"stands_after\":[true]}"), HasSubstr("without remove"));
+  EXPECT_THAT(broken("{\"id\":\"a\",\"config\":\"(010)\",\"remove\":[],\"remove\":[]}"),
+              HasSubstr("line 2: found the key 'remove' for the second time"));
+  EXPECT_THAT(
+      broken("{\"id\":\"a\",\"config\":\"(010)\",\"remove\":" + std::string(200000, '[') + std::string(200000, ']') + "}"),
+      HasSubstr("line 2: in 'remove': found nesting deeper than 32 levels"));
 }
 
 // The oracle was made by a programme of its own. All its clear verdicts, and its tilts: of towers that stand within 0.1 degrees.

@@ -1,5 +1,6 @@
 #include "tests/support/program.h"
 
+#include <fmt/format.h>
 #include <fstream>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -112,6 +113,32 @@ TEST(Verdict, CheckComparesWithWhatIsExpected) {
   EXPECT_EQ(verdict("{\"id\":\"a\",\"config\":\"(111)\"}", {"--check"}).exitCode, 2) << "nothing to compare with";
 }
 
+TEST(Verdict, OfATowerThatDivergesHasEveryKeyAndSaysWhen) {
+  const std::string tower = "{\"id\":\"a\",\"config\":\"(111)-(111)-(111)\",\"expect\":{\"stands\":true}}";
+  const ProgramResult result =
+      verdict(tower, {"--method", "semi-implicit-euler", "--tolerance", "1e-6", "--substeps", "2", "--force-unstable"});
+  EXPECT_EQ(result.exitCode, 3);
+  EXPECT_THAT(linesOf(result.error), SizeIs(1));
+  const std::vector<Json> lines = objectsOf(result);
+  ASSERT_THAT(lines, SizeIs(1));
+  const Json& line = lines[0];
+  EXPECT_TRUE(line.at("stands").is_null());
+  const double time_s = line.at("time_s").get<double>();
+  EXPECT_GT(time_s, 0.0);
+  EXPECT_THAT(line.at("diverged").get<std::string>(), HasSubstr(fmt::format("{:.6f} s", time_s)));
+  EXPECT_EQ(line.at("steps"), 2 * static_cast<int>(60.0 * time_s)) << "two in each whole frame";
+  EXPECT_TRUE(line.at("max_penetration_mm").is_null());
+  EXPECT_TRUE(line.at("creep_mm").is_null());
+  EXPECT_EQ(line.at("expect").at("stands"), true);
+}
+
+TEST(Verdict, CarriesAlongAnExpectationThatIsDeepButNotAbsurdlySo) {
+  const std::string deep = std::string(31, '[') + std::string(31, ']');
+  const ProgramResult result = verdict("{\"id\":\"a\",\"config\":\"(010)\",\"expect\":" + deep + "}");
+  ASSERT_EQ(result.exitCode, 0) << result.error;
+  EXPECT_EQ(objectsOf(result).at(0).at("expect").dump(), deep);
+}
+
 TEST(Verdict, OfNothingIsNothing) {
   const ProgramResult result = verdict("");
   EXPECT_EQ(result.exitCode, 0);
@@ -123,6 +150,15 @@ struct BadLine {
   std::string line;
   std::string message;
 };
+
+// Far deeper than a stack holds.
+std::string nested(const std::string& open, const std::string& close) {
+  std::string text;
+  for (int level = 0; level < 200000; ++level) text += open;
+  text += '1';
+  for (int level = 0; level < 200000; ++level) text += close;
+  return text;
+}
 
 class BrokenLineTest : public ::testing::TestWithParam<BadLine> {};
 
@@ -162,7 +198,25 @@ INSTANTIATE_TEST_SUITE_P(
                               "{\"id\":\"a\",\"config\":\"(010)\",\"offsets_m\":[{\"row\":0,\"position\":1.5}]}", "1 to 3"},
                       BadLine{"AbsurdlyLow",
                               "{\"id\":\"a\",\"config\":\"(010)\",\"lower_m\":[{\"row\":0,\"position\":2,\"by\":1}]}",
-                              "lower_m[0]: by"}),
+                              "lower_m[0]: by"},
+                      BadLine{"LoweredAbsentBlock",
+                              "{\"id\":\"a\",\"config\":\"(010)\",\"lower_m\":[{\"row\":0,\"position\":1}]}",
+                              "line 3: lower_m: (010): loose block at row 0, position 1"},
+                      BadLine{"OffsetIntoItsNeighbour",
+                              "{\"id\":\"a\",\"config\":\"(111)\",\"offsets_m\":[{\"row\":0,\"position\":1,\"dy\":0.01}],"
+                              "\"lower_m\":[{\"row\":0,\"position\":1}]}",
+                              "line 3: offsets_m: (111): block 0 (row 0, position 1) and block 1 (row 0, position 2) start"},
+                      BadLine{"NestedLine", nested("[", "]"), "line 3: found nesting deeper than 32 levels"},
+                      BadLine{"NestedExpectation", "{\"id\":\"a\",\"config\":\"(010)\",\"expect\":" + nested("[", "]") + "}",
+                              "line 3: in 'expect': found nesting deeper than 32 levels, allowed are at most 32"},
+                      BadLine{"NestedObjects", "{\"id\":\"a\",\"config\":\"(010)\",\"expect\":" + nested("{\"a\":", "}") + "}",
+                              "line 3: in 'expect': found nesting"},
+                      BadLine{"KeyTwice", "{\"id\":\"a\",\"config\":\"(010)\",\"mu\":0.1,\"mu\":0.2}",
+                              "line 3: found the key 'mu' for the second time, allowed is once"},
+                      BadLine{"KeyTwiceInAList",
+                              "{\"id\":\"a\",\"config\":\"(010)\",\"offsets_m\":[{\"row\":0,\"position\":2},"
+                              "{\"row\":0,\"position\":2,\"row\":0}]}",
+                              "line 3: in 'offsets_m': found the key 'row' for the second time"}),
     [](const auto& tested) { return tested.param.name; });
 
 TEST(Verdict, NeedsAFileThatCanBeRead) {
