@@ -1,6 +1,7 @@
 // Runs a set of continuous collision queries with known answers: judges every answer and times every query.
 #include "core/error.h"
 #include "core/limits.h"
+#include "core/output_file.h"
 #include "narrowphase/query_set.h"
 
 #include <CLI/CLI.hpp>
@@ -9,8 +10,9 @@
 #include <cstdio>
 #include <exception>
 #include <fmt/format.h>
-#include <fstream>
+#include <memory>
 #include <numeric>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -39,7 +41,7 @@ constexpr const char* kFooter =
 struct Options {
   std::string path;
   QueryKind kind = QueryKind::pointTriangle;
-  std::string out;
+  std::optional<std::string> out;
 };
 
 struct Answer {
@@ -80,15 +82,13 @@ std::vector<Answer> run(const std::vector<CollisionQuery>& queries, QueryKind ki
   return answers;
 }
 
-void writeAnswers(std::ofstream& file, const std::string& path, const std::vector<CollisionQuery>& queries,
-                  const std::vector<Answer>& answers) {
-  file << "id,hit,toi\n";
+void writeAnswers(OutputFile& file, const std::vector<CollisionQuery>& queries, const std::vector<Answer>& answers) {
+  file.stream() << "id,hit,toi\n";
   for (std::size_t i = 0; i < queries.size(); ++i) {
     const TimeOfImpact& impact = answers[i].impact;
-    file << (impact.hit ? fmt::format("{},1,{}\n", queries[i].id, impact.time) : fmt::format("{},0,\n", queries[i].id));
+    file.stream() << (impact.hit ? fmt::format("{},1,{}\n", queries[i].id, impact.time) : fmt::format("{},0,\n", queries[i].id));
   }
-  file.close();
-  if (!file) throw InputError(fmt::format("{}: writing failed, allowed is a file on a disk with room", path));
+  file.commit();
 }
 
 void printTables(const std::vector<CollisionQuery>& queries, const std::vector<Answer>& answers) {
@@ -140,15 +140,9 @@ int runProgram(int argc, char** argv) {
   }
   options.kind = kind == "vf" ? QueryKind::pointTriangle : QueryKind::edgeEdge;
   const std::vector<CollisionQuery> queries = readCollisionQueries(options.path);
-  std::ofstream file;
-  if (!options.out.empty()) {
-    file.open(options.out);
-    if (!file)
-      throw InputError(
-          fmt::format("--out {}: cannot be opened for writing, allowed is a file in a writable folder", options.out));
-  }
+  const auto file = options.out ? std::make_unique<OutputFile>(*options.out, "--out") : nullptr;
   const std::vector<Answer> answers = run(queries, options.kind);
-  if (!options.out.empty()) writeAnswers(file, options.out, queries, answers);
+  if (file) writeAnswers(*file, queries, answers);
   printTables(queries, answers);
   return 0;
 }
