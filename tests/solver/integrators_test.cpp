@@ -246,21 +246,20 @@ TEST_P(InertiaTest, ACoupleTurnsABlockAsTheorySays) {
   EXPECT_LT(std::hypot(spin.x(), spin.y()), 0.001 * expected);
 }
 
-// A slab on its narrow side, held by friction, tips about its lower edge under tilted gravity. The pressure first moves to that
-// edge, which rings for some milliseconds; from the angle and spin at 1/30 s on the spin gains what a rigid pendulum gains until
-// 0.1 s (0.1 radian). A tolerance of a micrometre keeps the edge's own give out of it. Eight lumps have 1.5 times a cuboid's
-// moment about an edge.
-TEST_P(InertiaTest, TipsAboutABottomEdgeAsTheorySays) {
-  const Vec3 size(0.08, 0.02, 0.08);
-  const double tilt_deg = 20.0;
+// A block of the game stands on one of its faces, held by friction, with gravity tilted to six degrees past the angle at which it
+// balances on its lower edge: it tips about that edge. The pressure first moves there, and the edge rings for some milliseconds;
+// from the angle and spin at 1/30 s on the spin gains what a rigid pendulum gains until 0.1 s. Eight lumps have 1.5 times a
+// cuboid's moment about an edge. What is returned is the gain over that of the pendulum, less 1.
+double tippingError(const Vec3& size, const Settings& settings) {
   Scene scene = oneBlockScene(true);
   scene.blocks[0].dimensions = size;
   scene.blocks[0].centre.z() = 0.5 * size.z();
   scene.staticFriction = scene.kineticFriction = 10.0;
-  scene.gravity.tilt_deg = tilt_deg;
+  const double balance = std::atan2(size.y(), size.z());
+  scene.gravity.tilt_deg = degrees(balance) + 6.0;
   scene.gravity.direction_deg = 90.0;
-  scene.settings.inertia = GetParam();
-  scene.settings.tolerance_m = 1e-6;
+  scene.settings = settings;
+  scene.settings.sleep = Sleep::off;
   Simulation simulation(scene);
   const auto turned = [&] { return std::asin(-fittedBox(simulation.state.position, 0).axis[1].z()); };
   const auto spin = [&] { return -rigidMotion(simulation.state, 0).spin.x(); };
@@ -268,20 +267,51 @@ TEST_P(InertiaTest, TipsAboutABottomEdgeAsTheorySays) {
   const double start_s = simulation.time_s;
   const double start = spin();
   double rate = start;
-  // Angle of the centre from over the edge.
-  double angle = turned() + tilt_deg * std::numbers::pi / 180.0 - std::atan2(size.y(), size.z());
+  double angle = turned() + scene.gravity.tilt_deg * std::numbers::pi / 180.0 - balance;  // of the centre from over the edge
   stepFor(simulation, 4.0 / 60.0);
 
   const double squared = size.y() * size.y() + size.z() * size.z();
   const double arm = 0.5 * std::sqrt(squared);
-  const double moment = GetParam() == Inertia::cuboid ? squared / 3.0 : squared / 2.0;  // about the edge, over the mass
+  const double moment = settings.inertia == Inertia::cuboid ? squared / 3.0 : squared / 2.0;  // about the edge, over the mass
   const int steps = 100000;
   const double step_s = (simulation.time_s - start_s) / steps;
   for (int step = 0; step < steps; ++step) {
     rate += step_s * kStandardGravity_m_s2 * arm / moment * std::sin(angle);
     angle += step_s * rate;
   }
-  EXPECT_NEAR(spin() - start, rate - start, 0.01 * (rate - start));
+  return (spin() - start) / (rate - start) - 1.0;
+}
+
+// Three faces to stand on, two directions to tip in from each.
+const std::array<Vec3, 6>& waysToTip() {
+  static const std::array<Vec3, 6> ways = {
+      Vec3(kBlockHeight_m, kBlockWidth_m, kBlockLength_m), Vec3(kBlockWidth_m, kBlockHeight_m, kBlockLength_m),
+      Vec3(kBlockHeight_m, kBlockLength_m, kBlockWidth_m), Vec3(kBlockLength_m, kBlockHeight_m, kBlockWidth_m),
+      Vec3(kBlockWidth_m, kBlockLength_m, kBlockHeight_m), Vec3(kBlockLength_m, kBlockWidth_m, kBlockHeight_m)};
+  return ways;
+}
+
+// As users have it: implicit steps and the default tolerance. The centre starts 2 to 4 mm beyond the edge, and an edge that gives
+// way by some hundredths of a millimetre shifts that by up to 0.8 %.
+TEST_P(InertiaTest, TipsAboutEachBottomEdgeAsTheorySays) {
+  Settings settings;
+  settings.inertia = GetParam();
+  for (const Vec3& size : waysToTip()) EXPECT_NEAR(tippingError(size, settings), 0.0, 0.01) << 1e3 * size.transpose() << " mm";
+}
+
+// An edge at the default tolerance rings while the block tips. Explicit steps follow that, and it comes and goes in the spin by
+// several percent, by more where little weight holds the block down: softness of the contact, not inertia. A tolerance of a
+// micrometre, fifty times as stiff, keeps it out of what the methods themselves do.
+TEST_P(InertiaTest, TipsAboutEachStiffBottomEdgeByAnyMethod) {
+  Settings settings;
+  settings.inertia = GetParam();
+  settings.tolerance_m = 1e-6;
+  for (const Method method : {Method::implicit, Method::semiImplicitEuler, Method::midpoint, Method::rungeKutta4}) {
+    settings.method = method;
+    for (const Vec3& size : waysToTip()) {
+      EXPECT_NEAR(tippingError(size, settings), 0.0, 0.01) << nameOf(method) << ", " << 1e3 * size.transpose() << " mm";
+    }
+  }
 }
 
 // Without torque a spin about a principal axis stays what it is; about another axis it moves as Euler's equations say. All three
