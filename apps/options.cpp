@@ -79,8 +79,7 @@ void addPhysicsOptions(CLI::App& app, PhysicsOptions& options) {
             "(default 5e-05)");
   addWholeNumber(app, "--substeps", options.substeps, settingRange("substeps"),
                  "steps of a frame; alone, with explicit methods, the tolerance follows from them and is printed; implicit and "
-                 "rigid methods "
-                 "are stable with any");
+                 "rigid methods are stable with any");
   addWholeNumber(app, "--iterations", options.iterations, settingRange("iterations"),
                  "rigid methods: passes over the contacts in a step (default 1)");
   app.add_flag("--no-sleep", options.noSleep, "simulate blocks at rest like all others");
