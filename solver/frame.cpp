@@ -4,6 +4,7 @@
 #include "solver/implicit.h"
 #include "solver/inertia.h"
 #include "solver/island_step.h"
+#include "solver/meeting.h"
 #include "solver/near_pairs.h"
 #include "solver/plane.h"
 #include "solver/report_frame.h"
@@ -36,12 +37,6 @@ struct Approach {
   bool meeting = false;        // whether blocks that are apart may meet at all
   int together = 0;            // most pairs of any one block that may begin to push: hit at once they add up
 };
-
-double fastestCorner(const CornerArray& velocity, std::size_t block, const Vec3& against) {
-  double squared = 0.0;
-  for (std::size_t c = 0; c < kCorners; ++c) squared = std::max(squared, (velocity.at(block, c) - against).squaredNorm());
-  return std::sqrt(squared);
-}
 
 Approach approachOf(const IslandStep& step) {
   const Simulation& simulation = step.simulation;

@@ -172,25 +172,28 @@ double slowestRate(const IslandStep& step, const Manifold& manifold) {
   return slowest;
 }
 
-double fastestCorner(const IslandStep& step, std::int32_t block) {
+double speedOf(const IslandStep& step, std::int32_t block) {
   if (sleeps(step.simulation, block)) return 0.0;
-  double fastest = 0.0;
-  for (std::size_t c = 0; c < kCorners; ++c)
-    fastest = std::max(fastest, step.simulation.state.velocity.at(static_cast<std::size_t>(block), c).squaredNorm());
-  return std::sqrt(fastest);
+  return fastestCorner(step.simulation.state.velocity, static_cast<std::size_t>(block), Vec3::Zero());
 }
 
 }  // namespace
 
+double fastestCorner(const CornerArray& velocity, std::size_t block, const Vec3& against) {
+  double squared = 0.0;
+  for (std::size_t c = 0; c < kCorners; ++c) squared = std::max(squared, (velocity.at(block, c) - against).squaredNorm());
+  return std::sqrt(squared);
+}
+
 bool bounces(const IslandStep& step, double step_s) {
   const double most = kMostClosing * step.simulation.tolerance_m / step_s;
   double fastest = 0.0;
-  for (const std::int32_t block : step.blocks) fastest = std::max(fastest, fastestCorner(step, block));
+  for (const std::int32_t block : step.blocks) fastest = std::max(fastest, speedOf(step, block));
   if (2.0 * fastest <= most) return false;
   return std::any_of(step.pairs.begin(), step.pairs.end(), [&](std::int32_t at) {
     const NearPair& pair = step.engine.pairs[static_cast<std::size_t>(at)];
     if (pair.manifold.touch == Touch::apart) return false;
-    if (fastestCorner(step, pair.a) + fastestCorner(step, pair.b) <= most) return false;
+    if (speedOf(step, pair.a) + speedOf(step, pair.b) <= most) return false;
     return slowestRate(step, pair.manifold) > most;
   });
 }

@@ -4,6 +4,9 @@
 
 namespace springtower {
 
+/// Speed of a block's fastest corner against a velocity, m/s.
+double fastestCorner(const CornerArray& velocity, std::size_t block, const Vec3& against);
+
 /// Whether a contact opens or closes as a whole, by more than an implicit step of `step_s` follows: in the midst of a bounce an
 /// implicit step throws a block back with more than it came with.
 bool bounces(const IslandStep& step, double step_s);
