@@ -4,6 +4,7 @@
 #include "apps/chart_scene.h"
 #include "apps/profile_scene.h"
 #include "core/error.h"
+#include "solver/balance.h"
 #include "solver/measures.h"
 #include "solver/penetration.h"
 
@@ -73,23 +74,8 @@ CornerArray convergedEnd(const ChartCase& what, const ChartLimits& limits) {
   return simulation.state.position;
 }
 
-// Largest force on any block that contacts and gravity leave, in weights of the block.
-double imbalance(const Simulation& simulation) {
-  const Vec3 gravity = simulation.scene.gravity.at(simulation.time_s);
-  std::vector<Vec3> force;
-  for (const double mass : simulation.model.mass) force.push_back(mass * gravity);
-  for (const ContactForce& contact : contactForces(simulation)) {
-    const Vec3 push = contact.normalForce * contact.normal + contact.frictionForce;
-    force[index(contact.upper)] += push;
-    if (contact.lower != kFloor) force[index(contact.lower)] -= push;
-  }
-  double largest = 0.0;
-  for (std::size_t b = 0; b < force.size(); ++b)
-    largest = std::max(largest, force[b].norm() / (simulation.model.mass[b] * gravity.norm()));
-  return largest;
-}
-
-// The same for an engine whose contact forces are not known: what the last frame has made of each block's momentum.
+// What the last frame has made of each block's momentum, in weights of the block: for an engine whose contact forces are not
+// known.
 double imbalanceFromMomentum(const Simulation& simulation, const CornerArray& velocityBefore) {
   double largest = 0.0;
   for (std::size_t b = 0; b < simulation.model.blockCount(); ++b)
@@ -273,7 +259,8 @@ class ChartRun {
     const int rows = 1 + *std::max_element(row_.begin(), row_.end());
     if (rows > 0) set(ChartMeasure::compression, 1e3 * std::abs(topHeightError(closed_, simulation_.state.position)) / rows);
     set(ChartMeasure::creep, 1e3 * creep_m_);
-    set(ChartMeasure::imbalance, peer_ ? imbalanceFromMomentum(simulation_, velocityBefore_) : imbalance(simulation_));
+    set(ChartMeasure::imbalance, peer_ ? imbalanceFromMomentum(simulation_, velocityBefore_)
+                                       : largestImbalance(imbalances(simulation_, contactForces(simulation_))).force);
     set(ChartMeasure::jitter, 1e3 * std::sqrt(squares_ / counted_));
   }
 

@@ -1,6 +1,7 @@
 #include "apps/forces_report.h"
 
 #include "apps/json_values.h"
+#include "solver/balance.h"
 
 #include <cstddef>
 #include <nlohmann/json.hpp>
@@ -15,6 +16,8 @@ using Json = nlohmann::ordered_json;
 
 Json forcesJson(const Simulation& simulation) {
   const Scene& scene = simulation.scene;
+  const std::vector<ContactForce> contactsNow = contactForces(simulation);
+  const std::vector<Imbalance> left = imbalances(simulation, contactsNow);
   Json blocks = Json::array();
   for (std::size_t b = 0; b < simulation.model.blockCount(); ++b) {
     const BlockSpec& spec = scene.blocks[b];
@@ -25,18 +28,15 @@ Json forcesJson(const Simulation& simulation) {
                       {"height_m", simulation.model.dimensions[b].minCoeff()},
                       {"centre_m", vectorJson(centre(simulation.state.position, b))},
                       {"asleep", simulation.asleep[b] != 0},
-                      {"rest_s", simulation.restTime_s[b]}});
+                      {"rest_s", simulation.restTime_s[b]},
+                      {"force_imbalance", left[b].force},
+                      {"torque_imbalance", left[b].torque}});
   }
   Json pushes = Json::array();
-  for (const UserForce& user : scene.forces) {
-    if (user.start_s >= simulation.time_s || user.end_s < simulation.time_s) continue;
-    const auto block = static_cast<std::size_t>(user.block);
-    const CornerArray& position = simulation.state.position;
-    const Vec3 place = user.corner < 0 ? centre(position, block) : position.at(block, static_cast<std::size_t>(user.corner));
-    pushes.push_back({{"block", user.block}, {"place_m", vectorJson(place)}, {"force_n", vectorJson(user.force)}});
-  }
+  for (const UserPush& user : userPushes(simulation))
+    pushes.push_back({{"block", user.block}, {"place_m", vectorJson(user.place)}, {"force_n", vectorJson(user.force)}});
   Json contacts = Json::array();
-  for (const ContactForce& contact : contactForces(simulation)) {
+  for (const ContactForce& contact : contactsNow) {
     contacts.push_back({{"upper", blockJson(contact.upper)},
                         {"lower", blockJson(contact.lower)},
                         {"place_on_upper_m", vectorJson(contact.point)},

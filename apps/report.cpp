@@ -49,6 +49,7 @@ Json countersJson(const Counters& counters) {
           {"implicit_iterations", counters.implicitIterations},
           {"factorisations", counters.factorisations},
           {"handed_over", counters.handedOver},
+          {"margins_spent", counters.marginsSpent},
           {"response_iterations", counters.responseIterations}};
 }
 
@@ -119,6 +120,9 @@ Json reportJson(const Simulation& simulation, const RunResult& result, int threa
   report["energy_end_j"] = result.energyEnd.total();
   report["energy_end_parts_j"] = energyJson(result.energyEnd);
   report["max_energy_rise"] = orNull(result.maxEnergyRise);
+  report["max_force_imbalance"] = result.imbalance.force;
+  report["max_torque_imbalance"] = result.imbalance.torque;
+  report["max_outside_cone_n"] = result.outsideCone_n;
   report["asleep_blocks"] = result.asleepBlocks;
   report["awake_blocks"] = result.awakeBlocks;
   report["counters"] = countersJson(result.counters);

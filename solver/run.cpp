@@ -91,6 +91,9 @@ class Recorder {
     measureEnergy(result_.energyEnd);
     const double scale_j = std::abs(result_.energyStart.total());
     if (options_.measureEveryFrame && scale_j > 0.0) result_.maxEnergyRise = largestRise_j_ / scale_j;
+    const std::vector<ContactForce> contacts = contactForces(simulation);
+    result_.imbalance = largestImbalance(imbalances(simulation, contacts));
+    result_.outsideCone_n = farthestOutsideCone(simulation, contacts);
     result_.asleepBlocks = static_cast<std::size_t>(std::count(simulation.asleep.begin(), simulation.asleep.end(), 1));
     result_.awakeBlocks = simulation.asleep.size() - result_.asleepBlocks;
     result_.stateHash = stateHash(simulation);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "solver/balance.h"
 #include "solver/measures.h"
 #include "solver/moves.h"
 #include "solver/penetration.h"
@@ -59,6 +60,8 @@ struct RunResult {
   Energy energyStart;
   Energy energyEnd;
   std::optional<double> maxEnergyRise;  ///< largest rise of the total energy in a frame, over the initial total's size
+  Imbalance imbalance;                  ///< largest at the end
+  double outsideCone_n = 0.0;           ///< N, of the worst contact point at the end
   std::size_t asleepBlocks = 0;         ///< at the end
   std::size_t awakeBlocks = 0;          ///< at the end
   std::uint64_t stateHash = 0;          ///< at the end

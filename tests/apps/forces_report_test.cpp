@@ -68,8 +68,12 @@ Balance balanceOf(const Json& forces) {
     const Json& block = forces.at("blocks").at(b);
     const double weight = block.at("mass_kg").get<double>() * gravity.norm();
     EXPECT_GT(block.at("rest_s").get<double>(), 0.0) << "block " << b << " is not at rest";
-    worst.force = std::max(worst.force, force[b].norm() / weight);
-    worst.torque = std::max(worst.torque, torque[b].norm() / (weight * block.at("height_m").get<double>()));
+    const double left = force[b].norm() / weight;
+    const double twist = torque[b].norm() / (weight * block.at("height_m").get<double>());
+    EXPECT_NEAR(block.at("force_imbalance").get<double>(), left, 1e-9) << "block " << b;
+    EXPECT_NEAR(block.at("torque_imbalance").get<double>(), twist, 1e-9) << "block " << b;
+    worst.force = std::max(worst.force, left);
+    worst.torque = std::max(worst.torque, twist);
   }
   return worst;
 }

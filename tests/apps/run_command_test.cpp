@@ -167,6 +167,9 @@ TEST(RunCommand, ReportsEverythingByName) {
                           "energy_start_j",
                           "energy_end_j",
                           "max_energy_rise",
+                          "max_force_imbalance",
+                          "max_torque_imbalance",
+                          "max_outside_cone_n",
                           "asleep_blocks",
                           "awake_blocks",
                           "contacts_born_penetrating"}) {
