@@ -163,10 +163,21 @@ void printScene(const Chart& chart, ChartScene scene) {
   }
 }
 
+Method mappedMethod(const std::string& name) {
+  const std::vector<Method> mapped = mappedMethods();
+  const auto found = std::find_if(mapped.begin(), mapped.end(), [&](Method method) { return nameOf(method) == name; });
+  if (found != mapped.end()) return *found;
+  std::vector<std::string_view> names;
+  for (const Method method : mapped) names.push_back(nameOf(method));
+  throw InputError(fmt::format("--methods: found {}, with --maps allowed are {}", inQuotes(name), fmt::join(names, ", ")));
+}
+
 int executeMaps(const ChartCommand& command) {
   MapLimits limits;
-  if (command.quick) limits = {{2, 8, 32, 128}, {5e-4, 1e-4}, {1, 3}, 0.25};
+  if (command.quick) limits = {{2, 8, 32, 128}, {5e-4, 1e-4}, {1, 3}, 0.25, 0.5};
   if (command.seconds) limits.seconds = *command.seconds;
+  if (command.case_s) limits.case_s = *command.case_s;
+  for (const std::string& name : command.methods) limits.methods.push_back(mappedMethod(name));
   makeOutputFolder(command.out);
   const Provenance provenance = provenanceNow();
   Progress progress(mapRows(limits), "rows of the maps");
@@ -201,10 +212,14 @@ CLI::App* defineChart(CLI::App& program, ChartCommand& command) {
       ->type_name("FILE.csv");
   chart->add_option("--out", command.out, "writes into this folder (default chart)")->type_name("DIR");
   chart->add_flag("--quick", command.quick, "small towers, few cases and short samples: less than a minute");
-  chart->add_flag("--maps", command.maps, "instead: where each method is stable, over step and stiffness and over step and rows");
   chart->add_flag("--auto", command.automatic,
                   "instead: what method auto takes in five scenes that are not charted, and its cost beside the best's");
   chart->add_flag("--fresh", command.fresh, "measures everything again, also what an earlier run has left in the folder");
+  chart
+      ->add_flag("--maps", command.maps,
+                 "instead: where each method is stable, over step and stiffness and over step and rows; every method, or "
+                 "--methods; --seconds (default 1) and --case-limit (default 5) as above")
+      ->excludes("--auto", "--fresh", "--scenes", "--rows", "--samples", "--peers");
   wrapDescriptions(*chart);
   chart->footer(std::string(kChartExamples));
   return chart;

@@ -1,6 +1,7 @@
 #include "apps/chart_maps.h"
 
 #include "core/error.h"
+#include "core/processor_time.h"
 #include "core/scene.h"
 #include "solver/engine.h"
 #include "solver/measures.h"
@@ -11,6 +12,7 @@
 #include <cmath>
 #include <mutex>
 #include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/task_arena.h>
 
 namespace springtower {
 namespace {
@@ -20,8 +22,9 @@ constexpr double kNudge_m_s = 5e-4;
 constexpr double kJitter_m_s = 1e-3;  // root mean square speed of all corners
 constexpr int kBisections = 5;
 
-constexpr std::array kSprung = {Method::semiImplicitEuler, Method::midpoint, Method::rungeKutta4, Method::implicit};
-constexpr std::array kRigid = {Method::rigidPgs, Method::xpbd};
+constexpr std::array kMapped = {Method::semiImplicitEuler, Method::midpoint,      Method::rungeKutta4,
+                                Method::implicit,          Method::implicitEuler, Method::report,
+                                Method::rigidPgs,          Method::rigidLcp,      Method::xpbd};
 
 // Dashpots off, so that the step meets springs alone, as theory has it.
 Scene sceneOf(Method method, int rows, double tolerance_m, int steps) {
@@ -56,7 +59,8 @@ MapVerdict verdictOf(const Seen& seen, double seconds) {
   return MapVerdict::stands;
 }
 
-MapPoint tried(Method method, int rows, double tolerance_m, int steps, double seconds) {
+MapPoint tried(Method method, int rows, double tolerance_m, int steps, const MapLimits& limits) {
+  const double begin_s = threadTime_s();
   Simulation simulation(sceneOf(method, rows, tolerance_m, steps));
   const double frame_s = simulation.scene.settings.frame_s;
   MapPoint point;
@@ -68,7 +72,7 @@ MapPoint tried(Method method, int rows, double tolerance_m, int steps, double se
   std::vector<int> row;
   for (const BlockSpec& block : simulation.scene.blocks) row.push_back(block.row);
   const CornerArray closed = closedRows(simulation.state.position, row, true);
-  const long frames = std::max(4L, std::lround(seconds / frame_s));
+  const long frames = std::max(4L, std::lround(limits.seconds / frame_s));
   const long half = frames / 2;
   CornerArray settled;
   double squares = 0.0;
@@ -84,6 +88,10 @@ MapPoint tried(Method method, int rows, double tolerance_m, int steps, double se
         point.verdict = MapVerdict::blowsUp;
         return point;
       }
+      if (threadTime_s() - begin_s > limits.case_s) {
+        point.verdict = MapVerdict::timesOut;
+        return point;
+      }
     }
   } catch (const DivergenceError&) {
     point.verdict = MapVerdict::blowsUp;
@@ -93,18 +101,26 @@ MapPoint tried(Method method, int rows, double tolerance_m, int steps, double se
   const CornerArray& position = simulation.state.position;
   point.verdict = verdictOf({std::sqrt(squares), largestCornerMove(settled, position),
                              maxPenetration(position, true, workspace).depth, std::abs(topHeightError(closed, position)) / rows},
-                            0.5 * seconds);
+                            0.5 * limits.seconds);
   return point;
 }
 
 bool calm(const MapPoint& point) {
-  return point.verdict != MapVerdict::jitters && point.verdict != MapVerdict::blowsUp;
+  return point.verdict != MapVerdict::jitters && point.verdict != MapVerdict::blowsUp && point.verdict != MapVerdict::timesOut;
 }
 
 // One row of a map: all steps, then the boundary between the longest calm step and the next longer one.
 void lookAlong(StabilityMap& map, int rows, double tolerance_m, const MapLimits& limits) {
   std::vector<MapPoint> line;
-  for (const int steps : limits.steps) line.push_back(tried(map.method, rows, tolerance_m, steps, limits.seconds));
+  for (const int steps : limits.steps) {
+    if (!line.empty() && line.back().verdict == MapVerdict::timesOut) {  // shorter steps take longer still
+      line.push_back(line.back());
+      line.back().steps = steps;
+      line.back().step_s = line[0].step_s * line[0].steps / steps;
+    } else {
+      line.push_back(tried(map.method, rows, tolerance_m, steps, limits));
+    }
+  }
   double omega = 0.0;  // of those that came through their first frame
   for (const MapPoint& point : line) omega = std::max(omega, point.verdict == MapVerdict::blowsUp ? 0.0 : point.omega);
   for (MapPoint& point : line) point.omega = omega;
@@ -115,7 +131,7 @@ void lookAlong(StabilityMap& map, int rows, double tolerance_m, const MapLimits&
   int tooFew = (first - 1)->steps;
   for (int i = 0; i < kBisections && last.steps - tooFew > 1; ++i) {
     const int middle = static_cast<int>(std::lround(std::sqrt(static_cast<double>(tooFew) * last.steps)));
-    const MapPoint point = tried(map.method, rows, tolerance_m, std::clamp(middle, tooFew + 1, last.steps - 1), limits.seconds);
+    const MapPoint point = tried(map.method, rows, tolerance_m, std::clamp(middle, tooFew + 1, last.steps - 1), limits);
     if (calm(point)) {
       last = point;
       last.omega = omega;
@@ -132,12 +148,12 @@ struct Row {
   double tolerance_m;
 };
 
-std::vector<StabilityMap> emptyMaps() {
+std::vector<StabilityMap> emptyMaps(const MapLimits& limits) {
   std::vector<StabilityMap> maps;
-  maps.reserve(2 * kSprung.size() + kRigid.size());
-  for (const Method method : kSprung) maps.push_back({method, MapAxis::stiffness, {}, {}});
-  for (const Method method : kSprung) maps.push_back({method, MapAxis::rows, {}, {}});
-  for (const Method method : kRigid) maps.push_back({method, MapAxis::rows, {}, {}});
+  for (const Method method : limits.methods.empty() ? mappedMethods() : limits.methods) {
+    if (!isRigid(method)) maps.push_back({method, MapAxis::stiffness, {}, {}});
+    maps.push_back({method, MapAxis::rows, {}, {}});
+  }
   return maps;
 }
 
@@ -156,19 +172,24 @@ std::vector<Row> rowsOf(const std::vector<StabilityMap>& maps, const MapLimits& 
 
 }  // namespace
 
+std::vector<Method> mappedMethods() {
+  return {kMapped.begin(), kMapped.end()};
+}
+
 int mapRows(const MapLimits& limits) {
-  return static_cast<int>(rowsOf(emptyMaps(), limits).size());
+  return static_cast<int>(rowsOf(emptyMaps(limits), limits).size());
 }
 
 std::vector<StabilityMap> measureMaps(const MapLimits& limits, const std::function<void(const StabilityMap&)>& progress) {
-  std::vector<StabilityMap> maps = emptyMaps();
+  std::vector<StabilityMap> maps = emptyMaps(limits);
   const std::vector<Row> rows = rowsOf(maps, limits);
   std::vector<StabilityMap> found(rows.size());
   std::mutex mutex;
   tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t i) {
     found[i].method = maps[rows[i].map].method;
     found[i].axis = maps[rows[i].map].axis;
-    lookAlong(found[i], rows[i].rows, rows[i].tolerance_m, limits);
+    // Apart from the others, whose time a waiting thread would else count as this one's.
+    tbb::this_task_arena::isolate([&] { lookAlong(found[i], rows[i].rows, rows[i].tolerance_m, limits); });
     const std::scoped_lock lock(mutex);
     progress(found[i]);
   });

@@ -14,9 +14,10 @@
 
 namespace springtower {
 
-/// How a small tower that has been nudged takes a step, worst last.
-enum class MapVerdict { stands, sags, creeps, jitters, blowsUp };
-inline constexpr std::array<std::string_view, 5> kMapVerdictNames = {"stands", "sags", "creeps", "jitters", "blows up"};
+/// How a small tower that has been nudged takes a step, worst last; or that it took more processor time than it was given.
+enum class MapVerdict { stands, sags, creeps, jitters, blowsUp, timesOut };
+inline constexpr std::array<std::string_view, 6> kMapVerdictNames = {"stands",  "sags",     "creeps",
+                                                                     "jitters", "blows up", "times out"};
 constexpr std::string_view nameOf(MapVerdict verdict) {
   return kMapVerdictNames[static_cast<std::size_t>(verdict)];
 }
@@ -47,11 +48,16 @@ struct MapLimits {
   std::vector<int> steps = {1, 2, 4, 8, 16, 32, 64, 128, 256, 512};
   std::vector<double> tolerances_m = {1e-3, 5e-4, 2e-4, 1e-4, 5e-5, 2e-5};
   std::vector<int> rows = {1, 2, 3, 6, 9, 12, 18};
-  double seconds = 1.0;  ///< s simulated
+  double seconds = 1.0;              ///< s simulated
+  double case_s = 5.0;               ///< s, processor time after which a tower has timed out, and with it those of shorter steps
+  std::vector<Method> methods = {};  ///< none: all that can be mapped, mappedMethods
 };
 
 /// Sag that a map calls by its name, m: of a row, or as penetration; also the tolerance of maps over rows.
 inline constexpr double kMapTolerance_m = 1e-4;
+
+/// Every method but `auto`, which is another one by the time it steps.
+std::vector<Method> mappedMethods();
 
 /// All maps: over step and stiffness for the methods that have one, over step and rows for these and the rigid ones. `progress`
 /// is called after each row of a map, by one thread at a time; there are mapRows(limits) of them.

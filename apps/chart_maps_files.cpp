@@ -7,8 +7,8 @@
 namespace springtower {
 namespace {
 
-// Green, orange, violet, yellow, red.
-constexpr std::array<int, kMapVerdictNames.size()> kVerdictStyles = {2, 5, 3, 7, 1};
+// Green, orange, violet, yellow, red, pale.
+constexpr std::array<int, kMapVerdictNames.size()> kVerdictStyles = {2, 5, 3, 7, 1, 9};
 constexpr int kBoundaryStyle = 6;
 constexpr int kTheoryStyle = 0;
 

@@ -4,13 +4,13 @@
 #include "apps/chart_scene.h"
 #include "apps/profile_scene.h"
 #include "core/error.h"
+#include "core/processor_time.h"
 #include "solver/balance.h"
 #include "solver/measures.h"
 #include "solver/penetration.h"
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <fmt/format.h>
 #include <memory>
 #include <mutex>
@@ -23,13 +23,6 @@ namespace {
 // A tower may be looked at from here on, s.
 constexpr double kEarliest_s = 1.0;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-
-// Of the calling thread: a case runs on one.
-double threadTime_s() {
-  std::timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 // A frame cannot be broken off. So a tall tower's cost is foreseen from a small one's; no method's grows faster than its cube.
 // Returns the seconds that a frame of kFewRows rows takes where one of all rows would take longer than a case may, else 0.

@@ -2,6 +2,7 @@
 
 #include "apps/profile_scene.h"
 #include "core/error.h"
+#include "core/processor_time.h"
 #include "solver/measures.h"
 #include "solver/memory_use.h"
 #include "solver/penetration.h"
@@ -9,7 +10,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <ctime>
 #include <memory>
 #include <oneapi/tbb/global_control.h>
 
@@ -20,12 +20,6 @@ using Clock = std::chrono::steady_clock;
 
 // A sleeping scene's frame is shorter than the reading of a clock: so many are timed together.
 constexpr int kSleepingFrames = 1000;
-
-double processorTime_s() {
-  std::timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 double secondsBetween(Clock::time_point start, Clock::time_point end) {
   return std::chrono::duration<double>(end - start).count();

@@ -2,11 +2,11 @@
 // are timed. Items are blocks times frames; bytes are the state, springs and contacts that each step goes through once.
 
 #include "bench/towers.h"
+#include "core/processor_time.h"
 #include "solver/memory_use.h"
 #include "solver/simulation.h"
 
 #include <benchmark/benchmark.h>
-#include <ctime>
 #include <oneapi/tbb/global_control.h>
 #include <string>
 
@@ -14,12 +14,6 @@ namespace springtower {
 namespace {
 
 constexpr int kTimedFrames = 10;
-
-double processorTime_s() {
-  std::timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 struct FrameScene {
   int towers = 1;

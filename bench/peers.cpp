@@ -1,7 +1,8 @@
 #include "bench/peers.h"
 
+#include "core/processor_time.h"
+
 #include <cstddef>
-#include <ctime>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -54,12 +55,6 @@ PeerPush readPush(std::size_t blocks) {
     throw std::runtime_error("found a push on block " + std::to_string(push.block) + ", which there is not");
   for (std::size_t k = 0; k < 3; ++k) push.force[k] = values[k + 1] * kPeerUnitsPerKilogram * kPeerUnitsPerMetre;
   return push;
-}
-
-double processorTime_s() {
-  std::timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // springtower chart --maps, run as a user would.
 #include "tests/support/program.h"
 
+#include <algorithm>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <map>
@@ -69,6 +70,40 @@ TEST_F(QuickMaps, BoundariesOfExplicitMethodsAreWhereTheoryPutsThem) {
 TEST_F(QuickMaps, ImplicitStepsHaveNoLimit) {
   EXPECT_TRUE(of("implicit", "boundary").empty());
   for (const Row& row : of("implicit", "grid")) EXPECT_NE(row.at("verdict"), "blows up") << row.at("steps_per_frame");
+}
+
+TEST_F(QuickMaps, ShowEveryMethod) {
+  for (const char* method : {"semi-implicit-euler", "midpoint", "runge-kutta-4", "implicit", "implicit-euler", "report",
+                             "rigid-pgs", "rigid-lcp", "xpbd"})
+    EXPECT_FALSE(of(method, "grid").empty()) << method;
+}
+
+// Springs without dashpots: midpoint's amplitude grows by (w dt)^4 / 8 a step, so what is calm for a while has short steps.
+TEST_F(QuickMaps, MidpointNeedsShorterStepsThanRungeKutta) {
+  const auto step = [](const Row& row) { return std::stod(row.at("step_s")); };
+  const std::vector<Row> midpoint = of("midpoint", "boundary");
+  const std::vector<Row> rungeKutta = of("runge-kutta-4", "boundary");
+  ASSERT_FALSE(midpoint.empty());
+  ASSERT_FALSE(rungeKutta.empty());
+  EXPECT_LT(step(std::ranges::max(midpoint, {}, step)), step(std::ranges::min(rungeKutta, {}, step)));
+}
+
+TEST(ChartMaps, TimesOutWhatIsTooSlow) {
+  const ScratchFolder folder;
+  const ProgramResult result = runProgram("springtower", {"chart", "--maps", "--quick", "--methods", "rigid-lcp", "--seconds",
+                                                          "5", "--case-limit", "0.01", "--out", folder.file("out")});
+  ASSERT_EQ(result.exitCode, 0) << result.error;
+  EXPECT_THAT(contentOf(folder.file("out/maps.csv")), HasSubstr("times out"));
+}
+
+TEST(ChartMaps, RefuseWhatTheyDoNotUse) {
+  const ScratchFolder folder;
+  const ProgramResult other = runProgram("springtower", {"chart", "--maps", "--rows", "9", "--out", folder.file("out")});
+  EXPECT_EQ(other.exitCode, 2);
+  EXPECT_THAT(other.error, HasSubstr("--rows"));
+  const ProgramResult peer = runProgram("springtower", {"chart", "--maps", "--methods", "bullet", "--out", folder.file("out")});
+  EXPECT_EQ(peer.exitCode, 2);
+  EXPECT_THAT(peer.error, HasSubstr("'bullet'"));
 }
 
 TEST_F(QuickMaps, AreDrawnAndListed) {
