@@ -27,12 +27,13 @@ enum class ChartScene {
   lean,   ///< nine rows, gravity 9 degrees from straight down
   tall,   ///< a tower of 36 rows
   slide,  ///< a block that slides over the floor until friction stops it
-  heap    ///< eight blocks dropped on one another askew
+  heap,   ///< eight blocks dropped on one another askew
+  thrown  ///< two blocks that meet in the air askew and fall to the floor
 };
 
 /// Names as the command line spells them, in the order of the enumeration.
-inline constexpr std::array<std::string_view, 12> kChartSceneNames = {
-    "uniform", "heights", "pull", "drop", "collapse", "spin", "heavy-light", "holes", "lean", "tall", "slide", "heap"};
+inline constexpr std::array<std::string_view, 13> kChartSceneNames = {
+    "uniform", "heights", "pull", "drop", "collapse", "spin", "heavy-light", "holes", "lean", "tall", "slide", "heap", "thrown"};
 inline constexpr std::size_t kChartedScenes = 7;
 constexpr bool isCharted(ChartScene scene) {
   return static_cast<std::size_t>(scene) < kChartedScenes;
@@ -42,8 +43,8 @@ constexpr std::string_view nameOf(ChartScene scene) {
 }
 
 /// What is asked of a method's result; a small value is a good one.
-enum class ChartMeasure { penetration, compression, creep, jitter, imbalance, energy, error };
-inline constexpr std::size_t kChartMeasures = 7;
+enum class ChartMeasure { penetration, compression, strain, creep, jitter, imbalance, energy, error };
+inline constexpr std::size_t kChartMeasures = 8;
 
 /// How a measure is named in files, titled on an axis, and below what it makes no difference (drawn there).
 struct ChartMeasureRow {
@@ -54,6 +55,7 @@ struct ChartMeasureRow {
 inline constexpr std::array<ChartMeasureRow, kChartMeasures> kChartMeasureRows = {
     {{"penetration_mm", "largest penetration, mm", 1e-6},
      {"compression_mm", "tower lower than rigid blocks would be, mm a row", 1e-6},
+     {"max_strain", "largest strain of any spring", 1e-9},
      {"creep_mm", "creep, mm", 1e-6},
      {"jitter_mm_s", "root mean square speed of corners at rest, mm/s", 1e-6},
      {"imbalance", "largest force on a block at rest that nothing balances, block weights", 1e-10},
@@ -77,7 +79,7 @@ struct ChartCase {
   Knob knob = Knob::tolerance;
   double value = 0.0;  ///< m, or steps of a frame
   Peer peer = Peer::none;
-  int iterations = 0;  ///< of another engine's solver; 0: its default
+  int iterations = 0;  ///< of the solver of contacts, where it has any; 0: its default
   bool operator==(const ChartCase&) const = default;
 };
 
@@ -85,16 +87,17 @@ struct ChartCase {
 struct ChartLimits {
   int rows = 18;          ///< of the towers
   double seconds = 10.0;  ///< s simulated; creep and jitter are those of the second half
-  double case_s = 3.0;    ///< s of processor time after which a case has timed out
+  double case_s = 3.0;    ///< s of processor time after which a case has timed out; three times that where blocks move
   int samples = 5;        ///< by turns with those of the other cases, each from the same state
   int frames = 120;       ///< timed in a sample; the first after the state is restored is left out
-  double sample_s = 0.2;  ///< s of processor time after which a sample ends early
+  double sample_s = 0.2;  ///< s of processor time after which a sample ends early in scenes at rest; see measureChart
   bool operator==(const ChartLimits&) const = default;
 };
 
-/// How a case came out.
-enum class ChartOutcome { right, wrongVerdict, diverged, timedOut };
-inline constexpr std::array<std::string_view, 4> kChartOutcomeNames = {"right", "wrong verdict", "diverged", "timed out"};
+/// How a case came out. One that is cut short had come to rest when its time ran out: its figures are those of less time.
+enum class ChartOutcome { right, wrongVerdict, diverged, timedOut, cutShort };
+inline constexpr std::array<std::string_view, 5> kChartOutcomeNames = {"right", "wrong verdict", "diverged", "timed out",
+                                                                       "cut short"};
 constexpr std::string_view nameOf(ChartOutcome outcome) {
   return kChartOutcomeNames[static_cast<std::size_t>(outcome)];
 }
@@ -108,6 +111,8 @@ struct ChartResult {
   std::array<double, kChartMeasures> measured{};               ///< NaN where it was not, or means nothing in the scene
   double frame_ms = std::numeric_limits<double>::quiet_NaN();  ///< ms of processor time a frame: mean over the frames, of each
                                                                ///< the least of the samples
+  int frames = 0;                                              ///< of those that were timed
+  int samples = 0;                                             ///< from which the least was taken
 
   [[nodiscard]] double of(ChartMeasure measure) const { return measured[static_cast<std::size_t>(measure)]; }
 };
@@ -135,6 +140,12 @@ std::string nameOf(const ChartCase& what);
 /// The method without its setting, or the other engine.
 inline std::string_view methodOf(const ChartCase& what) {
   return what.peer == Peer::none ? nameOf(what.method) : nameOf(what.peer);
+}
+
+/// Whether blocks move while a scene is timed, so that all methods have to be timed over the same frames of it.
+constexpr bool isInMotion(ChartScene scene) {
+  return scene == ChartScene::pull || scene == ChartScene::drop || scene == ChartScene::collapse || scene == ChartScene::spin ||
+         scene == ChartScene::slide || scene == ChartScene::heap || scene == ChartScene::thrown;
 }
 
 /// Whether a scene is one of the kind that comes to rest, so that a resting tolerance can be asked of it.

@@ -22,6 +22,7 @@ struct ChartCommand {
   std::optional<std::string> peers;
   std::string out = "chart";
   bool quick = false;
+  bool unlimited = false;
   bool maps = false;
   bool automatic = false;
   bool fresh = false;
@@ -31,8 +32,8 @@ struct ChartCommand {
 CLI::App* defineChart(CLI::App& program, ChartCommand& command);
 
 /// Measures every case, scene by scene, and writes chart.json, chart.csv, the charts and index.md into the folder of `--out`.
-/// What an earlier run with the same build and limits has left there is not measured again. With `--maps` stability maps instead:
-/// maps.csv, the maps and maps.md. Returns the exit code 0. Throws
+/// What an earlier run with the same build and limits has left there is not measured again, what another has left is refused
+/// unless `--fresh`. With `--maps` stability maps instead: maps.csv, the maps and maps.md. Returns the exit code 0. Throws
 /// InputError.
 int executeChart(const ChartCommand& command);
 

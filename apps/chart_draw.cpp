@@ -1,17 +1,20 @@
 #include "apps/chart_draw.h"
 
 #include "apps/chart_files.h"
+#include "apps/chart_scene.h"
 
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <limits>
 #include <ostream>
 
 namespace springtower {
 namespace {
 
 constexpr double kFrame_ms = 1e3 / 60.0;
-constexpr int kFrontStyle = 6;  // grey
+constexpr int kFrontStyle = 6;                                         // grey
+constexpr double kNowhere = std::numeric_limits<double>::quiet_NaN();  // interrupts a line
 constexpr std::array<double, 3> kTolerances_mm = {0.1, 0.01, 0.001};
 
 // As a chart shows it: what is below the floor of its measure makes no difference.
@@ -49,14 +52,30 @@ std::string describe(ChartScene scene, int rows) {
       return "a block that slides over the floor until friction stops it";
     case ChartScene::heap:
       return "eight blocks dropped on one another askew";
+    case ChartScene::thrown:
+      return "two blocks that meet in the air askew and fall to the floor";
   }
   return "";
 }
 
-// Beside a point: only what went wrong.
-std::string labelOf(const ChartResult& result) {
+// Beside a point: only what went wrong, and where it counts that less time was looked at.
+std::string labelOf(const ChartResult& result, ChartMeasure measure) {
+  if (result.outcome == ChartOutcome::cutShort && measure != ChartMeasure::creep) return "";
   return result.outcome == ChartOutcome::right ? "" : result.note;
 }
+
+std::string titleOf(ChartMeasure measure, const ChartLimits& limits) {
+  if (measure == ChartMeasure::creep) return fmt::format("creep from {:g} to {:g} s, mm", 0.5 * limits.seconds, limits.seconds);
+  return std::string(kChartMeasureRows[static_cast<std::size_t>(measure)].title);
+}
+
+// A case that was cut short has its figures but for creep, which takes time.
+bool counts(const ChartResult& result, ChartMeasure measure) {
+  return result.outcome == ChartOutcome::right || (result.outcome == ChartOutcome::cutShort && measure != ChartMeasure::creep);
+}
+
+// Of engines measured elsewhere, in their order.
+constexpr int kElsewhereStyle = 12;
 
 // The methods' colours are in their order; those of other engines follow.
 int styleOf(const ChartCase& what) {
@@ -77,32 +96,57 @@ std::string listed(const std::vector<const ChartResult*>& front) {
   return text.empty() ? "none" : text;
 }
 
+// Where those are drawn that have a cost and no figure: to the right of all that have one.
+double railOf(const Chart& chart, ChartScene scene, ChartMeasure measure) {
+  double most = 0.0;
+  for (const ChartResult& result : chart.results) {
+    if (result.what.scene == scene && drawn(result, measure)) most = std::max(most, shown(result, measure));
+  }
+  return 3.0 * most;
+}
+
+// More passes over the contacts are a second knob, and points of their own.
+std::string lineOf(const ChartCase& what) {
+  const bool second = what.peer == Peer::none && what.iterations > 0;
+  return std::string(methodOf(what)) + (second ? ", more passes" : "");
+}
+
 Plot plotOf(const Chart& chart, ChartScene scene, ChartMeasure measure) {
   const ChartMeasureRow& row = kChartMeasureRows[static_cast<std::size_t>(measure)];
   Plot plot;
-  plot.title = "Speed against accuracy: " + std::string(row.title);
+  const std::string title = titleOf(measure, chart.limits);
+  plot.title = "Speed against accuracy: " + title;
   plot.subtitle = describe(scene, chart.limits.rows);
-  plot.x = {std::string(row.title), true};
+  plot.x = {title, true};
   plot.y = {"processor time of a frame of 1/60 s, ms", true};
   plot.references = {{kFrame_ms, "16.7 ms: real time"}};
+  const double rail = railOf(chart, scene, measure);
   std::string missing;
+  std::string cut;
   for (const ChartResult& result : chart.results) {
     if (result.what.scene != scene) continue;
-    if (!drawn(result, measure)) {
+    const bool failed = result.outcome == ChartOutcome::timedOut || result.outcome == ChartOutcome::diverged;
+    const std::string name = lineOf(result.what);
+    if (drawn(result, measure) || failed) {  // all that failed has its place in the legend
+      if (plot.lines.empty() || plot.lines.back().name != name) {
+        plot.lines.push_back({name, {}, Marker::filled});
+        plot.lines.back().style = styleOf(result.what);
+        plot.lines.back().joined = result.what.peer == Peer::none && result.what.iterations == 0;  // two knobs make no line
+      }
+      const double place = drawn(result, measure) ? shown(result, measure) : rail;
+      plot.lines.back().points.push_back({place, result.frame_ms});
+      plot.lines.back().labels.push_back(drawn(result, measure) ? labelOf(result, measure) : std::string(nameOf(result.outcome)));
+      if (!drawn(result, measure)) plot.lines.back().points.insert(plot.lines.back().points.end() - 1, {kNowhere, kNowhere});
+      if (!drawn(result, measure)) plot.lines.back().labels.insert(plot.lines.back().labels.end() - 1, "");
+    }
+    if (!drawn(result, measure))
       missing += fmt::format("{}{} ({})", missing.empty() ? "" : "; ", nameOf(result.what),
                              result.note.empty() ? "not measured" : result.note);
-      continue;
-    }
-    const std::string name(methodOf(result.what));
-    if (plot.lines.empty() || plot.lines.back().name != name) {
-      plot.lines.push_back({name, {}, Marker::filled});
-      plot.lines.back().style = styleOf(result.what);
-      plot.lines.back().joined = result.what.peer == Peer::none;  // two knobs make no line
-    }
-    plot.lines.back().points.push_back({shown(result, measure), result.frame_ms});
-    plot.lines.back().labels.push_back(labelOf(result));
+    if (result.outcome == ChartOutcome::cutShort)
+      cut += fmt::format("{}{} ({:.3g} s)", cut.empty() ? "" : "; ", nameOf(result.what), result.simulated_s);
   }
   if (scene == ChartScene::uniform) {
+    int engines = 0;
     for (const PeerResult& peer : chart.peers) {
       const double value = peer.measured[static_cast<std::size_t>(measure)];
       const double frame_ms = carriedOver_ms(chart, peer);
@@ -110,26 +154,29 @@ Plot plotOf(const Chart& chart, ChartScene scene, ChartMeasure measure) {
       const std::string name = peer.engine + " (elsewhere)";
       if (plot.lines.empty() || plot.lines.back().name != name) {
         plot.lines.push_back({name, {}, Marker::hollow});
-        plot.lines.back().style = static_cast<int>(plot.lines.size());
+        plot.lines.back().style = kElsewhereStyle + engines++;
       }
       plot.lines.back().points.push_back({std::max(value, row.floor), frame_ms});
       plot.lines.back().labels.push_back(peer.verdict.starts_with("yes") ? "" : peer.verdict);
     }
   }
   const std::vector<const ChartResult*> front = paretoFront(chart, scene, measure);
-  PlotLine line{"Pareto front, measured here", {}, Marker::none};
+  PlotLine line{"Pareto front, measured here", {}, Marker::ring};
   line.dashed = true;
   line.style = kFrontStyle;
   for (const ChartResult* result : front) line.points.push_back({shown(*result, measure), result->frame_ms});
   if (!front.empty()) plot.lines.push_back(std::move(line));
   plot.footnote = fmt::format("Pareto front: {}. Values below {:g} are drawn there. ", listed(front), row.floor);
-  if (!missing.empty()) plot.footnote += "Not drawn: " + missing + ". ";
-  if (scene == ChartScene::uniform && !chart.peers.empty()) {
+  if (!missing.empty()) plot.footnote += "Without a figure, at the right edge where their cost is known: " + missing + ". ";
+  if (!cut.empty()) {
     plot.footnote +=
-        "Hollow: other engines, measured elsewhere and carried over by their ratio to Bullet where that was measured here. ";
+        fmt::format("Looked at for less time{}: {}. ", measure == ChartMeasure::creep ? ", and left out of the front" : "", cut);
   }
-  plot.footnote += fmt::format("One thread; mean over up to {} frames, of each the least of {} samples. {}", chart.limits.frames,
-                               chart.limits.samples, footnote(chart.provenance));
+  if (scene == ChartScene::uniform && !chart.peers.empty()) {
+    plot.footnote += "Hollow: other engines, measured elsewhere and carried over by their ratio to Bullet. ";
+  }
+  plot.footnote += fmt::format("One thread; mean over up to {} frames, of each the least of up to {} samples. {}",
+                               chart.limits.frames, chart.limits.samples, footnote(chart.provenance));
   return plot;
 }
 
@@ -148,8 +195,7 @@ std::vector<ChartScene> scenesIn(const Chart& chart) {
 std::vector<const ChartResult*> paretoFront(const Chart& chart, ChartScene scene, ChartMeasure measure) {
   std::vector<const ChartResult*> candidates;
   for (const ChartResult& result : chart.results) {
-    if (result.what.scene == scene && result.outcome == ChartOutcome::right && drawn(result, measure))
-      candidates.push_back(&result);
+    if (result.what.scene == scene && counts(result, measure) && drawn(result, measure)) candidates.push_back(&result);
   }
   std::vector<const ChartResult*> front;
   for (const ChartResult* result : candidates) {
@@ -177,6 +223,20 @@ const ChartResult* fastestWithin(const Chart& chart, ChartScene scene, double to
     if (fastest == nullptr || result.frame_ms < fastest->frame_ms) fastest = &result;
   }
   return fastest;
+}
+
+AutoChoice choiceOf(const Chart& chart, ChartScene scene) {
+  constexpr double kMostRatio = 1.5;
+  AutoChoice choice;
+  for (const ChartResult& result : chart.results) {
+    if (result.what.scene == scene && result.what.method == Method::automatic) choice.chosen = &result;
+  }
+  if (choice.chosen == nullptr) return choice;
+  choice.best = fastestWithin(chart, scene, 1e3 * kAutoTolerance_m);
+  choice.within = meets(*choice.chosen, 1e3 * kAutoTolerance_m);
+  if (choice.best != nullptr) choice.ratio = choice.chosen->frame_ms / choice.best->frame_ms;
+  choice.passes = choice.within && (choice.best == nullptr || choice.ratio <= kMostRatio);
+  return choice;
 }
 
 std::vector<std::pair<std::string, Plot>> chartPlots(const Chart& chart) {
@@ -213,6 +273,23 @@ void writeChartIndex(std::ostream& stream, const Chart& chart, const std::vector
       stream << (best == nullptr ? std::string(" none |") : fmt::format(" {}, {:.3g} ms |", nameOf(best->what), best->frame_ms));
     }
     stream << '\n';
+  }
+  const std::vector<ChartScene> scenes = scenesIn(chart);
+  if (std::any_of(scenes.begin(), scenes.end(), [&](ChartScene scene) { return choiceOf(chart, scene).chosen != nullptr; })) {
+    stream << fmt::format(
+        "\n## What method auto takes\n\nAt {:g} mm, and what it costs beside the best that meets it; 1.5 is allowed.\n\n"
+        "| scene | auto | ms | meets it | best | ms | ratio | |\n|---|---|---|---|---|---|---|---|\n",
+        1e3 * kAutoTolerance_m);
+    for (const ChartScene scene : scenes) {
+      const AutoChoice choice = choiceOf(chart, scene);
+      if (choice.chosen == nullptr) continue;
+      const bool other = choice.best != nullptr;
+      stream << fmt::format("| {} | {} | {:.3g} | {} | {} | {} | {} | {} |\n", nameOf(scene), choice.chosen->note,
+                            choice.chosen->frame_ms, choice.within ? "yes" : "no",
+                            other ? nameOf(choice.best->what) : "none does",
+                            other ? fmt::format("{:.3g}", choice.best->frame_ms) : "",
+                            other ? fmt::format("{:.2f}", choice.ratio) : "", choice.passes ? "pass" : "**fail**");
+    }
   }
   stream << "\n## Charts\n";
   for (const std::string& name : names) stream << fmt::format("\n![{}]({}.png) ([SVG]({}.svg))\n", name, name, name);

@@ -48,6 +48,8 @@ Json resultJson(const ChartResult& result) {
   json["simulated_s"] = result.simulated_s;
   json["from_s"] = result.from_s;
   json["cpu_ms_per_frame"] = number(result.frame_ms);
+  json["frames"] = result.frames;
+  json["samples"] = result.samples;
   for (std::size_t i = 0; i < kChartMeasures; ++i) json[std::string(kChartMeasureRows[i].key)] = number(result.measured[i]);
   return json;
 }
@@ -78,6 +80,8 @@ ChartResult chartResultFromJson(const Json& json) {
   json.at("simulated_s").get_to(result.simulated_s);
   json.at("from_s").get_to(result.from_s);
   result.frame_ms = numberFrom(json.at("cpu_ms_per_frame"));
+  json.at("frames").get_to(result.frames);
+  json.at("samples").get_to(result.samples);
   for (std::size_t i = 0; i < kChartMeasures; ++i)
     result.measured[i] = numberFrom(json.at(std::string(kChartMeasureRows[i].key)));
   return result;
@@ -121,10 +125,9 @@ std::vector<ChartResult> readChartJson(const std::string& path, const Chart& now
     const bool same = then.commit == now.provenance.commit && then.flags == now.provenance.flags &&
                       then.compiler == now.provenance.compiler && then.processor == now.provenance.processor &&
                       json.at("limits") == limitsJson(now.limits);
+    if (!same) throw InputError("found figures of another build, machine or limits, allowed are those of this run, or --fresh");
     std::vector<ChartResult> results;
-    for (const Json& result : json.at("cases")) {
-      if (same) results.push_back(chartResultFromJson(result));
-    }
+    for (const Json& result : json.at("cases")) results.push_back(chartResultFromJson(result));
     return results;
   } catch (const Json::exception& error) {
     throw InputError(
@@ -135,27 +138,27 @@ std::vector<ChartResult> readChartJson(const std::string& path, const Chart& now
 }
 
 void writeChartCsv(std::ostream& stream, const Chart& chart) {
-  stream << "measured,scene,rows,method,knob,value,iterations,outcome,note,simulated_s,settled_from_s,cpu_ms_per_frame,"
-            "cpu_s_per_simulated_s";
+  stream << "measured,scene,rows,method,knob,value,iterations,outcome,note,simulated_s,settled_from_s,frames,samples,"
+            "cpu_ms_per_frame,cpu_s_per_simulated_s";
   for (const ChartMeasureRow& row : kChartMeasureRows) stream << ',' << row.key;
   stream << ",commit,compiler,flags,cpu,date\n";
   const Provenance& from = chart.provenance;
   constexpr double kFramesInASecond = 60.0;
   for (const ChartResult& r : chart.results) {
-    stream << fmt::format("here,{},{},{},{},{:g},{},{},{},{:.6g},{:.6g},{},{}", nameOf(r.what.scene), chart.limits.rows,
+    stream << fmt::format("here,{},{},{},{},{:g},{},{},{},{:.6g},{:.6g},{},{},{},{}", nameOf(r.what.scene), chart.limits.rows,
                           methodOf(r.what), nameOf(r.what.knob), r.what.value, r.what.iterations, csvText(nameOf(r.outcome)),
-                          csvText(r.note), r.simulated_s, r.from_s, csvNumber(r.frame_ms),
+                          csvText(r.note), r.simulated_s, r.from_s, r.frames, r.samples, csvNumber(r.frame_ms),
                           csvNumber(1e-3 * kFramesInASecond * r.frame_ms));
     for (const double value : r.measured) stream << ',' << csvNumber(value);
     stream << fmt::format(",{},{},{},{},{}\n", from.commit, csvText(from.compiler), csvText(from.flags), csvText(from.processor),
                           from.date);
   }
   for (const PeerResult& peer : chart.peers) {
-    stream << fmt::format("elsewhere,uniform,{},{},settings,{},,{},,,,{},{}", chart.limits.rows, csvText(peer.engine),
+    stream << fmt::format("elsewhere,uniform,{},{},settings,{},,{},,,,,,{},{}", chart.limits.rows, csvText(peer.engine),
                           csvText(peer.settings), csvText(peer.verdict), csvNumber(carriedOver_ms(chart, peer)),
                           csvNumber(1e-3 * kFramesInASecond * carriedOver_ms(chart, peer)));
     for (const double value : peer.measured) stream << ',' << csvNumber(value);
-    stream << ",,,,,\n";
+    stream << ",elsewhere,,,,\n";
   }
 }
 
@@ -164,7 +167,7 @@ double carriedOver_ms(const Chart& chart, const PeerResult& peer) {
   const auto found =
       std::find_if(chart.results.begin(), chart.results.end(), [&](const ChartResult& result) { return result.what == bullet; });
   const bool known = found != chart.results.end() && std::isfinite(found->frame_ms) && std::isfinite(peer.ratioToBullet);
-  return known ? peer.ratioToBullet * found->frame_ms : peer.frame_ms;
+  return known ? peer.ratioToBullet * found->frame_ms : std::nan("");
 }
 
 std::vector<PeerResult> readPeers(const std::string& path, int rows) {
@@ -195,6 +198,7 @@ std::vector<PeerResult> readPeers(const std::string& path, int rows) {
     peer.verdict = text("stands_60_s");
     peer.measured = {value("worst_penetration_mm"),
                      std::abs(value("top_height_error_mm")) / rows,
+                     std::nan(""),
                      value("creep_mm"),
                      value("jitter_mm_s"),
                      std::nan(""),

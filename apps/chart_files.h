@@ -11,8 +11,8 @@ namespace springtower {
 /// Everything measured so far, for a later run to go on from and for other programs to read.
 void writeChartJson(std::ostream& stream, const Chart& chart);
 
-/// The results that a file of an earlier run holds, if they can be gone on with: the same build, processor and limits. Empty
-/// where there is no such file or it belongs to another run. Throws InputError for a file that is not a chart's.
+/// The results that a file of an earlier run holds; empty where there is no such file. Throws InputError for a file that is not a
+/// chart's, or of another build, processor or limits, so that it cannot be gone on with.
 std::vector<ChartResult> readChartJson(const std::string& path, const Chart& now);
 
 /// One line a result, with commit, compiler, flags, processor and date; then the peers, whose `measured` column says elsewhere.
@@ -23,8 +23,7 @@ void writeChartCsv(std::ostream& stream, const Chart& chart);
 /// ms_per_frame and ratio_to_bullet_16_substeps. Throws InputError naming the file and line.
 std::vector<PeerResult> readPeers(const std::string& path, int rows);
 
-/// The time of a frame (ms) of an engine measured elsewhere: by its ratio to Bullet, where Bullet has been measured here, else as
-/// it was there.
+/// The time of a frame (ms) of an engine measured elsewhere, by its ratio to Bullet; NaN where Bullet was not measured here.
 double carriedOver_ms(const Chart& chart, const PeerResult& peer);
 
 }  // namespace springtower

@@ -69,7 +69,8 @@ Plot plotOf(const StabilityMap& map, const Provenance& provenance) {
   if (!theory.points.empty()) plot.lines.push_back(std::move(theory));
   plot.footnote = fmt::format(
       "Worst of what it does after a nudge of 0.5 mm/s: blows up or falls; jitters, above 1 mm/s; creeps, more than {0:g} mm/s; "
-      "sags, a row or a penetration of more than {1:g} mm; stands. w from the bound of the largest eigenvalue, within 8 % of it. "
+      "sags, a row or a penetration of more than {1:g} mm; stands. w from the bound of the largest eigenvalue, which is at most "
+      "8 % high: w at most 4 %. "
       "{2}",
       1e3 * kMapTolerance_m, 1e3 * kMapTolerance_m, footnote(provenance));
   return plot;

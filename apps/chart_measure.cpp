@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 #include <memory>
 #include <mutex>
+#include <numeric>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
 
@@ -22,6 +23,7 @@ namespace {
 
 // A tower may be looked at from here on, s.
 constexpr double kEarliest_s = 1.0;
+constexpr double kMotionLimits = 3.0;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 // A frame cannot be broken off. So a tall tower's cost is foreseen from a small one's; no method's grows faster than its cube.
@@ -109,12 +111,15 @@ class ChartRun {
     try {
       while (simulation_.time_s < times_.end_s - halfFrame()) {
         if (!kept_ && simulation_.time_s > times_.keep_s - halfFrame()) keep();
-        spent_s_ += timedStep();
+        const double step_s = timedStep();
+        spent_s_ += step_s;
+        ++steps_;
+        if (kept_ && isInMotion(result.what.scene)) keepInMotion(step_s);
         observe();
         const double now_j = energy(simulation_).total();
         gained_j = std::max(gained_j, result.what.scene == ChartScene::spin ? std::abs(now_j - start_j_) : now_j - least_j);
         least_j = std::min(least_j, now_j);
-        if (spent_s_ > limits_.case_s && !lookAtOnce()) break;
+        if (spent_s_ > caseLimit_s() && !lookAtOnce()) break;
       }
       finish(gained_j);
     } catch (const DivergenceError& error) {
@@ -122,21 +127,25 @@ class ChartRun {
       result.note = fmt::format("diverged at {:.3g} s", error.time_s);
     }
     result.simulated_s = simulation_.time_s;
+    takeTimes();
+    // Until a sample says so better.
+    if (frame_ms_.empty() && steps_ > 0) result.frame_ms = 1e3 * spent_s_ / steps_;
   }
 
   // One sample: back to the kept state, a frame that is not timed, then the timed ones.
   void sample() {
-    if (result.outcome == ChartOutcome::diverged || !kept_) return;
+    const double enough_s = limits_.samples * limits_.sample_s;
+    if (result.outcome == ChartOutcome::diverged || !kept_ || timedEnough_ || (sampling_s_ > enough_s)) return;
     restoreSnapshot(simulation_, *snapshot_);
     hand_ = handKept_;
+    const bool inMotion = isInMotion(result.what.scene);
+    const std::size_t frames = inMotion ? frame_ms_.size() : static_cast<std::size_t>(limits_.frames);
     double spent_s = 0.0;
     std::size_t frame = 0;
     try {
       if (peer_) peer_->restore();
       spent_s = timedStep();
-      // A method so slow that one frame is more than a sample may take has been timed by it.
-      if (spent_s > limits_.sample_s && frame_ms_.size() < 2) keepLeast(frame++, spent_s);
-      while (frame < static_cast<std::size_t>(limits_.frames) && (spent_s < limits_.sample_s || frame < 1)) {
+      while (frame < frames && (inMotion || spent_s < limits_.sample_s || frame < 1)) {
         const double step_s = timedStep();
         spent_s += step_s;
         keepLeast(frame++, step_s);
@@ -144,11 +153,10 @@ class ChartRun {
     } catch (const DivergenceError& error) {
       result.note = fmt::format("diverged at {:.3g} s while it was timed", error.time_s);
     }
-    frame_ms_.resize(std::min(frame_ms_.size(), std::max<std::size_t>(frame, 1)));
-    double sum = 0.0;
-    for (const double ms : frame_ms_) sum += ms;
-    if (!frame_ms_.empty()) result.frame_ms = sum / static_cast<double>(frame_ms_.size());
-    sampled_ = true;
+    sampling_s_ += spent_s;
+    frame_ms_.resize(std::min(frame_ms_.size(), frame));
+    ++result.samples;
+    takeTimes();
   }
 
   ChartResult result;
@@ -156,15 +164,18 @@ class ChartRun {
  private:
   [[nodiscard]] double halfFrame() const { return 0.5 * simulation_.scene.settings.frame_s; }
 
+  // What is in motion is not timed beside, and has to be seen to its end.
+  [[nodiscard]] double caseLimit_s() const { return (isInMotion(result.what.scene) ? kMotionLimits : 1.0) * limits_.case_s; }
+
   // A slow method that comes to rest is looked at before its time, so that it has figures at all. Returns whether the run may go
   // on: for a quarter of its limit more.
   bool lookAtOnce() {
     const bool settled = simulation_.time_s > times_.from_s - halfFrame();
     if (!settled && comesToRest(result.what.scene) && simulation_.time_s > kEarliest_s) {
       times_.from_s = simulation_.time_s;
-      more_s_ = 0.25 * limits_.case_s;
+      more_s_ = 0.25 * caseLimit_s();
     }
-    return spent_s_ <= limits_.case_s + more_s_;
+    return spent_s_ <= caseLimit_s() + more_s_;
   }
 
   void keep() {
@@ -198,9 +209,23 @@ class ChartRun {
   void keepLeast(std::size_t frame, double step_s) {
     if (frame < frame_ms_.size()) {
       frame_ms_[frame] = std::min(frame_ms_[frame], 1e3 * step_s);
-    } else if (!sampled_) {
+    } else if (result.samples == 0) {
       frame_ms_.push_back(1e3 * step_s);
     }
+  }
+
+  // Where blocks move, what one method is timed over all are. So the run that is looked at is a sample too, and of those that are
+  // slow the only one.
+  void keepInMotion(double step_s) {
+    if (keptFrames_++ == 0 || frame_ms_.size() == static_cast<std::size_t>(limits_.frames)) return;
+    frame_ms_.push_back(1e3 * step_s);
+    if (1e-3 * std::accumulate(frame_ms_.begin(), frame_ms_.end(), 0.0) > limits_.sample_s) timedEnough_ = true;
+    result.samples = 1;
+  }
+
+  void takeTimes() {
+    result.frames = static_cast<int>(frame_ms_.size());
+    if (result.frames > 0) result.frame_ms = std::accumulate(frame_ms_.begin(), frame_ms_.end(), 0.0) / result.frames;
   }
 
   // What is looked at after every frame.
@@ -214,6 +239,7 @@ class ChartRun {
     const bool settled = simulation_.time_s > times_.from_s + halfFrame();
     const bool wholeRun = scene == ChartScene::drop || scene == ChartScene::collapse;
     if (wholeRun || settled) {
+      strain_ = std::max(strain_, maxStrain(simulation_.model, position));
       penetration_m_ = std::max(penetration_m_, maxPenetration(position, simulation_.scene.floor, workspace_).depth);
     }
     if (!settled) return;
@@ -236,9 +262,11 @@ class ChartRun {
     if (expected && fall_.empty() != *expected && (complete || *expected)) {
       result.outcome = ChartOutcome::wrongVerdict;
       if (fall_.empty()) result.note = "stands";
-    } else if (!complete && (counted_ == 0 || scene == ChartScene::collapse || scene == ChartScene::pull)) {
-      result.outcome = ChartOutcome::timedOut;
-      result.note = fmt::format("timed out at {:.2f} s", simulation_.time_s);
+    } else if (!complete) {
+      const bool cut = counted_ > 0 && comesToRest(scene);
+      result.outcome = cut ? ChartOutcome::cutShort : ChartOutcome::timedOut;
+      result.note =
+          fmt::format("{}{}{} at {:.2f} s", fall_, fall_.empty() ? "" : ", ", nameOf(result.outcome), simulation_.time_s);
     }
     const auto set = [&](ChartMeasure measure, double value) { result.measured[static_cast<std::size_t>(measure)] = value; };
     if (start_j_ != 0.0) set(ChartMeasure::energy, gained_j / std::abs(start_j_));
@@ -248,6 +276,7 @@ class ChartRun {
       return;
     }
     if (penetration_m_ >= 0.0) set(ChartMeasure::penetration, 1e3 * penetration_m_);
+    if (strain_ >= 0.0 && !peer_ && !isRigid(simulation_.scene.settings.method)) set(ChartMeasure::strain, strain_);
     if (!comesToRest(scene) || counted_ == 0) return;
     const int rows = 1 + *std::max_element(row_.begin(), row_.end());
     if (rows > 0) set(ChartMeasure::compression, 1e3 * std::abs(topHeightError(closed_, simulation_.state.position)) / rows);
@@ -277,12 +306,16 @@ class ChartRun {
   std::string fall_;
   double start_j_ = 0.0;
   double penetration_m_ = -1.0;
+  double strain_ = -1.0;
   double creep_m_ = 0.0;
   double squares_ = 0.0;
   double counted_ = 0.0;
   double spent_s_ = 0.0;
   double more_s_ = 0.0;  // beyond the limit
-  bool sampled_ = false;
+  int steps_ = 0;
+  int keptFrames_ = 0;  // since the state was kept
+  bool timedEnough_ = false;
+  double sampling_s_ = 0.0;
   std::vector<double> frame_ms_;  // of each frame the least of the samples
 };
 

@@ -25,16 +25,24 @@ double collapseTilt_deg(int rows) {
   return std::min(standing + kBeyondStanding_deg, kMostTilt_deg);
 }
 
-// One block that slides until friction stops it, or eight that fall askew and come to lie in a heap.
-Scene looseBlocks(bool heap) {
+// One block that slides until friction stops it, eight that fall askew and come to lie in a heap, or two that are thrown at one
+// another.
+Scene looseBlocks(ChartScene kind) {
   constexpr int kHeap = 8;
+  constexpr double kThrown_m_s = 3.0;
   Scene scene;
-  scene.name = heap ? "heap" : "slide";
-  for (int i = 0; i < (heap ? kHeap : 1); ++i) {
+  scene.name = nameOf(kind);
+  const int count = kind == ChartScene::heap ? kHeap : kind == ChartScene::thrown ? 2 : 1;
+  for (int i = 0; i < count; ++i) {
     BlockSpec block;
-    if (heap) {
+    if (kind == ChartScene::heap) {
       block.centre = Vec3(0.02 * std::cos(2.0 * i), 0.02 * std::sin(2.0 * i), 0.04 + 0.04 * i);
       block.orientation = Eigen::AngleAxisd(1.1 * i, Vec3::UnitZ()) * Eigen::AngleAxisd(0.15 + 0.05 * i, Vec3::UnitY());
+    } else if (kind == ChartScene::thrown) {
+      const double side = i == 0 ? -1.0 : 1.0;
+      block.centre = Vec3(0.1 * side, 0.004 * side, 0.15);
+      block.velocity.x() = -kThrown_m_s * side;
+      block.orientation = Eigen::AngleAxisd(0.3 + 0.4 * i, Vec3::UnitZ()) * Eigen::AngleAxisd(0.2, Vec3::UnitX());
     } else {
       block.centre.z() = 0.5 * kBlockHeight_m;
       block.velocity.x() = 0.7;
@@ -42,6 +50,10 @@ Scene looseBlocks(bool heap) {
     scene.blocks.push_back(block);
   }
   return scene;
+}
+
+bool hasRows(ChartScene scene) {
+  return scene != ChartScene::spin && scene != ChartScene::slide && scene != ChartScene::heap && scene != ChartScene::thrown;
 }
 
 Scene blocksOf(ChartScene scene, int rows) {
@@ -55,7 +67,7 @@ Scene blocksOf(ChartScene scene, int rows) {
     one.gravity.magnitude = 0.0;
     return one;
   }
-  if (scene == ChartScene::slide || scene == ChartScene::heap) return looseBlocks(scene == ChartScene::heap);
+  if (!hasRows(scene)) return looseBlocks(scene);
   if (scene == ChartScene::holes) return bitCodeScene("(111)-(101)-(111)-(010)-(111)-(101)-(111)-(101)-(111)-(010)-(111)-(111)");
   if (scene == ChartScene::lean) rows = kLeanRows;
   if (scene == ChartScene::tall) rows = kTallRows;
@@ -94,13 +106,14 @@ const std::vector<Sweep>& sweeps() {
   return all;
 }
 
-// Other engines: as they come, then their own knobs.
-struct PeerKnobs {
+// Other engines: as they come, then their own knobs. Our own iterating methods have the second knob too.
+struct StepsAndIterations {
   double substeps;
   int iterations;
 };
-const std::vector<PeerKnobs> kPeerKnobs = {{1, 0}, {1, 200}, {4, 0}, {4, 50}, {8, 0}, {16, 0}, {32, 0}};
-const std::vector<PeerKnobs> kQuickPeerKnobs = {{1, 0}, {16, 0}};
+const std::vector<StepsAndIterations> kPeerKnobs = {{1, 0}, {1, 200}, {4, 0}, {4, 50}, {8, 0}, {16, 0}, {32, 0}};
+const std::vector<StepsAndIterations> kQuickPeerKnobs = {{1, 0}, {16, 0}};
+const std::vector<StepsAndIterations> kMoreIterations = {{4, 16}, {8, 16}, {16, 16}};
 
 }  // namespace
 
@@ -118,6 +131,7 @@ Scene sceneOf(const ChartCase& what, const ChartLimits& limits) {
     scene.settings.tolerance_m = what.value;
   } else {
     scene.settings.substeps = static_cast<int>(what.value);
+    if (what.peer == Peer::none && what.iterations > 0) scene.settings.iterations = what.iterations;
   }
   return scene;
 }
@@ -127,9 +141,12 @@ std::vector<ChartCase> casesOf(ChartScene scene, const std::vector<Method>& meth
   for (const Sweep& sweep : sweeps()) {
     if (std::find(methods.begin(), methods.end(), sweep.method) == methods.end()) continue;
     for (const double value : quick ? sweep.quick : sweep.values) cases.push_back({scene, sweep.method, sweep.knob, value});
+    if (quick || (sweep.method != Method::rigidPgs && sweep.method != Method::xpbd)) continue;
+    for (const StepsAndIterations& knobs : kMoreIterations)
+      cases.push_back({scene, sweep.method, Knob::substeps, knobs.substeps, Peer::none, knobs.iterations});
   }
   for (const Peer peer : peers) {
-    for (const PeerKnobs& knobs : quick ? kQuickPeerKnobs : kPeerKnobs) {
+    for (const StepsAndIterations& knobs : quick ? kQuickPeerKnobs : kPeerKnobs) {
       cases.push_back({scene, Method::rigidPgs, Knob::substeps, knobs.substeps, peer, knobs.iterations});
     }
   }
@@ -151,6 +168,7 @@ ChartTimes timesOf(ChartScene scene, const ChartLimits& limits) {
     case ChartScene::drop:
     case ChartScene::slide:
     case ChartScene::heap:
+    case ChartScene::thrown:
       return {0.0, half_s, limits.seconds};
     case ChartScene::collapse:
     case ChartScene::spin:
@@ -160,7 +178,7 @@ ChartTimes timesOf(ChartScene scene, const ChartLimits& limits) {
 }
 
 std::optional<bool> expectedToStand(ChartScene scene) {
-  if (scene == ChartScene::spin || scene == ChartScene::slide || scene == ChartScene::heap) return {};
+  if (!hasRows(scene)) return {};
   return scene != ChartScene::collapse;
 }
 

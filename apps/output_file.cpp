@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <fmt/format.h>
+#include <fstream>
 #include <system_error>
 
 namespace springtower {
@@ -16,6 +17,10 @@ void makeOutputFolder(const std::string& folder) {
     throw InputError(fmt::format("--out: cannot make the folder {}: {}", inQuotes(folder),
                                  error ? error.message() : std::string("there is a file of that name")));
   }
+  // Better now than after minutes of work.
+  const std::string probe = (std::filesystem::path(folder) / ".writable").string();
+  if (!std::ofstream(probe)) throw InputError(fmt::format("--out: cannot write into the folder {}", inQuotes(folder)));
+  std::filesystem::remove(probe, error);
 }
 
 void writeOutputFile(const std::string& folder, const std::string& name, const std::function<void(std::ostream&)>& write) {

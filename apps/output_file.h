@@ -9,7 +9,8 @@
 
 namespace springtower {
 
-/// Makes the folder that option `--out` names, with those above it. Throws InputError where that cannot be.
+/// Makes the folder that option `--out` names, with those above it. Throws InputError where that cannot be, or nothing can be
+/// written there.
 void makeOutputFolder(const std::string& folder);
 
 /// Writes a whole file of that folder. Throws InputError as OutputFile does.

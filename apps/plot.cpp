@@ -29,12 +29,27 @@ constexpr double kLineHeight = 16.0;
 constexpr double kText = 10.0;
 constexpr double kTitleText = 13.0;
 constexpr double kSmallText = 6.5;
+constexpr double kLabelText = 8.5;
 constexpr double kLegendSample = 24.0;
 constexpr int kPixelsPerPoint = 3;
 
 std::size_t styleOf(const Plot& plot, std::size_t line) {
   return plot.lines[line].style >= 0 ? static_cast<std::size_t>(plot.lines[line].style) : line;
 }
+
+struct Box {
+  double x;
+  double y;
+  double width;
+  double height;
+
+  [[nodiscard]] bool meets(const Box& other) const {
+    return x < other.x + other.width && other.x < x + width && y < other.y + other.height && other.y < y + height;
+  }
+  [[nodiscard]] bool inside(const Box& other) const {
+    return x >= other.x && y >= other.y && x + width <= other.x + other.width && y + height <= other.y + other.height;
+  }
+};
 
 struct LegendEntry {
   const std::string* name;
@@ -104,6 +119,7 @@ class Drawing {
     bars();
     references();
     for (std::size_t i = 0; i < plot_.lines.size(); ++i) line(plot_.lines[i], styleOf(plot_, i));
+    labels();
     cairo_restore(canvas_.get());
     legend();
   }
@@ -186,12 +202,53 @@ class Drawing {
       if (!shows(line.points[i])) continue;
       const double x = atX(line.points[i].x);
       const double y = atY(line.points[i].y);
-      if (line.marker != Marker::none) canvas_.marker(x, y, style, line.marker == Marker::filled);
-      if (i >= line.labels.size() || line.labels[i].empty()) continue;
-      canvas_.ink(kBlack);
-      const double end = x + 6.0 + canvas_.textWidth(line.labels[i], kText - 1.5);
-      const bool fits = end <= kLeft + kPlaneWidth;
-      canvas_.text(fits ? x + 6.0 : x - 6.0, y - 4.0, line.labels[i], kText - 1.5, fits ? Anchor::start : Anchor::end);
+      mark(line.marker, x, y, style);
+    }
+  }
+
+  void mark(Marker marker, double x, double y, std::size_t style) {
+    if (marker == Marker::ring) {
+      canvas_.ink(inkOf(style));
+      cairo_new_path(canvas_.get());
+      cairo_arc(canvas_.get(), x, y, 2.2 * kMarkerRadius, 0.0, 2.0 * std::numbers::pi);
+      canvas_.stroke(1.0, false);
+    } else if (marker != Marker::none) {
+      canvas_.marker(x, y, style, marker == Marker::filled);
+    }
+  }
+
+  // Beside their points where there is room: to the right or left, above or below. A label that would lie over a marker or
+  // another label everywhere is left out.
+  void labels() {
+    std::vector<Box> taken;
+    for (const PlotLine& line : plot_.lines) {
+      for (const PlotPoint& point : line.points) {
+        if (!shows(point) || line.marker == Marker::none || line.marker == Marker::ring) continue;
+        taken.push_back({atX(point.x) - kMarkerRadius, atY(point.y) - kMarkerRadius, 2.0 * kMarkerRadius, 2.0 * kMarkerRadius});
+      }
+    }
+    const Box plane{kLeft, kTop, kPlaneWidth, kPlaneHeight};
+    canvas_.ink(kBlack);
+    for (const PlotLine& line : plot_.lines) {
+      for (std::size_t i = 0; i < std::min(line.points.size(), line.labels.size()); ++i) {
+        if (line.labels[i].empty() || !shows(line.points[i])) continue;
+        const double textWidth = canvas_.textWidth(line.labels[i], kLabelText);
+        for (const double sideways : {6.0, -6.0 - textWidth}) {
+          const double x = atX(line.points[i].x) + sideways;
+          const double y = atY(line.points[i].y);
+          const auto free = [&](double baseline) {
+            const Box box{x, baseline - 0.8 * kLabelText, textWidth, kLabelText};
+            return box.inside(plane) &&
+                   std::none_of(taken.begin(), taken.end(), [&](const Box& other) { return box.meets(other); });
+          };
+          const std::array<double, 3> baselines = {y + 0.35 * kLabelText, y - 4.0, y + 4.0 + 0.8 * kLabelText};
+          const auto* const place = std::find_if(baselines.begin(), baselines.end(), free);
+          if (place == baselines.end()) continue;
+          canvas_.text(x, *place, line.labels[i], kLabelText, Anchor::start);
+          taken.push_back({x, *place - 0.8 * kLabelText, textWidth, kLabelText});
+          break;
+        }
+      }
     }
   }
 
@@ -204,9 +261,7 @@ class Drawing {
         canvas_.box(x + 6.0, y - 5.0, 12.0, 10.0);
       } else {
         if (entry.line->joined) canvas_.segment(x, y, x + kLegendSample, y, 1.5, entry.line->dashed);
-        if (entry.line->marker != Marker::none) {
-          canvas_.marker(x + 0.5 * kLegendSample, y, entry.style, entry.line->marker == Marker::filled);
-        }
+        mark(entry.line->marker, x + 0.5 * kLegendSample, y, entry.style);
       }
       canvas_.ink(kBlack);
       canvas_.text(x + kLegendSample + 8.0, y + 3.5, *entry.name, kText);

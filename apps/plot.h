@@ -9,7 +9,8 @@
 namespace springtower {
 
 /// How the points of a line are marked. Hollow ones are for figures that were not measured in the same run.
-enum class Marker { none, filled, hollow };
+/// Rings go round other lines' markers.
+enum class Marker { none, filled, hollow, ring };
 
 /// One axis. Limits that are not given come from the data and are widened to whole ticks; a logarithmic axis leaves out what is
 /// not positive.
@@ -33,7 +34,7 @@ struct PlotLine {
   Marker marker = Marker::filled;
   bool joined = true;
   bool dashed = false;
-  int style = -1;                        ///< colour and shape of the marker, 0 to 11 and round again; -1: the line's place
+  int style = -1;                        ///< colour and shape of the marker, 0 to 13 and round again; -1: the line's place
   std::vector<std::string> labels = {};  ///< written beside the points, [points] or empty
 };
 

@@ -10,7 +10,7 @@ namespace springtower {
 namespace {
 
 // The first eight: Okabe and Ito 2008, yellow, which is weak on white, last.
-constexpr std::array<Ink, 12> kInks = {{{0.0, 0.447, 0.698},
+constexpr std::array<Ink, 14> kInks = {{{0.0, 0.447, 0.698},
                                         {0.835, 0.369, 0.0},
                                         {0.0, 0.62, 0.451},
                                         {0.8, 0.475, 0.655},
@@ -21,7 +21,9 @@ constexpr std::array<Ink, 12> kInks = {{{0.0, 0.447, 0.698},
                                         {0.55, 0.34, 0.24},
                                         {0.68, 0.72, 0.8},
                                         {0.42, 0.2, 0.55},
-                                        {0.0, 0.3, 0.33}}};
+                                        {0.0, 0.3, 0.33},
+                                        {0.75, 0.15, 0.3},
+                                        {0.4, 0.5, 0.1}}};
 
 }  // namespace
 

@@ -34,6 +34,8 @@ TEST(Chart, RefusesWhatItDoesNotKnow) {
   expectRefusal({"--methods", "magic"}, "'magic'");
   expectRefusal({"--rows", "1"}, "2 to 200");
   expectRefusal({"--out", "/dev/null"}, "--out");
+  expectRefusal({"--out", "/proc"}, "cannot write into");
+  expectRefusal({"--long", "--quick"}, "--quick");
 }
 
 TEST(Chart, RefusesPeersWithoutTheirColumns) {
@@ -83,6 +85,9 @@ TEST_F(ChartFiles, HoldEveryCaseWithItsFigures) {
     const bool tower = one.at("scene") == "uniform";
     for (const char* key : {"penetration_mm", "compression_mm", "creep_mm", "jitter_mm_s", "imbalance"})
       EXPECT_EQ(one.at(key).is_number(), tower) << key;
+    EXPECT_EQ(one.at("max_strain").is_number(), tower && one.at("method") == "implicit") << "rigid blocks have no springs";
+    EXPECT_GE(one.at("frames").get<int>(), 1);
+    EXPECT_GE(one.at("samples").get<int>(), 1);
     EXPECT_EQ(one.at("error_mm").is_number(), !tower);
     if (!tower) continue;
     EXPECT_LT(one.at("imbalance").get<double>(), 1e-3) << "of a block's weight";
@@ -116,7 +121,7 @@ TEST_F(ChartFiles, IndexNamesEveryChart) {
     EXPECT_THAT(contentOf(picture), HasSubstr("PNG"));
     EXPECT_GT(contentOf(entry.path()).size(), 10000U);
   }
-  EXPECT_EQ(charts, 8U);  // six measures of the tower; the energy of the block that flies, and its error
+  EXPECT_EQ(charts, 9U);  // seven measures of the tower; the energy of the block that flies, and its error
 }
 
 // A finer step is nearer to the converged run of its own model.
@@ -134,21 +139,64 @@ TEST_F(ChartFiles, ErrorAgainstAConvergedRunFallsWithTheStep) {
   EXPECT_GT(coarse_mm, 0.0);
 }
 
-// What has been measured is not measured again; with another limit it is.
+std::string withoutDates(const std::string& text) {
+  std::string cut;
+  for (const std::string& line : linesOf(text)) cut += line.substr(0, line.rfind(',')) + "\n";
+  return cut;
+}
+
+// Of a run that was broken off the scenes that were done stay, to the last digit of their timings.
 TEST_F(ChartFiles, AnotherRunGoesOnFromThem) {
-  const std::string before = contentOf(path("out/chart.csv"));
+  const std::string before = withoutDates(contentOf(path("out/chart.csv")));
+  Json broken = json();
+  std::erase_if(broken.at("cases").get_ref<Json::array_t&>(), [](const Json& one) { return one.at("scene") == "spin"; });
+  ASSERT_EQ(broken.at("cases").size(), 4U);
+  std::ofstream(path("out/chart.json")) << broken.dump();
   ASSERT_EQ(chart(arguments()).exitCode, 0);
-  const std::string after = contentOf(path("out/chart.csv"));
-  const auto withoutDates = [](const std::string& text) {
-    std::string cut;
-    for (const std::string& line : linesOf(text)) cut += line.substr(0, line.rfind(',')) + "\n";
-    return cut;
-  };
-  EXPECT_EQ(withoutDates(after), withoutDates(before));
-  std::vector<std::string> fresh = arguments();
-  fresh.emplace_back("--fresh");
-  ASSERT_EQ(chart(fresh).exitCode, 0);
-  EXPECT_NE(withoutDates(contentOf(path("out/chart.csv"))), withoutDates(before)) << "no two timings are the same";
+  const std::string after = withoutDates(contentOf(path("out/chart.csv")));
+  EXPECT_EQ(linesOf(after).size(), 9U);
+  for (const std::string& line : linesOf(before)) {
+    if (!line.starts_with("here,uniform")) continue;
+    EXPECT_THAT(after, HasSubstr(line + "\n"));
+  }
+}
+
+TEST_F(ChartFiles, StayWhenOneSceneIsAskedFor) {
+  std::vector<std::string> one = arguments();
+  std::replace(one.begin(), one.end(), std::string("uniform,spin"), std::string("spin"));
+  const std::string before = withoutDates(contentOf(path("out/chart.csv")));
+  ASSERT_EQ(chart(one).exitCode, 0);
+  EXPECT_EQ(withoutDates(contentOf(path("out/chart.csv"))), before);
+}
+
+TEST_F(ChartFiles, AreNotOverwrittenByARunWithOtherLimits) {
+  std::vector<std::string> other = arguments();
+  std::replace(other.begin(), other.end(), std::string("3"), std::string("4"));
+  const std::string before = contentOf(path("out/chart.json"));
+  const ProgramResult refused = chart(other);
+  EXPECT_EQ(refused.exitCode, 2);
+  EXPECT_THAT(refused.error, HasSubstr("--fresh"));
+  EXPECT_EQ(contentOf(path("out/chart.json")), before);
+  other.emplace_back("--fresh");
+  EXPECT_EQ(chart(other).exitCode, 0);
+}
+
+// Where blocks move, cases are timed over the same frames. The choice of method `auto` stands in the index, judged.
+TEST(Chart, TimesMotionAlikeAndJudgesTheChoiceOfAuto) {
+  const ScratchFolder scratch;
+  const ProgramResult result = chart({"--quick", "--auto", "--scenes", "slide,thrown", "--methods", "auto,implicit,rigid-pgs",
+                                      "--case-limit", "30", "--out", scratch.file("out")});
+  ASSERT_EQ(result.exitCode, 0) << result.error;
+  const Json file = Json::parse(contentOf(scratch.file("out/chart.json")));
+  for (const Json& one : file.at("cases")) {
+    SCOPED_TRACE(one.dump());
+    EXPECT_EQ(one.at("frames"), 20);
+    EXPECT_EQ(one.at("outcome"), "right");
+  }
+  const std::string index = contentOf(scratch.file("out/index.md"));
+  EXPECT_THAT(index, HasSubstr("| slide | took implicit"));
+  EXPECT_THAT(index, HasSubstr("| thrown | took rigid-pgs"));
+  EXPECT_THAT(index, ::testing::AnyOf(HasSubstr("| pass |"), HasSubstr("| **fail** |")));
 }
 
 // Other engines run beside ours. The packages that tests need have both of them (packages.txt).
@@ -184,7 +232,7 @@ TEST(Chart, RunsOtherEnginesAndCarriesOverThoseMeasuredElsewhere) {
   const std::vector<std::string> lines = linesOf(contentOf(scratch.file("out/chart.csv")));
   EXPECT_THAT(lines.back(), StartsWith("elsewhere,uniform,3,\"Other\","));
   ASSERT_GT(bullet_ms, 0.0);
-  std::istringstream carried(lines.back().substr(lines.back().find(",,,,") + 4));
+  std::istringstream carried(lines.back().substr(lines.back().find(",,,,,,") + 6));
   double ms = 0.0;
   carried >> ms;
   EXPECT_NEAR(ms, 0.5 * bullet_ms, 1e-3 * bullet_ms);

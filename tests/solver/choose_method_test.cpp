@@ -40,6 +40,23 @@ TEST(ChooseMethod, WhatFallsFarAndAskewIsTakenAsRigid) {
   }
 }
 
+// What is thrown at something rocks as what falls askew does; a block that slides on its own meets nothing.
+TEST(ChooseMethod, WhatMeetsAtSpeedIsTakenAsRigid) {
+  for (const double gravity : {kStandardGravity_m_s2, 0.0}) {
+    Scene scene = oneBlockScene(true);
+    scene.gravity.magnitude = gravity;
+    scene.settings.method = Method::automatic;
+    scene.blocks[0].velocity.x() = 2.0;
+    EXPECT_EQ(chooseMethod(scene).method, Method::implicit);
+    scene.blocks.push_back(scene.blocks[0]);
+    scene.blocks[1].centre.x() += 0.3;
+    EXPECT_EQ(chooseMethod(scene).method, Method::implicit) << "both alike";
+    scene.blocks[1].velocity.x() = -2.0;
+    EXPECT_EQ(chooseMethod(scene).method, Method::rigidPgs);
+    EXPECT_GE(chooseMethod(scene).substeps, 1);
+  }
+}
+
 // The sag of rigid blocks goes as the square of the step: a quarter of the tolerance takes twice the steps.
 TEST(ChooseMethod, RigidStepsFollowTheTolerance) {
   Scene scene = fallingBlock(0.05, 10.0);
