@@ -39,13 +39,13 @@ struct Outcome {
   double meanPenetration_m = 0.0;  // deepest of each frame of the last half second, mean
   double strain = 0.0;             // largest of the same
   double asymmetry_m = 0.0;
-  double speed_m_s = 0.0;  // in the end
-  double lowest_m = 0.0;   // centre of the lower row's blocks in the end
+  bool atRest = false;    // in the end, by the rule for sleep
+  double lowest_m = 0.0;  // centre of the lower row's blocks in the end
 };
 
-Outcome outcomeOf(Method method) {
-  Simulation simulation(prototype(method));
-  stepFor(simulation, 1.5);
+Outcome outcomeOf(const Scene& scene) {
+  Simulation simulation(scene);
+  stepFor(simulation, 4.5);
   Outcome outcome;
   PenetrationWorkspace workspace;
   constexpr int kFrames = 30;
@@ -56,7 +56,7 @@ Outcome outcomeOf(Method method) {
     outcome.strain = std::max(outcome.strain, maxStrain(simulation.model, position));
     outcome.asymmetry_m = std::max(outcome.asymmetry_m, asymmetry(position));
   }
-  outcome.speed_m_s = rootMeanSquareCornerSpeed(simulation.state.velocity);
+  outcome.atRest = atRest(simulation);
   outcome.lowest_m = std::min(centre(simulation.state.position, 0).z(), centre(simulation.state.position, 1).z());
   return outcome;
 }
@@ -64,22 +64,27 @@ Outcome outcomeOf(Method method) {
 // Report Figure 3.2: "the collision routine could not be time limited". Pivoting brings the stack to rest, and it stays in the
 // plane.
 TEST(Prototypes, RigidRectanglesComeToRest) {
-  const Outcome rigid = outcomeOf(Method::rigidLcp);
+  const Outcome rigid = outcomeOf(prototype(Method::rigidLcp));
   EXPECT_LT(rigid.meanPenetration_m, 5e-4);
   EXPECT_LT(rigid.strain, 1e-9) << "rigid";
   EXPECT_LT(rigid.asymmetry_m, 1e-12);
-  EXPECT_LT(rigid.speed_m_s, 1e-3);
+  EXPECT_TRUE(rigid.atRest);
   EXPECT_NEAR(rigid.lowest_m, 0.5 * kBlockHeight_m, 5e-4);
 }
 
-// Report Figure 3.4: "deformation was barely noticeable". A row gives way by no more than the tolerance.
+// Report Figure 3.4: "deformation was barely noticeable". A row gives way by no more than the tolerance. The report's steps are
+// as many in every frame, and so they are here: where their number follows the tolerance it changes from frame to frame (60 to
+// 77), and with it the step, and the stack rings on at a few tenths of a millimetre a second.
 TEST(Prototypes, SprungRectanglesComeToRest) {
-  const Outcome sprung = outcomeOf(Method::semiImplicitEuler);
+  Scene scene = prototype(Method::semiImplicitEuler);
+  scene.settings.substeps = 100;
+  scene.settings.tolerance_m = toleranceOf(scene);
+  const Outcome sprung = outcomeOf(scene);
   const double tolerance_m = kBlockTolerance_m;
   EXPECT_LT(sprung.meanPenetration_m, tolerance_m);
   EXPECT_LT(sprung.strain, tolerance_m / kBlockHeight_m);
   EXPECT_LT(sprung.asymmetry_m, 1e-12);
-  EXPECT_LT(sprung.speed_m_s, 1e-3);
+  EXPECT_TRUE(sprung.atRest);
   EXPECT_NEAR(sprung.lowest_m, 0.5 * kBlockHeight_m, tolerance_m);
 }
 

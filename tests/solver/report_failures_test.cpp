@@ -1,6 +1,5 @@
 #include "solver/engine.h"
 #include "solver/measures.h"
-#include "solver/penetration.h"
 #include "solver/rest.h"
 #include "solver/simulation.h"
 #include "tests/solver/report_scenes.h"
@@ -68,20 +67,38 @@ TEST(ReportFailure, ATowerJittersAndCreeps) {
   EXPECT_LT(ours.creep, 5e-5);
 }
 
-// Figure 6.8b: (010)-(010)-(011)-(010)-(001) presses on one side, and impulses without static friction let the lone middle block
-// of row 2 walk out until the tower falls, after 7 s. With friction that holds nothing moves once it has settled.
+// Figure 6.8b: (010)-(010)-(011)-(010)-(001) presses on one side. Without static friction "the lone middle block" of row 2 is
+// "forced out slowly leading to the collapse of the tower". Here all rows walk with it, the higher the farther, until the tower
+// falls after some 6 s (5 to 8 s for starts up to 0.1 mm higher) and that block is pushed out sideways. With friction that holds
+// nothing moves once it has settled.
 TEST(ReportFailure, ALoneMiddleBlockIsForcedOut) {
-  const auto walked = [](const Scene& scene, double seconds) {
+  struct Fate {
+    double walked_m = 0.0;   // by the lone middle block, in the first seconds
+    double ended_m = 0.0;    // and in the end
+    double dropped_m = 0.0;  // by the top block in the end
+  };
+  const auto fateOf = [](const Scene& scene) {
     Simulation simulation(scene);
     stepFor(simulation, 1.0);
     const Vec3 settled = centre(simulation.state.position, 1);
-    stepFor(simulation, seconds);
-    return (centre(simulation.state.position, 1) - settled).norm();
+    const double top = centre(simulation.state.position, 5).z();
+    stepFor(simulation, 3.0);
+    Fate fate;
+    fate.walked_m = (centre(simulation.state.position, 1) - settled).norm();
+    stepFor(simulation, 8.0);
+    fate.ended_m = (centre(simulation.state.position, 1) - settled).norm();
+    fate.dropped_m = top - centre(simulation.state.position, 5).z();
+    return fate;
   };
   Scene tower = bitCodeScene("(010)-(010)-(011)-(010)-(001)");
   tower.settings.sleep = Sleep::off;
-  EXPECT_GT(walked(asReported(tower), 3.0), 1e-3);
-  EXPECT_LT(walked(tower, 10.0), 1e-6);
+  const Fate reported = fateOf(asReported(tower));
+  EXPECT_GT(reported.walked_m, 1e-3);
+  EXPECT_GT(reported.ended_m, 0.4 * kBlockWidth_m);
+  EXPECT_GT(reported.dropped_m, 2.0 * kBlockHeight_m) << "the tower has collapsed";
+  const Fate ours = fateOf(tower);
+  EXPECT_LT(ours.ended_m, 1e-6);
+  EXPECT_LT(std::abs(ours.dropped_m), 1e-6);
 }
 
 // Figure 6.21: springs that a frame's few steps allow are soft, and a full tower is squashed. Stiffness must cost no steps.
@@ -104,40 +121,33 @@ TEST(ReportFailure, SoftSpringsSquashAFullTower) {
   EXPECT_LT(compression(Method::implicit, 4), 0.1 * soft) << "with a seventh of the steps";
 }
 
-// Figure 3.3: what one pair of rigid blocks is given, the next has to pass on. In a stack that takes more passes the higher it
-// is, and with the few of a frame it sinks in.
-TEST(RigidFailure, ResolvingPairByPairDoesNotEndInAStack) {
-  const auto depth = [](Method method, int rows) {
-    Scene scene = towerScene(rows);
-    scene.settings.sleep = Sleep::off;
-    scene.settings.method = method;
-    scene.settings.substeps = 4;
-    scene.settings.tolerance_m = toleranceOf(scene);
-    Simulation simulation(scene);
-    stepFor(simulation, 1.0);
-    PenetrationWorkspace workspace;
-    return maxPenetration(simulation.state.position, true, workspace).depth;
-  };
-  const double low = depth(Method::rigidPgs, 3);
-  EXPECT_GT(low, 5e-4);
-  EXPECT_GT(depth(Method::rigidPgs, 12), 5.0 * low) << "four times as high";
-  EXPECT_LT(depth(Method::implicit, 12), 5e-5) << "as many steps, and no passes from pair to pair";
-}
-
 // "All collisions are guaranteed to be solved within just a couple of iterations" (report 6.2.2 and its abstract). They are in
-// most steps, but not in all: where a tower of four rows is let go, a whole frame's steps take more than ten passes each.
+// most steps, but not in all: where a tower of four rows is let go, a whole frame's steps take more than ten passes each. The
+// default method resolves no collisions one by one: contacts answer with forces, all of an island in one system of equations,
+// and here that is solved a couple of times in every step.
 TEST(ReportFailure, CollisionsTakeMoreThanACoupleOfIterations) {
-  Scene scene = asReported(towerScene(4));
-  scene.settings.reportIterations = 1000;
-  Simulation simulation(scene);
+  Scene scene = towerScene(4);
+  scene.settings.sleep = Sleep::off;
+  Scene passes = asReported(scene);
+  passes.settings.reportIterations = 1000;
+  Simulation reported(passes);
+  Simulation ours(scene);
   double most = 0.0;
+  double mostOfOurs = 0.0;
   for (int frame = 0; frame < 60; ++frame) {
-    const Counters before = simulation.counters;
-    stepFrame(simulation);
-    most = std::max(most, static_cast<double>(simulation.counters.responseIterations - before.responseIterations) /
-                              static_cast<double>(simulation.counters.steps - before.steps));
+    const Counters before = reported.counters;
+    stepFrame(reported);
+    most = std::max(most, static_cast<double>(reported.counters.responseIterations - before.responseIterations) /
+                              static_cast<double>(reported.counters.steps - before.steps));
+    const Counters ourBefore = ours.counters;
+    stepFrame(ours);
+    ASSERT_GT(ours.counters.implicitSteps, ourBefore.implicitSteps);
+    mostOfOurs = std::max(mostOfOurs, static_cast<double>(ours.counters.implicitIterations - ourBefore.implicitIterations) /
+                                          static_cast<double>(ours.counters.implicitSteps - ourBefore.implicitSteps));
   }
   EXPECT_GT(most, 10.0);
+  EXPECT_LT(mostOfOurs, 3.0);
+  EXPECT_EQ(ours.counters.handedOver, 0U) << "a step that did not converge";
 }
 
 // How far the blocks of the top row move across, the farthest, m.
@@ -191,7 +201,7 @@ Scene overhangingBlock() {
   return scene;
 }
 
-// Report Figure 6.22: the start of tipping is too slow for the disabling test, and the block hangs there for ever.
+// Report 6.2.2, before Figure 6.22: the start of tipping is too slow for the disabling test, and the block hangs there for ever.
 TEST(ReportFailure, TheDisablingTestHoldsAnOverhangingBlock) {
   const auto drop = [](const Scene& scene) {
     Simulation simulation(scene);
@@ -207,6 +217,38 @@ TEST(ReportFailure, TheDisablingTestHoldsAnOverhangingBlock) {
   Scene ours = overhangingBlock();
   ours.settings.sleep = Sleep::on;
   EXPECT_GT(drop(ours), 1e-3);
+}
+
+// Figure 6.22: of a tower at rest some blocks are not disabled, as "the particles are moving enough to categorise them as moving
+// blocks. The situation becomes worse with more blocks in the tower". The units of the report's distance are not known. Taken as
+// metres it disables every block of these towers; with a quarter of it a tower of two rows is disabled, and of six, which stands
+// as well, hardly a block.
+TEST(ReportFailure, TheDisablingTestKeepsARestingTowerAwake) {
+  struct Rest {
+    std::ptrdiff_t awake = 0;
+    bool stands = false;
+  };
+  const auto restOf = [](const Scene& scene, double seconds) {
+    Simulation simulation(scene);
+    const std::vector<FittedBox> start = fittedBoxes(simulation.state.position);
+    stepFor(simulation, seconds);
+    return Rest{std::count(simulation.asleep.begin(), simulation.asleep.end(), std::uint8_t{0}),
+                standing(simulation.model, start, simulation.state.position).stands};
+  };
+  const auto reported = [&](int rows, double share) {
+    Scene scene = asReported(towerScene(rows));
+    scene.settings.sleep = Sleep::report;
+    scene.settings.reportDisableDistance_m *= share;
+    return restOf(scene, 2.5);
+  };
+  EXPECT_EQ(reported(6, 1.0).awake, 0);
+  EXPECT_LE(reported(2, 0.25).awake, 2) << "of 6";
+  const Rest high = reported(6, 0.25);
+  EXPECT_GE(high.awake, 12) << "of 18";
+  EXPECT_TRUE(high.stands);
+  const Rest ours = restOf(towerScene(6), 5.0);
+  EXPECT_EQ(ours.awake, 0);
+  EXPECT_TRUE(ours.stands);
 }
 
 // One block lies on the floor without friction, another comes along it.

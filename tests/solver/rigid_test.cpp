@@ -184,5 +184,64 @@ TEST_P(RigidMethod, IsTheSameOnAnyThreads) {
   EXPECT_EQ(hashAfter(scene, 4), hash);
 }
 
+// A column of blocks that just touch, coming down together at this speed, m/s, in steps of 1 ms.
+constexpr double kColumnSpeed_m_s = 0.5;
+Scene columnComingDown(Method method, int rows, int passes) {
+  std::string code = "(010)";
+  for (int row = 1; row < rows; ++row) code += "-(010)";
+  Scene scene = bitCodeScene(code);
+  setSteps(scene.settings, method, 1e-3, 1);
+  scene.settings.sleep = Sleep::off;
+  scene.settings.iterations = passes;
+  for (BlockSpec& block : scene.blocks) block.velocity.z() = -kColumnSpeed_m_s;
+  return scene;
+}
+
+// How fast any block of a column still goes into what is below it after the step in which it came down, the fastest, m/s.
+double approachLeft(Method method, int rows, int passes) {
+  Simulation simulation(columnComingDown(method, rows, passes));
+  stepFrame(simulation);
+  double fastest = 0.0;
+  double below = 0.0;
+  for (std::size_t b = 0; b < simulation.model.blockCount(); ++b) {
+    const double own = centre(simulation.state.velocity, b).z();
+    fastest = std::max(fastest, below - own);
+    below = own;
+  }
+  return fastest;
+}
+
+// How deep any blocks of a column are in each other in the 50 ms from then on, the deepest, m.
+double deepestInColumn(Method method, int rows, int passes) {
+  Simulation simulation(columnComingDown(method, rows, passes));
+  PenetrationWorkspace workspace;
+  double deepest = 0.0;
+  for (int step = 0; step < 50; ++step) {
+    stepFrame(simulation);
+    deepest = std::max(deepest, maxPenetration(simulation.state.position, true, workspace).depth);
+  }
+  return deepest;
+}
+
+// Report Figure 3.3: "by resolving one pair, another pair of embedded objects can occur", and by resolving that the first again.
+// After a pass over a column each pair has been resolved once, and still some go into each other; how many passes it takes grows
+// with the column. Enough of them, or all pairs at once (`rigid-lcp`), leave nothing.
+TEST(RigidFailure, ResolvingOnePairUndoesAnother) {
+  EXPECT_GT(approachLeft(Method::rigidPgs, 8, 1), 0.4 * kColumnSpeed_m_s);
+  EXPECT_GT(approachLeft(Method::rigidPgs, 8, 10), 0.1 * kColumnSpeed_m_s);
+  EXPECT_GT(approachLeft(Method::rigidPgs, 16, 100), 4.0 * approachLeft(Method::rigidPgs, 8, 100)) << "twice as high";
+  EXPECT_LT(approachLeft(Method::rigidPgs, 8, 1000), 1e-3 * kColumnSpeed_m_s);
+  EXPECT_LT(approachLeft(Method::rigidLcp, 8, 1), 1e-3 * kColumnSpeed_m_s);
+}
+
+// What a few passes leave over embeds the blocks. A method that answers with the forces of all contacts together has no passes.
+TEST(RigidFailure, FewPassesLeaveBlocksEmbedded) {
+  const double few = deepestInColumn(Method::rigidPgs, 24, 1);
+  EXPECT_GT(few, 5e-4);
+  EXPECT_GT(deepestInColumn(Method::rigidPgs, 24, 10), 0.5 * few);
+  EXPECT_LT(deepestInColumn(Method::rigidPgs, 24, 1000), 0.25 * few);
+  EXPECT_LT(deepestInColumn(Method::implicit, 24, 1), 0.25 * few) << "the default method, in as many steps";
+}
+
 }  // namespace
 }  // namespace springtower
