@@ -87,7 +87,7 @@ struct ChartCase {
 struct ChartLimits {
   int rows = 18;          ///< of the towers
   double seconds = 10.0;  ///< s simulated; creep and jitter are those of the second half
-  double case_s = 3.0;    ///< s of processor time after which a case has timed out; three times that where blocks move
+  double case_s = 3.0;    ///< s of processor time after which a case has timed out; twice that where blocks move
   int samples = 5;        ///< by turns with those of the other cases, each from the same state
   int frames = 120;       ///< timed in a sample; the first after the state is restored is left out
   double sample_s = 0.2;  ///< s of processor time after which a sample ends early in scenes at rest; see measureChart

@@ -195,7 +195,7 @@ CLI::App* defineChart(CLI::App& program, ChartCommand& command) {
   addNumber(*chart, "--seconds", command.seconds, kSimulatedRange, "S",
             "simulated; the second half counts for rest (default 10)");
   addNumber(*chart, "--case-limit", command.case_s, kCaseRange, "S",
-            "processor time after which a case has timed out (default 3)");
+            "processor time after which a case has timed out, twice that where blocks move (default 3)");
   addWholeNumber(*chart, "--samples", command.samples, kChartSamplesRange, "of each case's speed, taken by turns (default 5)");
   chart->add_option("--peers", command.peers, "figures of other engines, drawn hollow beside ours; see bench/data/peers")
       ->type_name("FILE.csv");

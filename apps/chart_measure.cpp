@@ -23,7 +23,7 @@ namespace {
 
 // A tower may be looked at from here on, s.
 constexpr double kEarliest_s = 1.0;
-constexpr double kMotionLimits = 3.0;
+constexpr double kMotionLimits = 2.0;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 // A frame cannot be broken off. So a tall tower's cost is foreseen from a small one's; no method's grows faster than its cube.
