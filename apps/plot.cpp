@@ -184,7 +184,7 @@ class Drawing {
       const double y = atY(reference.y);
       canvas_.ink(kGrey);
       canvas_.segment(kLeft, y, kLeft + kPlaneWidth, y, 0.9, true);
-      canvas_.text(kLeft + kPlaneWidth - 4.0, y - 3.0, reference.name, kText - 1.5, Anchor::end);
+      canvas_.text(kLeft + kPlaneWidth - 4.0, y - 3.0, reference.name, kLabelText, Anchor::end);
     }
   }
 
@@ -226,6 +226,10 @@ class Drawing {
         if (!shows(point) || line.marker == Marker::none || line.marker == Marker::ring) continue;
         taken.push_back({atX(point.x) - kMarkerRadius, atY(point.y) - kMarkerRadius, 2.0 * kMarkerRadius, 2.0 * kMarkerRadius});
       }
+    }
+    for (const PlotReference& reference : plot_.references) {
+      const double textWidth = canvas_.textWidth(reference.name, kLabelText);
+      taken.push_back({kLeft + kPlaneWidth - 4.0 - textWidth, atY(reference.y) - 3.0 - kLabelText, textWidth, kLabelText});
     }
     const Box plane{kLeft, kTop, kPlaneWidth, kPlaneHeight};
     canvas_.ink(kBlack);
