@@ -157,6 +157,7 @@ Method mappedMethod(const std::string& name) {
   const auto found = std::find_if(mapped.begin(), mapped.end(), [&](Method method) { return nameOf(method) == name; });
   if (found != mapped.end()) return *found;
   std::vector<std::string_view> names;
+  names.reserve(mapped.size());
   for (const Method method : mapped) names.push_back(nameOf(method));
   throw InputError(fmt::format("--methods: found {}, with --maps allowed are {}", inQuotes(name), fmt::join(names, ", ")));
 }
