@@ -133,11 +133,14 @@ Plot plotOf(const Chart& chart, ChartScene scene, ChartMeasure measure) {
         plot.lines.back().style = styleOf(result.what);
         plot.lines.back().joined = result.what.peer == Peer::none && result.what.iterations == 0;  // two knobs make no line
       }
-      const double place = drawn(result, measure) ? shown(result, measure) : rail;
-      plot.lines.back().points.push_back({place, result.frame_ms});
-      plot.lines.back().labels.push_back(drawn(result, measure) ? labelOf(result, measure) : std::string(nameOf(result.outcome)));
-      if (!drawn(result, measure)) plot.lines.back().points.insert(plot.lines.back().points.end() - 1, {kNowhere, kNowhere});
-      if (!drawn(result, measure)) plot.lines.back().labels.insert(plot.lines.back().labels.end() - 1, "");
+      PlotLine& line = plot.lines.back();
+      if (drawn(result, measure)) {
+        line.points.push_back({shown(result, measure), result.frame_ms});
+        line.labels.push_back(labelOf(result, measure));
+      } else {
+        line.points.insert(line.points.end(), {{kNowhere, kNowhere}, {rail, result.frame_ms}});
+        line.labels.insert(line.labels.end(), {"", std::string(nameOf(result.outcome))});
+      }
     }
     if (!drawn(result, measure))
       missing += fmt::format("{}{} ({})", missing.empty() ? "" : "; ", nameOf(result.what),

@@ -5,7 +5,6 @@
 
 #include <filesystem>
 #include <fmt/format.h>
-#include <fstream>
 #include <system_error>
 
 namespace springtower {
@@ -17,10 +16,8 @@ void makeOutputFolder(const std::string& folder) {
     throw InputError(fmt::format("--out: cannot make the folder {}: {}", inQuotes(folder),
                                  error ? error.message() : std::string("there is a file of that name")));
   }
-  // Better now than after minutes of work.
-  const std::string probe = (std::filesystem::path(folder) / ".writable").string();
-  if (!std::ofstream(probe)) throw InputError(fmt::format("--out: cannot write into the folder {}", inQuotes(folder)));
-  std::filesystem::remove(probe, error);
+  // Better now than after minutes of work. It is never committed, so it leaves nothing behind.
+  const OutputFile probe((std::filesystem::path(folder) / ".probe").string(), "--out");
 }
 
 void writeOutputFile(const std::string& folder, const std::string& name, const std::function<void(std::ostream&)>& write) {

@@ -34,7 +34,7 @@ TEST(Chart, RefusesWhatItDoesNotKnow) {
   expectRefusal({"--methods", "magic"}, "'magic'");
   expectRefusal({"--rows", "1"}, "2 to 200");
   expectRefusal({"--out", "/dev/null"}, "--out");
-  expectRefusal({"--out", "/proc"}, "cannot write into");
+  expectRefusal({"--out", "/proc"}, "--out: cannot write '/proc/");
   expectRefusal({"--long", "--quick"}, "--quick");
 }
 
