@@ -13,7 +13,8 @@ namespace springtower {
 inline constexpr double kGripForce_n = 5.0;     ///< N, the default limit
 inline constexpr double kFollow_rad_s = 50.0;   ///< natural frequency of the follow of a free block, 1/s
 inline constexpr double kLead_rad_s = 300.0;    ///< the same of a hand that leads its block along a line
-inline constexpr double kLevel_rad_s = 1000.0;  ///< and of its hold on the block's orientation
+inline constexpr double kLevel_rad_s = 3000.0;  ///< and of its hold on the block's orientation: softer, a block that hangs over
+                                                ///< tips, and its end lifts what lies on it and drags it along
 
 /// What the hand wants in one frame.
 struct Hand {

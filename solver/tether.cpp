@@ -31,13 +31,19 @@ GripForce tetherForces(const Tether& tether, const BlockModel& model, const Moti
   sum.limited = wanted.norm() > tether.limit_n || distance.norm() < missing.norm();
 
   const Eigen::Matrix3d axes = (rotation(ahead_s * tether.spin) * tether.turn).toRotationMatrix();
+  // It holds the mean edges: corners that warp are left to the block's own springs.
+  Eigen::Matrix3d edges;
+  Eigen::Matrix3d edgeRates;
+  for (std::size_t a = 0; a < 3; ++a) {
+    edges.col(static_cast<Eigen::Index>(a)) = meanEdge(state.position, b, a);
+    edgeRates.col(static_cast<Eigen::Index>(a)) = meanEdge(state.velocity, b, a);
+  }
   for (std::size_t c = 0; c < kCorners; ++c) {
-    Vec3 half = 0.5 * model.dimensions[b];
-    for (std::size_t a = 0; a < 3; ++a) half[static_cast<Eigen::Index>(a)] *= cornerSide(c, a);
-    const Vec3 arm = axes * half;
-    const Vec3 own = state.position.at(b, c) - middle;
-    corner[c] = tether.cornerStiffness_n_m * (arm - own) +
-                tether.cornerDamping_n_s_m * (tether.spin.cross(arm) - (state.velocity.at(b, c) - velocity));
+    const Vec3 sides = 0.5 * Vec3(cornerSide(c, 0), cornerSide(c, 1), cornerSide(c, 2));
+    const Vec3 arm = axes * sides.cwiseProduct(model.dimensions[b]);
+    const Vec3 own = edges * sides;
+    corner[c] =
+        tether.cornerStiffness_n_m * (arm - own) + tether.cornerDamping_n_s_m * (tether.spin.cross(arm) - edgeRates * sides);
     sum.torque += own.cross(corner[c]);
   }
   const double torque = sum.torque.norm();

@@ -169,6 +169,24 @@ TEST(Grip, ForcesAtTheCornersAddUp) {
   }
 }
 
+// It holds a block's edges: how the corners warp is the springs' business, and the matrix of implicit steps takes it so.
+TEST(Grip, LeavesWarpsToTheBlock) {
+  Simulation simulation(blockInTheAir());
+  Grip grip;
+  hold(handOn(simulation, blockId(0)), {}, grip, simulation);
+  std::array<Vec3, kCorners> before;
+  tetherForces(simulation.tether, simulation.model, simulation.state, simulation.tether.time_s, before);
+  for (std::size_t c = 0; c < kCorners; ++c) {
+    const double warp = 1e-4 * cornerSide(c, 0) * cornerSide(c, 1);
+    simulation.state.position.values(2, 0)[c] += warp;
+    simulation.state.velocity.values(0, 0)[c] += warp;
+  }
+  std::array<Vec3, kCorners> after;
+  tetherForces(simulation.tether, simulation.model, simulation.state, simulation.tether.time_s, after);
+  for (std::size_t c = 0; c < kCorners; ++c)
+    EXPECT_LT((after[c] - before[c]).norm(), 1e-9 * simulation.tether.cornerStiffness_n_m * 1e-4) << c;
+}
+
 // On the floor friction decides: below its bound the block stays, above it slides.
 TEST(Grip, FrictionAnswersTheHand) {
   Scene scene = oneBlockScene(true);

@@ -59,6 +59,22 @@ TEST(Moves, ALooseBlockGoesToTheTopAndMovesNobody) {
   EXPECT_TRUE(result.standing.stands);
 }
 
+// The middle block under the top row: as it comes out it hangs over ever more, and its end must not lift the light blocks on it,
+// which lie on it by a third of their weight, and drag them along. Nobody else moves by more than the tolerance.
+TEST(Moves, ABlockUnderTheTopRowLeavesItWhereItIs) {
+  for (const char* code : {"(111)-(111)-(111)", "(111)-(101)-(111)-(111)-(111)", "(111)-(111)-(110)-(111)-(111)"}) {
+    Scene scene = bitCodeScene(code);
+    const int row = scene.blocks.back().row - 1;
+    scene.moves = {take(row, 2, row % 2 == 0 ? Vec3::UnitX() : Vec3::UnitY())};
+    Simulation simulation(scene);
+    const RunResult result = play(simulation);
+    ASSERT_EQ(result.moves.size(), 1U) << code;
+    EXPECT_TRUE(result.moves[0].done && result.moves[0].rested) << code;
+    EXPECT_LT(result.moves[0].moved_m, toleranceOf(scene)) << code;
+    EXPECT_TRUE(result.standing.stands) << code;
+  }
+}
+
 // The lone block under others, at the side: statics says that what is left falls, and it falls.
 TEST(Moves, TakingTheLastSupportBringsTheTowerDown) {
   Scene scene = bitCodeScene("(111)-(110)-(111)");
