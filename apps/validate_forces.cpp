@@ -195,7 +195,8 @@ ValidationSection validatePulls(const ValidationPlan& plan) {
     const double ratio = bears_n > 0.0 ? trial.force_n / bears_n : 0.0;
     section.claims.push_back({pulled[i].name + (pulled[i].alone ? ": force over mu m g" : ": force over mu times normal forces"),
                               "1 within 1 %",
-                              trial.slipped ? fmt::format("{:.4f} ({:.4f} N)", ratio, trial.force_n)
+                              trial.slipped ? fmt::format("{:.4f} ({:.4f} N; all sizes of friction {:.4f})", ratio, trial.force_n,
+                                                          trial.friction_n / (pulled[i].scene.staticFriction * trial.normal_n))
                                             : fmt::format("no slip at {:.3f} N", trial.force_n),
                               trial.slipped && std::abs(ratio - 1.0) <= kSlipTolerance});
     section.claims.push_back({pulled[i].name + ": force over what statics allows", "at most 1 (and 1 % of measuring)",

@@ -1,9 +1,11 @@
 #include "solver/trials.h"
 
+#include "solver/inertia.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
+#include <map>
 
 namespace springtower {
 namespace {
@@ -21,6 +23,50 @@ double friction_n(const Simulation& simulation, double normal_n) {
 UserForce forceNow(const Simulation& simulation, std::size_t block, const Vec3& force) {
   const double now = simulation.time_s;
   return {static_cast<int>(block), -1, force, now, now + 1.5 * simulation.scene.settings.frame_s};
+}
+
+Eigen::Matrix3d edgesOf(const CornerArray& position, std::size_t block) {
+  Eigen::Matrix3d edges;
+  for (std::size_t a = 0; a < 3; ++a) edges.col(static_cast<Eigen::Index>(a)) = meanEdge(position, block, a);
+  return edges;
+}
+
+// Where a point of a block is, given in shares of its edges from its centre.
+Vec3 placeOn(const CornerArray& position, std::size_t block, const Vec3& shares) {
+  return centre(position, block) + edgesOf(position, block) * shares;
+}
+
+Vec3 sharesOf(const CornerArray& position, std::size_t block, const Vec3& place) {
+  return edgesOf(position, block).inverse() * (place - centre(position, block));
+}
+
+// Where a block bears on another: the centre of the pressure between them, as a point of either. On the floor it is a place.
+struct Seam {
+  BlockId other;
+  Vec3 onBlock;
+  Vec3 onOther;
+};
+
+std::vector<Seam> seamsOf(const Simulation& simulation, const std::vector<ContactForce>& forces, BlockId block) {
+  struct Pressure {
+    double normal_n = 0.0;
+    Vec3 moment = Vec3::Zero();
+  };
+  std::map<BlockId, Pressure> pressures;
+  for (const ContactForce& force : forces) {
+    if ((force.upper != block && force.lower != block) || !(force.normalForce > 0.0)) continue;
+    Pressure& pressure = pressures[force.upper == block ? force.lower : force.upper];
+    pressure.normal_n += force.normalForce;
+    pressure.moment += force.normalForce * force.point;
+  }
+  const CornerArray& position = simulation.state.position;
+  std::vector<Seam> seams;
+  for (const auto& [other, pressure] : pressures) {
+    const Vec3 place = pressure.moment / pressure.normal_n;
+    seams.push_back(
+        {other, sharesOf(position, index(block), place), other == kFloor ? place : sharesOf(position, index(other), place)});
+  }
+  return seams;
 }
 
 }  // namespace
@@ -51,24 +97,18 @@ double normalForceOn(const std::vector<ContactForce>& forces, BlockId block, boo
 SlipTrial pullUntilSlip(Simulation& simulation, std::size_t block, const Vec3& direction) {
   const BlockId id = blockId(block);
   const double slip_m = kFirstSlip_m / kBlockHeight_m * simulation.lengths.blockHeight_m;
-  const auto along = [&](std::size_t b) { return centre(simulation.state.position, b).dot(direction); };
-  std::vector<ContactForce> forces = contactForces(simulation);
+  const std::vector<ContactForce> forces = contactForces(simulation);
   SlipTrial trial;
   trial.normal_n = normalForceOn(forces, id, false);
   const double borne_n = friction_n(simulation, trial.normal_n);
 
-  const double start = along(block);
-  std::vector<std::pair<BlockId, double>> partners;  // and where they were
-  for (const ContactForce& force : forces) {
-    if (force.upper != id && force.lower != id) continue;
-    const BlockId other = force.upper == id ? force.lower : force.upper;
-    partners.emplace_back(other, other == kFloor ? 0.0 : along(index(other)));
-  }
+  const std::vector<Seam> seams = seamsOf(simulation, forces, id);
   const auto slip = [&] {
     double least = std::numeric_limits<double>::infinity();
-    for (const auto& [other, before] : partners) {
-      const double moved = other == kFloor ? 0.0 : along(index(other)) - before;
-      least = std::min(least, along(block) - start - moved);
+    for (const Seam& seam : seams) {
+      const Vec3 other =
+          seam.other == kFloor ? seam.onOther : placeOn(simulation.state.position, index(seam.other), seam.onOther);
+      least = std::min<double>(least, (placeOn(simulation.state.position, block, seam.onBlock) - other).dot(direction));
     }
     return least;
   };
@@ -81,10 +121,14 @@ SlipTrial pullUntilSlip(Simulation& simulation, std::size_t block, const Vec3& d
     if (share > kMostShare) break;
     trial.force_n = share * borne_n;
     simulation.scene.forces = {forceNow(simulation, block, trial.force_n * direction)};
-    const double normal_n = normalForceOn(contactForces(simulation), id, false);
+    const std::vector<ContactForce> before = contactForces(simulation);
     stepFrame(simulation);
     trial.slipped = slip() > slip_m;
-    trial.normal_n = normal_n;
+    trial.normal_n = normalForceOn(before, id, false);
+    trial.friction_n = 0.0;
+    for (const ContactForce& force : before) {
+      if (force.upper == id || force.lower == id) trial.friction_n += force.frictionForce.norm();
+    }
   }
   simulation.scene.forces.clear();
   return trial;

@@ -11,15 +11,17 @@ namespace springtower {
 // Trials that a real tower could be put to as well: driven from outside, frame by frame. Used alike by tests and `validate`.
 
 /// What a block has slipped when it has moved this far against everything that it touches, m, for blocks of the game's height;
-/// others in proportion.
+/// others in proportion. Surfaces move against one another where they touch, whatever the centres do: a block that is drawn by
+/// its end turns.
 inline constexpr double kFirstSlip_m = 5e-5;
 
 /// What came of pulling a block until it slips.
 struct SlipTrial {
-  bool slipped = false;   ///< before half as much again as its friction bears was reached
-  double force_n = 0.0;   ///< in the frame in which it had slipped
-  double normal_n = 0.0;  ///< sum of the normal forces of all its contacts, in the frame before
-  double time_s = 0.0;    ///< since the pull began
+  bool slipped = false;     ///< before half as much again as its friction bears was reached
+  double force_n = 0.0;     ///< in the frame in which it had slipped
+  double normal_n = 0.0;    ///< sum of the normal forces of all its contacts, in the frame before
+  double friction_n = 0.0;  ///< sum of the sizes of their friction forces, then; more than their sum where they point apart
+  double time_s = 0.0;      ///< since the pull began
 };
 
 /// Pulls a block at its centre along a unit direction with a force that grows slowly (3 % of what its friction bears a
