@@ -178,8 +178,9 @@ Plot plotOf(const Chart& chart, ChartScene scene, ChartMeasure measure) {
   if (scene == ChartScene::uniform && !chart.peers.empty()) {
     plot.footnote += "Hollow: other engines, measured elsewhere and carried over by their ratio to Bullet. ";
   }
-  plot.footnote += fmt::format("One thread; mean over up to {} frames, of each the least of up to {} samples. {}",
-                               chart.limits.frames, chart.limits.samples, footnote(chart.provenance));
+  plot.footnote += fmt::format(
+      "One thread; mean over up to {} frames, of each the least of up to {} samples, or more where they are short. {}",
+      chart.limits.frames, chart.limits.samples, footnote(chart.provenance));
   return plot;
 }
 
