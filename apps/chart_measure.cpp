@@ -31,11 +31,13 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 // Returns the seconds that a frame of kFewRows rows takes where one of all rows would take longer than a case may, else 0.
 constexpr int kFewRows = 6;
 double tooSlowAtFewRows(const ChartCase& what, const ChartLimits& limits) {
-  const bool ofThoseRows = what.scene != ChartScene::drop && what.scene != ChartScene::spin && isCharted(what.scene);
-  if (what.peer != Peer::none || limits.rows <= kFewRows || !ofThoseRows) return 0.0;
+  const int rows = towerRows(what.scene, limits);
+  if (what.peer != Peer::none || rows <= kFewRows) return 0.0;
   ChartLimits few = limits;
   few.rows = kFewRows;
-  Simulation simulation(sceneOf(what, few));
+  ChartCase low = what;
+  if (what.scene == ChartScene::tall) low.scene = ChartScene::uniform;  // of other rows
+  Simulation simulation(sceneOf(low, few));
   double frame_s = 0.0;
   try {
     stepFrame(simulation);
@@ -45,7 +47,7 @@ double tooSlowAtFewRows(const ChartCase& what, const ChartLimits& limits) {
   } catch (const DivergenceError&) {
     return 0.0;  // the tall tower shows when
   }
-  const double ratio = static_cast<double>(limits.rows) / kFewRows;
+  const double ratio = static_cast<double>(rows) / kFewRows;
   return frame_s * ratio * ratio * ratio > limits.case_s ? frame_s : 0.0;
 }
 

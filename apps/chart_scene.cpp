@@ -177,6 +177,11 @@ ChartTimes timesOf(ChartScene scene, const ChartLimits& limits) {
   return {0.0, 0.0, std::min(kMotion_s, limits.seconds)};
 }
 
+int towerRows(ChartScene scene, const ChartLimits& limits) {
+  if (scene == ChartScene::tall) return kTallRows;
+  return isCharted(scene) && scene != ChartScene::drop && scene != ChartScene::spin ? limits.rows : 0;
+}
+
 std::optional<bool> expectedToStand(ChartScene scene) {
   if (!hasRows(scene)) return {};
   return scene != ChartScene::collapse;

@@ -24,6 +24,9 @@ struct ChartTimes {
 };
 ChartTimes timesOf(ChartScene scene, const ChartLimits& limits);
 
+/// Rows of a scene that is a tower of full rows, else 0.
+int towerRows(ChartScene scene, const ChartLimits& limits);
+
 /// Whether the blocks have to stand at the end; empty for blocks on their own.
 std::optional<bool> expectedToStand(ChartScene scene);
 
