@@ -24,7 +24,8 @@ namespace {
 // A tower may be looked at from here on, s.
 constexpr double kEarliest_s = 1.0;
 constexpr double kMotionLimits = 2.0;
-constexpr double kShortSamples_s = 0.03;  // of a case in all, s of processor time
+constexpr double kShortSamples_s = 0.03;  // of a case in all, s of processor time, and no more than
+constexpr double kShortShare = 0.15;      // this share of what one sample may take
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 // A frame cannot be broken off. So a tall tower's cost is foreseen from a small one's; no method's grows faster than its cube.
@@ -163,7 +164,9 @@ class ChartRun {
   }
 
   // Whether its samples are so short that more of them cost nothing: a processor whose speed jumps needs them.
-  [[nodiscard]] bool isShort() const { return mayBeSampled() && !frame_ms_.empty() && sampling_s_ < kShortSamples_s; }
+  [[nodiscard]] bool isShort() const {
+    return mayBeSampled() && !frame_ms_.empty() && sampling_s_ < std::min(kShortSamples_s, kShortShare * limits_.sample_s);
+  }
 
   ChartResult result;
 
