@@ -53,8 +53,8 @@ void expectSeenIsPicked(const Inspection& inspection) {
 }
 
 // The pixels of a block reach as far to the left, to the right and up as its corners do; its lower side may be hidden. A pixel is
-// drawn where its middle is inside, so the last one lies within a pixel, and within the sixteenth to which OpenGL need only know
-// where a corner is (GL_SUBPIXEL_BITS is at least 4).
+// drawn where its middle is inside, so it is the borders of pixels, not their middles, that are off by half a pixel at most, and
+// by a little more where a corner is narrower than a pixel.
 void expectOutline(const Inspection& inspection, std::size_t block) {
   Eigen::Vector3d corners(1e9, 1e9, -1e9);  // least x, least y, largest x
   Eigen::Vector3d pixels = corners;
@@ -67,9 +67,10 @@ void expectOutline(const Inspection& inspection, std::size_t block) {
   }
   for (int i = 0; i < kWidth * kHeight; ++i) {
     if (inspection.seen[static_cast<std::size_t>(i)] != static_cast<std::int32_t>(block)) continue;
-    grow(pixels, i % kWidth + 0.5, i / kWidth + 0.5);
+    grow(pixels, i % kWidth, i / kWidth);
+    grow(pixels, i % kWidth + 1.0, i / kWidth + 1.0);
   }
-  EXPECT_LT((corners - pixels).cwiseAbs().maxCoeff(), 1.0 + 1.0 / 16.0) << corners.transpose() << " and " << pixels.transpose();
+  EXPECT_LT((corners - pixels).cwiseAbs().maxCoeff(), 1.0) << corners.transpose() << " and " << pixels.transpose();
 }
 
 /// A hand on the mouse that moves in small steps and looks where the block is.
