@@ -24,6 +24,14 @@ function(springtower_configure_target target)
   endif()
 endfunction()
 
+# What most sources of a target read is read once for all of them. Every source and header still includes what it uses: headers are
+# compiled alone and clang-tidy reads the sources without this.
+function(springtower_precompile target)
+  target_precompile_headers(
+    ${target} PRIVATE <algorithm> <array> <cmath> <cstdint> <limits> <memory> <optional> <span> <string> <string_view> <vector>
+    <Eigen/Cholesky> <Eigen/Core> <Eigen/Geometry> <Eigen/LU> ${ARGN})
+endfunction()
+
 # springtower_add_library(<folder> PUBLIC <targets> PRIVATE <targets>)
 # Adds springtower_<folder> from all sources of the current folder. A folder that has only headers becomes an interface library.
 function(springtower_add_library folder)

@@ -73,6 +73,13 @@ inline Vec3 meanEdge(const CornerArray& position, std::size_t block, std::size_t
   return sum / 4.0;
 }
 
+/// The three mean edges of a block as columns, in the order of its axes: m from positions, m/s from velocities.
+inline Eigen::Matrix3d meanEdges(const CornerArray& values, std::size_t block) {
+  Eigen::Matrix3d edges;
+  for (std::size_t a = 0; a < 3; ++a) edges.col(static_cast<Eigen::Index>(a)) = meanEdge(values, block, a);
+  return edges;
+}
+
 /// The cuboid that fits a (slightly deformed) block best: centre, unit axes and half lengths from the mean edges.
 struct FittedBox {
   Vec3 centre;

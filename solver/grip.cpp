@@ -58,8 +58,7 @@ double followCourse(double rate_rad_s, double time_s) {
 }
 
 Eigen::Quaterniond orientationOf(const CornerArray& position, std::size_t block) {
-  Eigen::Matrix3d edges;
-  for (std::size_t a = 0; a < 3; ++a) edges.col(static_cast<Eigen::Index>(a)) = meanEdge(position, block, a).normalized();
+  const Eigen::Matrix3d edges = meanEdges(position, block).colwise().normalized();
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(edges, Eigen::ComputeFullU | Eigen::ComputeFullV);
   return Eigen::Quaterniond(Eigen::Matrix3d(svd.matrixU() * svd.matrixV().transpose())).normalized();
 }

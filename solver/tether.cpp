@@ -32,12 +32,8 @@ GripForce tetherForces(const Tether& tether, const BlockModel& model, const Moti
 
   const Eigen::Matrix3d axes = (rotation(ahead_s * tether.spin) * tether.turn).toRotationMatrix();
   // It holds the mean edges: corners that warp are left to the block's own springs.
-  Eigen::Matrix3d edges;
-  Eigen::Matrix3d edgeRates;
-  for (std::size_t a = 0; a < 3; ++a) {
-    edges.col(static_cast<Eigen::Index>(a)) = meanEdge(state.position, b, a);
-    edgeRates.col(static_cast<Eigen::Index>(a)) = meanEdge(state.velocity, b, a);
-  }
+  const Eigen::Matrix3d edges = meanEdges(state.position, b);
+  const Eigen::Matrix3d edgeRates = meanEdges(state.velocity, b);
   for (std::size_t c = 0; c < kCorners; ++c) {
     const Vec3 sides = 0.5 * Vec3(cornerSide(c, 0), cornerSide(c, 1), cornerSide(c, 2));
     const Vec3 arm = axes * sides.cwiseProduct(model.dimensions[b]);

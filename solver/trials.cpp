@@ -25,19 +25,13 @@ UserForce forceNow(const Simulation& simulation, std::size_t block, const Vec3& 
   return {static_cast<int>(block), -1, force, now, now + 1.5 * simulation.scene.settings.frame_s};
 }
 
-Eigen::Matrix3d edgesOf(const CornerArray& position, std::size_t block) {
-  Eigen::Matrix3d edges;
-  for (std::size_t a = 0; a < 3; ++a) edges.col(static_cast<Eigen::Index>(a)) = meanEdge(position, block, a);
-  return edges;
-}
-
 // Where a point of a block is, given in shares of its edges from its centre.
 Vec3 placeOn(const CornerArray& position, std::size_t block, const Vec3& shares) {
-  return centre(position, block) + edgesOf(position, block) * shares;
+  return centre(position, block) + meanEdges(position, block) * shares;
 }
 
 Vec3 sharesOf(const CornerArray& position, std::size_t block, const Vec3& place) {
-  return edgesOf(position, block).inverse() * (place - centre(position, block));
+  return meanEdges(position, block).inverse() * (place - centre(position, block));
 }
 
 // Where a block bears on another: the centre of the pressure between them, as a point of either. On the floor it is a place.

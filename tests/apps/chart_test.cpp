@@ -199,6 +199,25 @@ TEST(Chart, TimesMotionAlikeAndJudgesTheChoiceOfAuto) {
   EXPECT_THAT(index, ::testing::AnyOf(HasSubstr("| pass |"), HasSubstr("| **fail** |")));
 }
 
+// A frame cannot be broken off, and one of a tall tower may take a quarter of an hour by pivoting: a few rows tell beforehand.
+TEST(Chart, ForeseesWhichTallTowersTakeTooLong) {
+  const ScratchFolder scratch;
+  const ProgramResult result = chart({"--quick", "--auto", "--scenes", "tall", "--methods", "implicit,rigid-lcp", "--seconds",
+                                      "1", "--case-limit", "3", "--out", scratch.file("out")});
+  ASSERT_EQ(result.exitCode, 0) << result.error;
+  const Json file = Json::parse(contentOf(scratch.file("out/chart.json")));
+  int foreseen = 0;
+  for (const Json& one : file.at("cases")) {
+    SCOPED_TRACE(one.dump());
+    const bool tooLong = one.at("note").get<std::string>().find("foreseen: a frame of 6 rows") != std::string::npos;
+    EXPECT_EQ(tooLong, one.at("method") == "rigid-lcp");
+    if (!tooLong) continue;
+    EXPECT_EQ(one.at("outcome"), "timed out");
+    ++foreseen;
+  }
+  EXPECT_GE(foreseen, 1);
+}
+
 // Other engines run beside ours. The packages that tests need have both of them (packages.txt).
 TEST(Chart, RunsOtherEnginesAndCarriesOverThoseMeasuredElsewhere) {
   const std::filesystem::path programs = std::filesystem::path(SPRINGTOWER_BINARY_DIR) / "bin";
