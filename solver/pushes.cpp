@@ -11,8 +11,9 @@ namespace {
 
 // Change of force, in a block's weights, that counts at all.
 constexpr double kChange = 0.02;
-// Change of force, in a block's weights, that is left unbalanced when its neighbours have come to rest.
-constexpr double kUnbalanced = 2e-4;
+// Change of force, in a block's weights, and of torque, in its weight times its height, that is left unbalanced when a neighbour
+// has come to rest. Six of them are less than the thousandth that counts as balanced.
+constexpr double kUnbalanced = 1e-4;
 // Change of force, as a share of what goes through the block, that springs around it take up without moving by more than that
 // share of their compression.
 constexpr double kBorne = 0.35;
@@ -100,7 +101,11 @@ void rememberPushes(Simulation& simulation, std::span<const std::uint8_t> staysA
     const std::int32_t sleeper =
         pair.b < 0 ? -1 : (sleeps(simulation, pair.a) ? pair.a : (sleeps(simulation, pair.b) ? pair.b : -1));
     if (sleeper >= 0) {
-      if ((now.force - pair.restForce).norm() <= kUnbalanced * weightOf(simulation, sleeper)) continue;
+      const auto s = static_cast<std::size_t>(sleeper);
+      const double most = kUnbalanced * weightOf(simulation, sleeper);
+      const Vec3 force = now.force - pair.restForce;
+      const Vec3 torque = now.torque - pair.restTorque - centre(simulation.state.position, s).cross(force);
+      if (force.norm() <= most && torque.norm() <= most * simulation.model.dimensions[s].minCoeff()) continue;
       engine.toWake.push_back(sleeper);
     }
     pair.restForce = now.force;
