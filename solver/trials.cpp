@@ -1,5 +1,6 @@
 #include "solver/trials.h"
 
+#include "solver/friction_limit.h"
 #include "solver/inertia.h"
 
 #include <algorithm>
@@ -12,7 +13,7 @@ namespace {
 
 constexpr double kQuickShare = 0.9;  // of what friction bears: reached in kQuickTime_s, then slowly
 constexpr double kQuickTime_s = 1.5;
-constexpr double kSlowShare_s = 0.03;
+constexpr double kSlowShare_s = 0.01;
 constexpr double kMostShare = 1.5;
 
 double friction_n(const Simulation& simulation, double normal_n) {
@@ -117,12 +118,9 @@ SlipTrial pullUntilSlip(Simulation& simulation, std::size_t block, const Vec3& d
     simulation.scene.forces = {forceNow(simulation, block, trial.force_n * direction)};
     const std::vector<ContactForce> before = contactForces(simulation);
     stepFrame(simulation);
-    trial.slipped = slip() > slip_m;
     trial.normal_n = normalForceOn(before, id, false);
-    trial.friction_n = 0.0;
-    for (const ContactForce& force : before) {
-      if (force.upper == id || force.lower == id) trial.friction_n += force.frictionForce.norm();
-    }
+    trial.slipped = slip() > slip_m;
+    if (trial.slipped) trial.limit_n = frictionLimit_n(simulation, before, id, direction);
   }
   simulation.scene.forces.clear();
   return trial;

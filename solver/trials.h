@@ -17,14 +17,14 @@ inline constexpr double kFirstSlip_m = 5e-5;
 
 /// What came of pulling a block until it slips.
 struct SlipTrial {
-  bool slipped = false;     ///< before half as much again as its friction bears was reached
-  double force_n = 0.0;     ///< in the frame in which it had slipped
-  double normal_n = 0.0;    ///< sum of the normal forces of all its contacts, in the frame before
-  double friction_n = 0.0;  ///< sum of the sizes of their friction forces, then; more than their sum where they point apart
-  double time_s = 0.0;      ///< since the pull began
+  bool slipped = false;   ///< before half as much again as its friction bears was reached
+  double force_n = 0.0;   ///< in the frame in which it had slipped
+  double normal_n = 0.0;  ///< sum of the normal forces of all its contacts, in the frame before
+  double limit_n = 0.0;   ///< the largest force that friction bears at the normal forces of all contacts there were then
+  double time_s = 0.0;    ///< since the pull began
 };
 
-/// Pulls a block at its centre along a unit direction with a force that grows slowly (3 % of what its friction bears a
+/// Pulls a block at its centre along a unit direction with a force that grows slowly (1 % of what its friction bears a
 /// second, the first nine tenths in 1.5 s) until it has slipped by kFirstSlip_m. Replaces the forces of the simulation's scene
 /// and takes them away at the end. The block should be at rest.
 SlipTrial pullUntilSlip(Simulation& simulation, std::size_t block, const Vec3& direction);

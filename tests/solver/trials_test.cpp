@@ -54,6 +54,7 @@ TEST_P(PullTest, SlipsAtFrictionTimesItsNormalForces) {
   const SlipTrial trial = pullUntilSlip(simulation, block, direction);
   ASSERT_TRUE(trial.slipped);
   EXPECT_NEAR(trial.force_n / (scene.staticFriction * trial.normal_n), 1.0, 0.01);
+  EXPECT_NEAR(trial.force_n / trial.limit_n, 1.0, 0.01);
   const std::optional<double> limit = pullLimit(staticScene(scene), blockId(block), direction);
   ASSERT_TRUE(limit.has_value());
   EXPECT_LT(trial.force_n, 1.01 * *limit);
@@ -63,6 +64,19 @@ INSTANTIATE_TEST_SUITE_P(Pull, PullTest,
                          ::testing::Values(PulledBlock{"Middle", "tower:6", 2, 2}, PulledBlock{"Outer", "tower:6", 3, 1},
                                            PulledBlock{"Loose", "(111)-(111)-(1L1)-(111)-(111)", 2, 2}),
                          [](const auto& block) { return block.param.name; });
+
+// Light blocks turn with the end of the one that is drawn from under them, so less than friction times the normal forces moves
+// it: what friction bears at these normal forces.
+TEST(Pull, LightBlocksTurnWithTheOneThatIsDrawn) {
+  const Scene scene = sceneFromName("tower:6");
+  std::size_t block = 0;
+  while (scene.blocks[block].row != 4 || scene.blocks[block].position != 1) ++block;
+  Simulation simulation = settled(scene, 2.0);
+  const SlipTrial trial = pullUntilSlip(simulation, block, scene.blocks[block].orientation * Vec3::UnitX());
+  ASSERT_TRUE(trial.slipped);
+  EXPECT_LT(trial.limit_n, 0.98 * scene.staticFriction * trial.normal_n);
+  EXPECT_NEAR(trial.force_n / trial.limit_n, 1.0, 0.01);
+}
 
 // A column of six blocks tips over the edge of the lowest: half its width over half the column's height.
 TEST(Tilt, AColumnGoesAtItsEdge) {
