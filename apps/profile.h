@@ -23,12 +23,13 @@ enum class ProfileScene {
   pullSleep,  ///< the same with sleep on
   collapse,   ///< gravity leans by 14.5 degrees from the start
   asleep,     ///< all blocks asleep
-  towers      ///< many towers side by side at rest, awake
+  towers,     ///< many towers side by side at rest, awake
+  pile        ///< one wide stack of 108 blocks a row that lands after a fall of 10 cm
 };
 
 /// Names as the command line spells them, in the order of the enumeration.
-inline constexpr std::array<std::string_view, 8> kProfileSceneNames = {"rest",       "sway",     "heights", "pull",
-                                                                       "pull-sleep", "collapse", "asleep",  "towers"};
+inline constexpr std::array<std::string_view, 9> kProfileSceneNames = {"rest",     "sway",   "heights", "pull", "pull-sleep",
+                                                                       "collapse", "asleep", "towers",  "pile"};
 constexpr std::string_view nameOf(ProfileScene scene) {
   return kProfileSceneNames[static_cast<std::size_t>(scene)];
 }

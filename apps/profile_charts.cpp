@@ -63,6 +63,8 @@ std::string describe(ProfileScene scene) {
       return "tower asleep";
     case ProfileScene::towers:
       return "many towers at rest, all blocks awake";
+    case ProfileScene::pile:
+      return "one stack of 108 blocks a row, landing after a fall of 10 cm";
   }
   return "";
 }
@@ -100,7 +102,8 @@ class Charts {
     for (const auto& [scene, results] : byScene_) {
       if (scene != ProfileScene::towers) rowsAgainstRate(scene, results);
       stages(scene, results);
-      if (scene == ProfileScene::pull || scene == ProfileScene::pullSleep || scene == ProfileScene::collapse) {
+      if (scene == ProfileScene::pull || scene == ProfileScene::pullSleep || scene == ProfileScene::collapse ||
+          scene == ProfileScene::pile) {
         frameByFrame(scene, results);
       }
     }

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <fmt/format.h>
+#include <numbers>
 
 namespace springtower {
 namespace {
@@ -20,6 +21,9 @@ constexpr double kPullStart_m = 0.001;  // from here on the block slides
 constexpr double kPullLongest_s = 5.0;
 constexpr double kAsleepLongest_s = 60.0;
 constexpr double kStrongest_n = 100.0;
+constexpr int kPileCells = 6;        // of three blocks side by side, along and across
+constexpr double kPileGap = 0.002;   // between blocks of a row, in their lengths
+constexpr double kPileFall_m = 0.1;  // what it has fallen through when it lands
 
 // The middle block of the middle row.
 int pulledBlock(const Scene& scene, int rows) {
@@ -60,6 +64,30 @@ void fallAsleep(PreparedScene& scene, const Deadline& deadline) {
     }
     scene.step();
   }
+}
+
+// A stack of square rows, each turned by a right angle against the one below and shifted by half a block, so that all of it is
+// connected. Nothing holds its blocks together but their weight.
+void layPile(int rows, Scene& scene) {
+  const BlockSpec first = scene.blocks.front();
+  const double length = (1.0 + kPileGap) * first.dimensions.x();
+  const double width = length / 3.0;
+  scene.blocks.clear();
+  for (int row = 0; row < rows; ++row) {
+    const bool turned = row % 2 == 1;
+    const double shift = turned ? 0.5 * length : 0.0;
+    for (int i = 0; i < kPileCells * kPileCells * 3; ++i) {
+      const double along = (i / (3 * kPileCells) + 0.5) * length + shift;
+      const double across = (i % (3 * kPileCells) + 0.5) * width + shift;
+      BlockSpec block = first;
+      block.row = row;
+      block.centre = Vec3(turned ? across : along, turned ? along : across, (row + 0.5) * first.dimensions.z());
+      block.orientation = Eigen::AngleAxisd(turned ? 0.5 * std::numbers::pi : 0.0, Vec3::UnitZ());
+      block.velocity = -std::sqrt(2.0 * scene.gravity.magnitude * kPileFall_m) * Vec3::UnitZ();
+      scene.blocks.push_back(block);
+    }
+  }
+  scene.name = fmt::format("a pile of {} blocks", scene.blocks.size());
 }
 
 // Pulls until the block slides, so that every timed frame has a moving block.
@@ -115,6 +143,7 @@ Scene sceneOf(const ProfileCase& what) {
     }
     scene.name = fmt::format("{} towers of {} rows", what.towers, what.rows);
   }
+  if (what.scene == ProfileScene::pile) layPile(what.rows, scene);
   if (what.scene == ProfileScene::collapse) scene.gravity.tilt_deg = kCollapseTilt_deg;
   if (what.scene == ProfileScene::sway) {
     scene.gravity.sway_deg = kSway_deg;
@@ -135,7 +164,7 @@ std::unique_ptr<PreparedScene> prepareScene(const ProfileCase& what, const Profi
   try {
     if (what.scene == ProfileScene::asleep) {
       fallAsleep(*scene, deadline);
-    } else if (what.scene != ProfileScene::collapse) {
+    } else if (what.scene != ProfileScene::collapse && what.scene != ProfileScene::pile) {
       settle(*scene, limits.settle_s, deadline);
     }
     if (isPull(what.scene)) startPulling(*scene, what.rows, Deadline(limits.prepare_s));

@@ -10,8 +10,13 @@
 #include <fstream>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <iterator>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace springtower {
 namespace {
@@ -280,6 +285,23 @@ TEST(Profile, TowersAndACollapse) {
   EXPECT_THAT(lines, Contains(::testing::ContainsRegex("^collapse +9 +27 .* 2 .*fallen")));
   EXPECT_THAT(lines, Contains(::testing::ContainsRegex("^towers +1x18 +54 ")));
   EXPECT_THAT(lines, Contains(::testing::ContainsRegex("^towers +2x18 +108 ")));
+}
+
+// A stack of 108 blocks a row that lands: as deep and as many steps with two threads as with one.
+TEST(Profile, APileLandsOnAnyThreads) {
+  const ProgramResult result = profile({"--rows", "2", "--scenes", "pile", "--methods", "implicit", "--tolerances", "2e-4",
+                                        "--samples", "1", "--frames", "3", "--threads", "1,2", "--sample-limit", "600"});
+  ASSERT_EQ(result.exitCode, 0) << result.error;
+  std::vector<std::pair<std::string, std::string>> stepsAndDepth;
+  for (const std::string& line : linesOf(result.output)) {
+    std::istringstream words(line);
+    const std::vector<std::string> columns{std::istream_iterator<std::string>(words), {}};
+    if (columns.size() < 14 || columns[0] != "pile" || columns[2] != "216") continue;
+    stepsAndDepth.emplace_back(columns[6], columns[13]);
+  }
+  ASSERT_EQ(stepsAndDepth.size(), 2U) << result.output;
+  EXPECT_EQ(stepsAndDepth[0], stepsAndDepth[1]);
+  EXPECT_GT(std::stod(stepsAndDepth[0].first), 4.0) << "it lands";
 }
 
 TEST_F(ProfileFiles, FailureIsAResult) {
