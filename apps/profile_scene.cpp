@@ -77,8 +77,9 @@ void layPile(int rows, Scene& scene) {
     const bool turned = row % 2 == 1;
     const double shift = turned ? 0.5 * length : 0.0;
     for (int i = 0; i < kPileCells * kPileCells * 3; ++i) {
-      const double along = (i / (3 * kPileCells) + 0.5) * length + shift;
-      const double across = (i % (3 * kPileCells) + 0.5) * width + shift;
+      const int line = i / (3 * kPileCells);
+      const double along = (line + 0.5) * length + shift;
+      const double across = (i - 3 * kPileCells * line + 0.5) * width + shift;
       BlockSpec block = first;
       block.row = row;
       block.centre = Vec3(turned ? across : along, turned ? along : across, (row + 0.5) * first.dimensions.z());
