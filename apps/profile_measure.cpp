@@ -168,7 +168,6 @@ void finish(Measured& measured) {
   result.substeps = static_cast<double>(measured.substeps) / std::max(1.0, samples);
   const Simulation fresh(simulation.scene);
   result.stands =
-      result.what.scene == ProfileScene::pile ||  // none of its blocks has a place to keep
       standing(simulation.model, fittedBoxes(fresh.state.position), simulation.state.position, measured.scene->leftOut).stands;
 }
 

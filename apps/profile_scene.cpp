@@ -161,6 +161,8 @@ Scene sceneOf(const ProfileCase& what) {
 
 std::unique_ptr<PreparedScene> prepareScene(const ProfileCase& what, const ProfileLimits& limits) {
   auto scene = std::make_unique<PreparedScene>(what);
+  // None of a pile's blocks has a place to keep.
+  if (what.scene == ProfileScene::pile) scene->leftOut.assign(scene->simulation.scene.blocks.size(), 1);
   const Deadline deadline(limits.prepare_s);
   try {
     if (what.scene == ProfileScene::asleep) {

@@ -33,7 +33,7 @@ struct PreparedScene {
   SteadyPull hand;
   std::shared_ptr<const Snapshot> snapshot;
   SteadyPull handKept;                ///< the hand of the snapshot
-  std::vector<std::uint8_t> leftOut;  ///< 1 for the pulled block, [blocks] or empty
+  std::vector<std::uint8_t> leftOut;  ///< 1 for blocks that need not stand: the pulled one, a pile's; [blocks] or empty
   std::string failure;                ///< why the scene does not come to what is to be timed; empty when it does
 
   /// Back to the kept state.
