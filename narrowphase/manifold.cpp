@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 
 namespace springtower {
@@ -38,6 +39,45 @@ std::size_t clip(const Polygon& in, std::size_t count, double ClipPoint::*coordi
       out[kept++] = between(p, q, insideP / (insideP - insideQ));
   }
   return kept;
+}
+
+// An edge that bends by no more than this share of the radius in which points are one is straight.
+constexpr double kStraight = 0.05;
+
+// Lengths of the incident face's sides, m.
+struct Lengths {
+  double u;
+  double v;
+};
+
+// How far a corner is from the segment between two others on the incident face, m.
+double distance(const ClipPoint& corner, const ClipPoint& from, const ClipPoint& to, const Lengths& lengths) {
+  const double sideU = (to.u - from.u) * lengths.u;
+  const double sideV = (to.v - from.v) * lengths.v;
+  double u = (corner.u - from.u) * lengths.u;
+  double v = (corner.v - from.v) * lengths.v;
+  const double square = sideU * sideU + sideV * sideV;
+  const double share = square > 0.0 ? std::clamp((u * sideU + v * sideV) / square, 0.0, 1.0) : 0.0;
+  u -= share * sideU;
+  v -= share * sideV;
+  return std::sqrt(u * u + v * v);
+}
+
+// Takes out the corners between which and their neighbours an edge is straight. They carry nothing that these would not, and
+// where edges of both faces coincide they come and go with every rounding error. Returns how many are left.
+std::size_t dropStraight(double radius, const Lengths& lengths, std::size_t count, Polygon& corners) {
+  std::size_t i = 0;
+  while (i < count && count > 2) {
+    const ClipPoint& before = corners[i == 0 ? count - 1 : i - 1];
+    const ClipPoint& after = corners[i + 1 == count ? 0 : i + 1];
+    if (distance(corners[i], before, after, lengths) < radius) {
+      std::copy(corners.data() + i + 1, corners.data() + count, corners.data() + i);
+      --count;
+    } else {
+      ++i;
+    }
+  }
+  return count;
 }
 
 constexpr std::array<std::array<double, 2>, 4> kCornerPlaces = {{{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}}};
@@ -108,22 +148,19 @@ void buildFaceManifold(const CornerView& upper, const CornerView& lower, int inc
   count = clip(polygon, count, &ClipPoint::t, 1.0, other);
   count = clip(other, count, &ClipPoint::t, -1.0, polygon);
 
-  const double lengthU = incident.sideU.norm();
-  const double lengthV = incident.sideV.norm();
+  const Lengths lengths{incident.sideU.norm(), incident.sideV.norm()};
   std::size_t kept = 0;
   for (std::size_t i = 0; i < count && kept < kManifoldPoints; ++i) {
     const ClipPoint& p = polygon[i];
     if (p.height > limits.reach) continue;
     bool known = false;
-    for (std::size_t j = 0; j < kept && !known; ++j) {
-      const double du = (p.u - manifold.u[j]) * lengthU;
-      const double dv = (p.v - manifold.v[j]) * lengthV;
-      known = du * du + dv * dv < limits.mergeRadius * limits.mergeRadius;
-    }
-    if (known) continue;
-    manifold.u[kept] = p.u;
-    manifold.v[kept] = p.v;
-    ++kept;
+    for (std::size_t j = 0; j < kept && !known; ++j) known = distance(p, other[j], other[j], lengths) < limits.mergeRadius;
+    if (!known) other[kept++] = p;
+  }
+  kept = dropStraight(kStraight * limits.mergeRadius, lengths, kept, other);
+  for (std::size_t i = 0; i < kept; ++i) {
+    manifold.u[i] = other[i].u;
+    manifold.v[i] = other[i].v;
   }
   manifold.count = static_cast<std::int32_t>(kept);
 }

@@ -65,8 +65,8 @@ struct ManifoldLimits {
 };
 
 /// Overlap of upper's incident face with lower's reference face: clips the one against the sides of the other (Sutherland &
-/// Hodgman 1974) and merges points that coincide. Fills u, v, count and names; the memory of all points starts empty. No overlap
-/// gives count 0.
+/// Hodgman 1974), merges points that coincide and leaves out those along a straight edge. Fills u, v, count and names; the memory
+/// of all points starts empty. No overlap gives count 0.
 void buildFaceManifold(const CornerView& upper, const CornerView& lower, int incidentFace, int referenceFace,
                        const ManifoldLimits& limits, Manifold& manifold);
 

@@ -68,14 +68,17 @@ INSTANTIATE_TEST_SUITE_P(Pull, PullTest,
 // Light blocks turn with the end of the one that is drawn from under them, so less than friction times the normal forces moves
 // it: what friction bears at these normal forces.
 TEST(Pull, LightBlocksTurnWithTheOneThatIsDrawn) {
-  const Scene scene = sceneFromName("tower:6");
+  Scene scene = sceneFromName("tower:6");
+  for (BlockSpec& above : scene.blocks) {
+    if (above.row == 5) above.dimensions.y() *= 0.5;  // the narrower they are, the less their other contacts keep them from it
+  }
   std::size_t block = 0;
   while (scene.blocks[block].row != 4 || scene.blocks[block].position != 1) ++block;
   Simulation simulation = settled(scene, 2.0);
   const SlipTrial trial = pullUntilSlip(simulation, block, scene.blocks[block].orientation * Vec3::UnitX());
   ASSERT_TRUE(trial.slipped);
   EXPECT_LT(trial.limit_n, 0.98 * scene.staticFriction * trial.normal_n);
-  EXPECT_NEAR(trial.force_n / trial.limit_n, 1.0, 0.01);
+  EXPECT_NEAR(trial.force_n / trial.limit_n, 1.0, 0.005);
 }
 
 // A column of six blocks tips over the edge of the lowest: half its width over half the column's height.
