@@ -76,8 +76,8 @@ std::vector<Method> methodsOf(const ChartCommand& command) {
             Method::semiImplicitEuler, Method::midpoint, Method::rungeKutta4,
             Method::rigidPgs,          Method::rigidLcp, Method::xpbd};
   }
-  return {Method::implicit, Method::implicitEuler, Method::semiImplicitEuler, Method::midpoint, Method::rungeKutta4,
-          Method::report,   Method::rigidPgs,      Method::rigidLcp,          Method::xpbd};
+  return {Method::implicit,    Method::implicitEuler, Method::implicitEigen, Method::semiImplicitEuler, Method::midpoint,
+          Method::rungeKutta4, Method::report,        Method::rigidPgs,      Method::rigidLcp,          Method::xpbd};
 }
 
 // Those that are asked for must be there; those that are not there are else left out.

@@ -94,6 +94,7 @@ const std::vector<Sweep>& sweeps() {
   static const std::vector<Sweep> all = {
       {Method::implicit, Knob::tolerance, {2e-4, 1e-4, 5e-5, 2e-5, 1e-5, 5e-6, 1e-6}, {5e-5, 1e-5}},
       {Method::implicitEuler, Knob::tolerance, {2e-4, 5e-5, 1e-5}, {5e-5}},
+      {Method::implicitEigen, Knob::tolerance, {2e-4, 5e-5, 1e-5}, {5e-5}},
       {Method::semiImplicitEuler, Knob::tolerance, {2e-4, 1e-4, 5e-5, 2e-5, 1e-5}, {1e-4, 5e-5}},
       {Method::midpoint, Knob::tolerance, {2e-4, 1e-4}, {1e-4}},
       {Method::rungeKutta4, Knob::tolerance, {2e-4, 1e-4, 5e-5}, {1e-4}},

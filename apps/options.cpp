@@ -67,7 +67,8 @@ CLI::Option* addWholeNumber(CLI::App& app, const std::string& name, std::optiona
 
 void addPhysicsOptions(CLI::App& app, PhysicsOptions& options) {
   app.add_option("--method", options.method,
-                 "how a frame is stepped: implicit (default), implicit-euler, semi-implicit-euler, midpoint, runge-kutta-4, "
+                 "how a frame is stepped: implicit (default), implicit-euler, implicit-eigen (with Eigen's sparse "
+                 "factors, for comparison), semi-implicit-euler, midpoint, runge-kutta-4, "
                  "report (the impulses of the 2003 report, for comparison), or rigid blocks: rigid-pgs (sequential impulses), "
                  "rigid-lcp (pivoting), xpbd (position-based); or auto, which takes the one that suits the scene")
       ->type_name("NAME");

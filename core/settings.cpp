@@ -53,16 +53,18 @@ constexpr auto kSettingTable = std::to_array<SettingRow>({
 template <class T>
 using Names = std::span<const std::pair<std::string_view, T>>;
 
-constexpr std::array<std::pair<std::string_view, Method>, 10> kMethodNames = {{{"implicit", Method::implicit},
-                                                                               {"implicit-euler", Method::implicitEuler},
-                                                                               {"semi-implicit-euler", Method::semiImplicitEuler},
-                                                                               {"midpoint", Method::midpoint},
-                                                                               {"runge-kutta-4", Method::rungeKutta4},
-                                                                               {"report", Method::report},
-                                                                               {"rigid-pgs", Method::rigidPgs},
-                                                                               {"rigid-lcp", Method::rigidLcp},
-                                                                               {"xpbd", Method::xpbd},
-                                                                               {"auto", Method::automatic}}};
+constexpr auto kMethodNames =
+    std::to_array<std::pair<std::string_view, Method>>({{"implicit", Method::implicit},
+                                                        {"implicit-euler", Method::implicitEuler},
+                                                        {"implicit-eigen", Method::implicitEigen},
+                                                        {"semi-implicit-euler", Method::semiImplicitEuler},
+                                                        {"midpoint", Method::midpoint},
+                                                        {"runge-kutta-4", Method::rungeKutta4},
+                                                        {"report", Method::report},
+                                                        {"rigid-pgs", Method::rigidPgs},
+                                                        {"rigid-lcp", Method::rigidLcp},
+                                                        {"xpbd", Method::xpbd},
+                                                        {"auto", Method::automatic}});
 constexpr std::array<std::pair<std::string_view, Inertia>, 2> kInertiaNames = {
     {{"cuboid", Inertia::cuboid}, {"lumped", Inertia::lumped}}};
 constexpr std::array<std::pair<std::string_view, Sleep>, 3> kSleepNames = {

@@ -9,11 +9,12 @@
 
 namespace springtower {
 
-/// How a frame is stepped. Each is one file solve_*.cpp of solver/, which the two implicit ones share; `automatic` is replaced by
+/// How a frame is stepped. Each is one file solve_*.cpp of solver/, which the implicit ones share; `automatic` is replaced by
 /// the one that suits the scene when its simulation is set up.
 enum class Method {
   implicit,
   implicitEuler,
+  implicitEigen,
   semiImplicitEuler,
   midpoint,
   rungeKutta4,
@@ -24,9 +25,10 @@ enum class Method {
   automatic
 };
 
-/// Whether a method solves for the state at its step's end: in two steps of history (`implicit`), or in one.
+/// Whether a method solves for the state at its step's end: in two steps of history (`implicit`, and `implicitEigen`, which has
+/// the factors of its matrix from Eigen), or in one.
 constexpr bool isImplicit(Method method) {
-  return method == Method::implicit || method == Method::implicitEuler;
+  return method == Method::implicit || method == Method::implicitEuler || method == Method::implicitEigen;
 }
 
 /// Whether a method takes blocks as rigid: it has no stiffness, and its knobs are substeps and iterations.

@@ -11,6 +11,7 @@
 #include "solver/report_state.h"
 #include "solver/rigid_island.h"
 #include "solver/simulation.h"
+#include "solver/sparse_factors.h"
 
 #include <array>
 #include <cstdint>
@@ -105,6 +106,7 @@ struct Engine {
   std::vector<PointMemory> trial;  ///< by position in `pairs`: contact memory at the end of an implicit step not yet taken
   CornerArray previousVelocity;    ///< m/s, at the start of the step; for implicit steps
   std::vector<ImplicitIsland> implicitIslands;  ///< by the island's smallest block; empty for other methods
+  std::vector<SparseFactors> sparseFactors;     ///< by the island's smallest block; of `implicitEigen` alone
   std::vector<RigidIsland> rigidIslands;        ///< by the island's smallest block; empty for other methods
   CornerArray history;                          ///< m, what past steps give of the position at an implicit step's end
   CornerArray stepVelocity;                     ///< m/s, mean over the implicit step

@@ -147,7 +147,8 @@ int chooseSubsteps(IslandStep& step) {
 void stepIsland(Method method, IslandStep& step) {
   switch (method) {
     case Method::implicit:
-    case Method::implicitEuler:  // what implicit steps do not fit
+    case Method::implicitEuler:
+    case Method::implicitEigen:  // what implicit steps do not fit
     case Method::semiImplicitEuler:
       stepSemiImplicitEuler(step);
       return;

@@ -64,6 +64,7 @@ void prepareImplicit(Simulation& simulation) {
   engine.carriedMotion.resize(count);
   engine.implicitIslands.resize(count);
   engine.nodeOf.assign(count, 0);
+  if (simulation.scene.settings.method == Method::implicitEigen) engine.sparseFactors.resize(count);
 }
 
 void setJacobians(IslandStep& step, double effective_s) {

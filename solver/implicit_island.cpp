@@ -166,6 +166,10 @@ void addTether(const IslandStep& step, ImplicitIsland& island) {
   }
 }
 
+std::size_t firstBlock(const IslandStep& step) {
+  return static_cast<std::size_t>(step.blocks.front());
+}
+
 void mix(std::uint64_t& hash, std::uint64_t value) {
   hash = (hash ^ value) * 1099511628211ULL;
 }
@@ -254,8 +258,19 @@ bool assemble(IslandStep& step, ImplicitIsland& island, double step_s) {
   if (island.tether.block != kFloor) addTether(step, island);
   island.step_s = step_s;
   ++step.counters.factorisations;
-  island.factorised = factorise(island.matrix);
+  std::vector<SparseFactors>& sparse = step.engine.sparseFactors;
+  island.factorised =
+      sparse.empty() ? factorise(island.matrix) : factorise(island.matrix, island.slot, island.pattern, sparse[firstBlock(step)]);
   return island.factorised;
+}
+
+void solve(IslandStep& step, ImplicitIsland& island) {
+  std::vector<SparseFactors>& sparse = step.engine.sparseFactors;
+  if (sparse.empty()) {
+    solve(island.matrix, island.affine);
+  } else {
+    solve(island.matrix, sparse[firstBlock(step)], island.affine);
+  }
 }
 
 }  // namespace springtower

@@ -71,4 +71,7 @@ TetherStiffness tetherStiffness(const IslandStep& step, double step_s);
 /// where the matrix is not positive definite.
 bool assemble(IslandStep& step, ImplicitIsland& island, double step_s);
 
+/// Solves for island.affine in place with the factors at hand.
+void solve(IslandStep& step, ImplicitIsland& island);
+
 }  // namespace springtower

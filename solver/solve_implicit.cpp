@@ -144,7 +144,7 @@ void moveAlong(IslandStep& step, const ImplicitIsland& island, double share, dou
 
 // One solution with the factors at hand: the correction.
 SPRINGTOWER_KERNEL
-void findCorrection(ImplicitIsland& island) {
+void findCorrection(IslandStep& step, ImplicitIsland& island) {
   const std::size_t count = island.residual.size();
   for (std::size_t i = 0; i < count; ++i) {
     turn(island.axes[i], false, kCorners, island.residual[i]);
@@ -154,7 +154,7 @@ void findCorrection(ImplicitIsland& island) {
     for (std::size_t m = 0; m < kAffine; ++m)
       std::copy(reduced[m].begin(), reduced[m].end(), island.affine.data() + kNodeSize * i + 3 * m);
   }
-  solve(island.matrix, island.affine);
+  solve(step, island);
   for (std::size_t i = 0; i < count; ++i) {
     ModeVectors& change = island.direction[i];
     for (std::size_t m = 0; m < kAffine; ++m) std::copy_n(island.affine.data() + kNodeSize * i + 3 * m, 3, change[m].begin());
@@ -328,7 +328,7 @@ bool solveStep(IslandStep& step, double effective_s, bool carried, int mostConta
     const bool stale = slow && (now.changed || now.slides);
     if ((stale || !island.factorised) && !renewFactors(step, island, effective_s)) break;
     const double before = residual;
-    findCorrection(island);
+    findCorrection(step, island);
     residual = takeCorrection(step, island, effective_s, clock);
     slow = residual > kSlow * before;
     ++step.counters.implicitIterations;

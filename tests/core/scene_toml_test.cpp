@@ -179,7 +179,8 @@ TEST(BadSceneFile, IsNamedInOneLine) {
       {"inside_each_other", ": block 0 and block 1 start 1 mm inside each other, allowed is touching"},
       {"inside_the_floor", ": block 0 starts 1 mm inside the floor z = 0, allowed is touching it"},
       {"unknown_method",
-       ":5:10: settings.method: found 'euler', allowed implicit, implicit-euler, semi-implicit-euler, midpoint, runge-kutta-4, "
+       ":5:10: settings.method: found 'euler', allowed implicit, implicit-euler, implicit-eigen, semi-implicit-euler, midpoint, "
+       "runge-kutta-4, "
        "report, rigid-pgs, rigid-lcp, xpbd or auto"},
       {"setting_out_of_range", ":5:15: settings.step_margin: found 1.5, allowed 0.05 to 1"},
       {"force_on_no_block", ":5:9: force[0].block: found 1, allowed a whole number from 0 to 0"},

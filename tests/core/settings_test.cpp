@@ -69,8 +69,9 @@ TEST(Settings, ComplaintNamesSourceKeyFoundAndAllowed) {
 }
 
 TEST(Settings, NamesReadBackAsTheyAreWritten) {
-  for (const Method method : {Method::implicit, Method::implicitEuler, Method::semiImplicitEuler, Method::midpoint,
-                              Method::rungeKutta4, Method::report, Method::rigidPgs, Method::rigidLcp, Method::xpbd}) {
+  for (const Method method :
+       {Method::implicit, Method::implicitEuler, Method::implicitEigen, Method::semiImplicitEuler, Method::midpoint,
+        Method::rungeKutta4, Method::report, Method::rigidPgs, Method::rigidLcp, Method::xpbd}) {
     EXPECT_EQ(methodFromName(nameOf(method), "test"), method);
   }
   for (const Inertia inertia : {Inertia::cuboid, Inertia::lumped}) EXPECT_EQ(inertiaFromName(nameOf(inertia), "test"), inertia);
@@ -80,9 +81,10 @@ TEST(Settings, NamesReadBackAsTheyAreWritten) {
 }
 
 TEST(Settings, UnknownNamesListWhatIsAllowed) {
-  EXPECT_THAT([] { methodFromName("euler", "--method"); },
-              ThrowsMessage<InputError>("--method: found 'euler', allowed implicit, implicit-euler, semi-implicit-euler, "
-                                        "midpoint, runge-kutta-4, report, rigid-pgs, rigid-lcp, xpbd or auto"));
+  EXPECT_THAT(
+      [] { methodFromName("euler", "--method"); },
+      ThrowsMessage<InputError>("--method: found 'euler', allowed implicit, implicit-euler, implicit-eigen, semi-implicit-euler, "
+                                "midpoint, runge-kutta-4, report, rigid-pgs, rigid-lcp, xpbd or auto"));
   EXPECT_THAT([] { inertiaFromName("", "--inertia"); },
               ThrowsMessage<InputError>("--inertia: found '', allowed cuboid or lumped"));
   EXPECT_THAT([] { sleepFromName("o\nn", "s.toml"); },

@@ -244,8 +244,9 @@ TEST_P(SnapshotTest, ARestoredSwayRepeatsItsFuture) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, SnapshotTest,
-                         ::testing::Values(Method::implicit, Method::implicitEuler, Method::semiImplicitEuler, Method::midpoint,
-                                           Method::rungeKutta4, Method::report, Method::rigidPgs, Method::rigidLcp, Method::xpbd),
+                         ::testing::Values(Method::implicit, Method::implicitEuler, Method::implicitEigen,
+                                           Method::semiImplicitEuler, Method::midpoint, Method::rungeKutta4, Method::report,
+                                           Method::rigidPgs, Method::rigidLcp, Method::xpbd),
                          [](const auto& tested) {
                            std::string name(nameOf(tested.param));
                            std::replace(name.begin(), name.end(), '-', '_');

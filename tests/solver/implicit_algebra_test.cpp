@@ -1,6 +1,7 @@
 #include "solver/block_cholesky.h"
 #include "solver/block_modes.h"
 #include "solver/inertia.h"
+#include "solver/sparse_factors.h"
 #include "solver/spring_force.h"
 #include "tests/support/block_scenes.h"
 
@@ -76,6 +77,33 @@ TEST(BlockCholesky, SolvesAsADenseFactorisationDoes) {
     solve(matrix, {values.data(), static_cast<std::size_t>(values.size())});
     EXPECT_LT((values - expected).cwiseAbs().maxCoeff(), 1e-5 * expected.cwiseAbs().maxCoeff()) << "shuffled " << shuffled;
   }
+}
+
+// In double, of a matrix rounded to float; in a copy to the last bit.
+TEST(SparseFactors, SolveAsADenseFactorisationDoes) {
+  const std::int32_t rows = 7;
+  std::vector<std::int32_t> order(static_cast<std::size_t>(3 * rows));
+  std::iota(order.begin(), order.end(), 0);
+  std::shuffle(order.begin(), order.end(), std::mt19937_64(2));
+  const std::vector<BlockPair> edges = towerEdges(rows);
+  BlockCholesky matrix;
+  ASSERT_TRUE(analyse(order, edges, kNoLimit, matrix));
+  const Eigen::MatrixXd full = randomMatrix(edges, matrix).cast<float>().cast<double>();
+  std::vector<BlockSlot> slots(1);  // of a contact with the floor
+  for (const BlockPair& edge : edges) slots.push_back(slotOf(matrix, edge.a, edge.b));
+  SparseFactors factors;
+  ASSERT_TRUE(factorise(matrix, slots, 1, factors));
+  const Eigen::VectorXd right = Eigen::VectorXd::LinSpaced(full.rows(), -1.0, 1.0);
+  const Eigen::VectorXd expected = full.ldlt().solve(right);
+  Eigen::VectorXd values = right;
+  solve(matrix, factors, {values.data(), static_cast<std::size_t>(values.size())});
+  EXPECT_LT((values - expected).cwiseAbs().maxCoeff(), 1e-12 * expected.cwiseAbs().maxCoeff());
+  SparseFactors copy(factors);
+  Eigen::VectorXd again = right;
+  solve(matrix, copy, {again.data(), static_cast<std::size_t>(again.size())});
+  EXPECT_EQ(again, values);
+  matrix.diagonal[kNodeMatrix * 4 + kNodeSize * 3 + 3] = -80.0F;
+  EXPECT_FALSE(factorise(matrix, slots, 1, factors)) << "not positive definite";
 }
 
 TEST(BlockCholesky, SaysWhenAMatrixIsNotPositiveDefinite) {
