@@ -59,7 +59,7 @@ inline constexpr std::array<ChartMeasureRow, kChartMeasures> kChartMeasureRows =
      {"creep_mm", "creep, mm", 1e-6},
      {"jitter_mm_s", "root mean square speed of corners at rest, mm/s", 1e-6},
      {"imbalance", "largest force on a block at rest that nothing balances, block weights", 1e-10},
-     {"energy_error", "energy gained, of the energy at the start", 1e-10},
+     {"energy_error", "energy gained, or lost where nothing rubs or strikes; of that at the start", 1e-10},
      {"error_mm", "largest distance of a corner from a converged run of the same model, mm", 1e-6}}};
 
 /// Another engine, which runs in the same chart where its program is (bench/peers_*.cpp).
@@ -151,6 +151,12 @@ constexpr bool isInMotion(ChartScene scene) {
 /// Whether a scene is one of the kind that comes to rest, so that a resting tolerance can be asked of it.
 constexpr bool comesToRest(ChartScene scene) {
   return scene != ChartScene::pull && scene != ChartScene::collapse && scene != ChartScene::spin;
+}
+
+/// Whether nothing in a scene rubs or strikes, so that no energy may be lost.
+constexpr bool keepsEnergy(ChartScene scene) {
+  return scene == ChartScene::uniform || scene == ChartScene::heavyLight || scene == ChartScene::spin ||
+         scene == ChartScene::tall;
 }
 
 }  // namespace springtower

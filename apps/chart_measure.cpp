@@ -109,9 +109,9 @@ class ChartRun {
       result.note = fmt::format("timed out, foreseen: a frame of {} rows takes {:.2g} s", kFewRows, few_s);
       return;
     }
-    double least_j = energy(simulation_).total();
-    start_j_ = least_j;
-    double gained_j = 0.0;
+    start_j_ = energy(simulation_).total();
+    double least_j = start_j_;
+    double wrong_j = 0.0;
     try {
       while (simulation_.time_s < times_.end_s - halfFrame()) {
         if (!kept_ && simulation_.time_s > times_.keep_s - halfFrame()) keep();
@@ -121,11 +121,15 @@ class ChartRun {
         if (kept_ && isInMotion(result.what.scene)) keepInMotion(step_s);
         observe();
         const double now_j = energy(simulation_).total();
-        gained_j = std::max(gained_j, result.what.scene == ChartScene::spin ? std::abs(now_j - start_j_) : now_j - least_j);
-        least_j = std::min(least_j, now_j);
+        wrong_j = std::max(wrong_j, now_j - least_j);
+        if (!keepsEnergy(result.what.scene) || (steps_ == 1 && comesToRest(result.what.scene))) {
+          least_j = std::min(least_j, now_j);  // a tower's weight comes to its blocks in the first frame
+        } else {
+          wrong_j = std::max(wrong_j, least_j - now_j);
+        }
         if (spent_s_ > caseLimit_s() && !lookAtOnce()) break;
       }
-      finish(gained_j);
+      finish(wrong_j);
     } catch (const DivergenceError& error) {
       result.outcome = ChartOutcome::diverged;
       result.note = fmt::format("diverged at {:.3g} s", error.time_s);
@@ -263,7 +267,7 @@ class ChartRun {
     ++counted_;
   }
 
-  void finish(double gained_j) {
+  void finish(double wrong_j) {
     const ChartScene scene = result.what.scene;
     if (!kept_) keep();
     const bool complete = simulation_.time_s > times_.end_s - halfFrame();
@@ -279,7 +283,7 @@ class ChartRun {
           fmt::format("{}{}{} at {:.2f} s", fall_, fall_.empty() ? "" : ", ", nameOf(result.outcome), simulation_.time_s);
     }
     const auto set = [&](ChartMeasure measure, double value) { result.measured[static_cast<std::size_t>(measure)] = value; };
-    if (start_j_ != 0.0) set(ChartMeasure::energy, gained_j / std::abs(start_j_));
+    if (start_j_ != 0.0) set(ChartMeasure::energy, wrong_j / std::abs(start_j_));
     if (scene == ChartScene::spin) {
       if (complete)
         set(ChartMeasure::error, 1e3 * largestCornerMove(convergedEnd(result.what, limits_), simulation_.state.position));
