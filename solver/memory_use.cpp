@@ -71,6 +71,7 @@ MemoryUse memoryUse(const Simulation& simulation) {
                                        matrix.work, island.touching, island.slot, island.mask, island.axes, island.residual,
                                        island.affine, island.kinds, island.kindOf, island.order, island.height, island.edges);
   }
+  for (const SparseFactors& sparse : engine.sparseFactors) use.factor += bytesOf(sparse);
   use.working += sumOf(engine.trial, engine.previousVelocity, engine.history, engine.stepVelocity, engine.target, engine.nodeOf,
                        engine.frameStartPrevious, engine.frameStartPreviousVelocity);
   return use;

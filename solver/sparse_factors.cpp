@@ -73,4 +73,10 @@ void solve(const BlockCholesky& assembled, SparseFactors& sparse, std::span<doub
   for (std::size_t j = 0; j < assembled.nodeCount(); ++j) std::copy_n(inOrder(j), kNodeSize, byNode(j));
 }
 
+std::size_t bytesOf(const SparseFactors& sparse) {
+  if (sparse.matrix.rows() == 0) return 0;
+  const Eigen::Index entries = sparse.matrix.nonZeros() + sparse.factors.matrixL().nestedExpression().nonZeros();
+  return static_cast<std::size_t>(entries) * (sizeof(double) + sizeof(SparseFactors::Matrix::StorageIndex));
+}
+
 }  // namespace springtower

@@ -3,6 +3,7 @@
 #include "solver/block_cholesky.h"
 
 #include <Eigen/SparseCholesky>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 
@@ -31,5 +32,8 @@ bool factorise(const BlockCholesky& assembled, std::span<const BlockSlot> couple
 
 /// Solves A x = b in place; `values` holds 12 numbers a node, by node of `assembled`. Precondition: `factorise` returned true.
 void solve(const BlockCholesky& assembled, SparseFactors& sparse, std::span<double> values);
+
+/// Bytes of the matrix and its factors: a number and a row for each entry.
+std::size_t bytesOf(const SparseFactors& sparse);
 
 }  // namespace springtower
