@@ -153,7 +153,8 @@ constexpr bool comesToRest(ChartScene scene) {
   return scene != ChartScene::pull && scene != ChartScene::collapse && scene != ChartScene::spin;
 }
 
-/// Whether nothing in a scene rubs or strikes, so that no energy may be lost.
+/// Whether nothing in a scene rubs or strikes, so that no energy may be lost (but in the first frame, in which a tower's weight
+/// comes to its blocks).
 constexpr bool keepsEnergy(ChartScene scene) {
   return scene == ChartScene::uniform || scene == ChartScene::heavyLight || scene == ChartScene::spin ||
          scene == ChartScene::tall;

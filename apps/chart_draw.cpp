@@ -74,13 +74,12 @@ bool counts(const ChartResult& result, ChartMeasure measure) {
   return result.outcome == ChartOutcome::right || (result.outcome == ChartOutcome::cutShort && measure != ChartMeasure::creep);
 }
 
-// Of engines measured elsewhere, in their order.
-constexpr int kElsewhereStyle = 12;
-
-// The methods' colours are in their order; those of other engines follow.
+// The methods' colours are in their order; those of other engines follow, and then those of engines measured elsewhere.
 int styleOf(const ChartCase& what) {
   return static_cast<int>(what.peer == Peer::none ? what.method : Method::automatic) + static_cast<int>(what.peer);
 }
+constexpr int kElsewhereStyle = static_cast<int>(Method::automatic) + static_cast<int>(kPeerNames.size());
+static_assert(kElsewhereStyle + 2 == kPlotStyles, "a colour for each, two engines elsewhere");
 
 bool measuredHere(const Chart& chart, const PeerResult& peer) {
   return std::any_of(chart.results.begin(), chart.results.end(), [&](const ChartResult& result) {

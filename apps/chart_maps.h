@@ -56,7 +56,7 @@ struct MapLimits {
 /// Sag that a map calls by its name, m: of a row, or as penetration; also the tolerance of maps over rows.
 inline constexpr double kMapTolerance_m = 1e-4;
 
-/// Every method but `auto`, which is another one by the time it steps.
+/// Every method but `auto`, which is another one by the time it steps, and `implicit-eigen`, whose steps are those of `implicit`.
 std::vector<Method> mappedMethods();
 
 /// All maps: over step and stiffness for the methods that have one, over step and rows for these and the rigid ones. `progress`

@@ -110,7 +110,7 @@ class ChartRun {
       return;
     }
     start_j_ = energy(simulation_).total();
-    double least_j = start_j_;
+    double reference_j = start_j_;
     double wrong_j = 0.0;
     try {
       while (simulation_.time_s < times_.end_s - halfFrame()) {
@@ -121,11 +121,11 @@ class ChartRun {
         if (kept_ && isInMotion(result.what.scene)) keepInMotion(step_s);
         observe();
         const double now_j = energy(simulation_).total();
-        wrong_j = std::max(wrong_j, now_j - least_j);
+        wrong_j = std::max(wrong_j, now_j - reference_j);
         if (!keepsEnergy(result.what.scene) || (steps_ == 1 && comesToRest(result.what.scene))) {
-          least_j = std::min(least_j, now_j);  // a tower's weight comes to its blocks in the first frame
+          reference_j = std::min(reference_j, now_j);  // a tower's weight comes to its blocks in the first frame
         } else {
-          wrong_j = std::max(wrong_j, least_j - now_j);
+          wrong_j = std::max(wrong_j, reference_j - now_j);
         }
         if (spent_s_ > caseLimit_s() && !lookAtOnce()) break;
       }

@@ -22,6 +22,9 @@ struct PlotAxis {
   std::vector<std::pair<double, std::string>> labels = {};  ///< ticks by hand, for bars that have names; else they are chosen
 };
 
+/// Lines of one plot that differ in colour.
+inline constexpr int kPlotStyles = 15;
+
 struct PlotPoint {
   double x;
   double y;
@@ -34,7 +37,7 @@ struct PlotLine {
   Marker marker = Marker::filled;
   bool joined = true;
   bool dashed = false;
-  int style = -1;                        ///< colour and shape of the marker, 0 to 13 and round again; -1: the line's place
+  int style = -1;  ///< colour and shape of the marker, below kPlotStyles and then round again; -1: the line's place
   std::vector<std::string> labels = {};  ///< written beside the points, [points] or empty
 };
 

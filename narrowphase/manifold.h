@@ -60,8 +60,9 @@ int incidentFaceOf(const CornerView& block, const Vec3& normal);
 
 /// Sizes the geometry of manifolds is judged by, m.
 struct ManifoldLimits {
-  double mergeRadius;  ///< points closer than this on the incident face are one
-  double reach;        ///< points farther than this above the reference plane are left out
+  double
+      mergeRadius;  ///< points closer than this on the incident face are one; edges that bend by a twentieth of it are straight
+  double reach;     ///< points farther than this above the reference plane are left out
 };
 
 /// Overlap of upper's incident face with lower's reference face: clips the one against the sides of the other (Sutherland &

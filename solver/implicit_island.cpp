@@ -219,6 +219,7 @@ void layOut(IslandStep& step, ImplicitIsland& island) {
   }
   island.pattern = pattern;
   island.factorised = false;
+  if (!engine.sparseFactors.empty()) engine.sparseFactors[firstBlock(step)].analysed = false;
   island.tooDense = !analyse(order, island.edges, kMostProducts * count, island.matrix);
   if (island.tooDense) return;
   island.slot.clear();
@@ -259,8 +260,7 @@ bool assemble(IslandStep& step, ImplicitIsland& island, double step_s) {
   island.step_s = step_s;
   ++step.counters.factorisations;
   std::vector<SparseFactors>& sparse = step.engine.sparseFactors;
-  island.factorised =
-      sparse.empty() ? factorise(island.matrix) : factorise(island.matrix, island.slot, island.pattern, sparse[firstBlock(step)]);
+  island.factorised = sparse.empty() ? factorise(island.matrix) : factorise(island.matrix, island.slot, sparse[firstBlock(step)]);
   return island.factorised;
 }
 

@@ -71,7 +71,8 @@ TetherStiffness tetherStiffness(const IslandStep& step, double step_s);
 /// where the matrix is not positive definite.
 bool assemble(IslandStep& step, ImplicitIsland& island, double step_s);
 
-/// Solves for island.affine in place with the factors at hand.
+/// Solves for island.affine in place with the factors at hand: forces (N) in, displacements (m) out, in the world's frame, by
+/// node. Precondition: island.factorised.
 void solve(IslandStep& step, ImplicitIsland& island);
 
 }  // namespace springtower

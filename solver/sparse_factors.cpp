@@ -1,6 +1,7 @@
 #include "solver/sparse_factors.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <vector>
 
 namespace springtower {
@@ -44,22 +45,22 @@ void copyMatrix(const BlockCholesky& assembled, std::span<const BlockSlot> coupl
 
 }  // namespace
 
-SparseFactors::SparseFactors(const SparseFactors& other) : matrix(other.matrix), pattern(other.pattern) {
+SparseFactors::SparseFactors(const SparseFactors& other) : matrix(other.matrix), analysed(other.analysed) {
   if (matrix.rows() > 0) factors.compute(matrix);
 }
 
 SparseFactors& SparseFactors::operator=(const SparseFactors& other) {
   if (this == &other) return *this;
   matrix = other.matrix;
-  pattern = other.pattern;
+  analysed = other.analysed;
   if (matrix.rows() > 0) factors.compute(matrix);
   return *this;
 }
 
-bool factorise(const BlockCholesky& assembled, std::span<const BlockSlot> coupled, std::uint64_t pattern, SparseFactors& sparse) {
+bool factorise(const BlockCholesky& assembled, std::span<const BlockSlot> coupled, SparseFactors& sparse) {
   copyMatrix(assembled, coupled, sparse.matrix);
-  if (sparse.pattern != pattern) sparse.factors.analyzePattern(sparse.matrix);
-  sparse.pattern = pattern;
+  if (!sparse.analysed) sparse.factors.analyzePattern(sparse.matrix);
+  sparse.analysed = true;
   sparse.factors.factorize(sparse.matrix);
   return sparse.factors.info() == Eigen::Success;
 }

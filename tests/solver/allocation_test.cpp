@@ -105,6 +105,18 @@ TEST(MemoryUse, OfABlockOfTheTower) {
   EXPECT_EQ(use.total(), use.state + use.model + use.contacts + use.factor + use.working);
 }
 
+// Eigen's factors in double come on top of the matrix as it is assembled.
+TEST(MemoryUse, CountsEigensFactors) {
+  const auto factorOf = [](Method method) {
+    Scene scene = towerScene(6);
+    scene.settings.method = method;
+    Simulation simulation(scene);
+    stepFor(simulation, 0.1);
+    return memoryUse(simulation).factor;
+  };
+  EXPECT_GT(factorOf(Method::implicitEigen), 2 * factorOf(Method::implicit));
+}
+
 // Nothing grows with time in a scene that stands, nor faster than the blocks.
 TEST(MemoryUse, GrowsWithTheBlocksAlone) {
   Simulation small(towerScene(6));

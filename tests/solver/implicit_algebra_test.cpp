@@ -92,7 +92,7 @@ TEST(SparseFactors, SolveAsADenseFactorisationDoes) {
   std::vector<BlockSlot> slots(1);  // of a contact with the floor
   for (const BlockPair& edge : edges) slots.push_back(slotOf(matrix, edge.a, edge.b));
   SparseFactors factors;
-  ASSERT_TRUE(factorise(matrix, slots, 1, factors));
+  ASSERT_TRUE(factorise(matrix, slots, factors));
   const Eigen::VectorXd right = Eigen::VectorXd::LinSpaced(full.rows(), -1.0, 1.0);
   const Eigen::VectorXd expected = full.ldlt().solve(right);
   Eigen::VectorXd values = right;
@@ -103,7 +103,7 @@ TEST(SparseFactors, SolveAsADenseFactorisationDoes) {
   solve(matrix, copy, {again.data(), static_cast<std::size_t>(again.size())});
   EXPECT_EQ(again, values);
   matrix.diagonal[kNodeMatrix * 4 + kNodeSize * 3 + 3] = -80.0F;
-  EXPECT_FALSE(factorise(matrix, slots, 1, factors)) << "not positive definite";
+  EXPECT_FALSE(factorise(matrix, slots, factors)) << "not positive definite";
 }
 
 TEST(BlockCholesky, SaysWhenAMatrixIsNotPositiveDefinite) {
