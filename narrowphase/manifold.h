@@ -58,11 +58,10 @@ FaceFrame faceFrame(const CornerView& block, int face);
 /// The face of a block whose outward normal is most opposed to a direction.
 int incidentFaceOf(const CornerView& block, const Vec3& normal);
 
-/// Sizes the geometry of manifolds is judged by, m.
+/// Sizes the geometry of manifolds is judged by, m. Edges that bend by less than a twentieth of mergeRadius are straight.
 struct ManifoldLimits {
-  double
-      mergeRadius;  ///< points closer than this on the incident face are one; edges that bend by a twentieth of it are straight
-  double reach;     ///< points farther than this above the reference plane are left out
+  double mergeRadius;  ///< points closer than this on the incident face are one
+  double reach;        ///< points farther than this above the reference plane are left out
 };
 
 /// Overlap of upper's incident face with lower's reference face: clips the one against the sides of the other (Sutherland &
