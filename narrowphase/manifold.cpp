@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <limits>
 
 namespace springtower {
@@ -50,8 +49,8 @@ struct Lengths {
   double v;
 };
 
-// How far a corner is from the segment between two others on the incident face, m.
-double distance(const ClipPoint& corner, const ClipPoint& from, const ClipPoint& to, const Lengths& lengths) {
+// How far a corner is from the segment between two others on the incident face, squared, m2.
+double squaredDistance(const ClipPoint& corner, const ClipPoint& from, const ClipPoint& to, const Lengths& lengths) {
   const double sideU = (to.u - from.u) * lengths.u;
   const double sideV = (to.v - from.v) * lengths.v;
   double u = (corner.u - from.u) * lengths.u;
@@ -60,7 +59,7 @@ double distance(const ClipPoint& corner, const ClipPoint& from, const ClipPoint&
   const double share = square > 0.0 ? std::clamp((u * sideU + v * sideV) / square, 0.0, 1.0) : 0.0;
   u -= share * sideU;
   v -= share * sideV;
-  return std::sqrt(u * u + v * v);
+  return u * u + v * v;
 }
 
 // Takes out the corners between which and their neighbours an edge is straight. They carry nothing that these would not, and
@@ -70,7 +69,7 @@ std::size_t dropStraight(double radius, const Lengths& lengths, std::size_t coun
   while (i < count && count > 2) {
     const ClipPoint& before = corners[i == 0 ? count - 1 : i - 1];
     const ClipPoint& after = corners[i + 1 == count ? 0 : i + 1];
-    if (distance(corners[i], before, after, lengths) < radius) {
+    if (squaredDistance(corners[i], before, after, lengths) < radius * radius) {
       std::copy(corners.data() + i + 1, corners.data() + count, corners.data() + i);
       --count;
     } else {
@@ -149,12 +148,13 @@ void buildFaceManifold(const CornerView& upper, const CornerView& lower, int inc
   count = clip(other, count, &ClipPoint::t, -1.0, polygon);
 
   const Lengths lengths{incident.sideU.norm(), incident.sideV.norm()};
+  const double merged = limits.mergeRadius * limits.mergeRadius;
   std::size_t kept = 0;
   for (std::size_t i = 0; i < count && kept < kManifoldPoints; ++i) {
     const ClipPoint& p = polygon[i];
     if (p.height > limits.reach) continue;
     bool known = false;
-    for (std::size_t j = 0; j < kept && !known; ++j) known = distance(p, other[j], other[j], lengths) < limits.mergeRadius;
+    for (std::size_t j = 0; j < kept && !known; ++j) known = squaredDistance(p, other[j], other[j], lengths) < merged;
     if (!known) other[kept++] = p;
   }
   kept = dropStraight(kStraight * limits.mergeRadius, lengths, kept, other);
