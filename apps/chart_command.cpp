@@ -209,8 +209,8 @@ CLI::App* defineChart(CLI::App& program, ChartCommand& command) {
   chart->add_flag("--fresh", command.fresh, "measures everything again, also what an earlier run has left in the folder");
   chart
       ->add_flag("--maps", command.maps,
-                 "instead: where each method is stable, over step and stiffness and over step and rows; every method, or "
-                 "--methods; --seconds (default 1) and --case-limit (default 5) as above")
+                 "instead: where each method is stable, over step and stiffness and over step and rows; every method but "
+                 "implicit-eigen, or --methods; --seconds (default 1) and --case-limit (default 5) as above")
       ->excludes("--auto", "--long", "--fresh", "--scenes", "--rows", "--samples", "--peers");
   wrapDescriptions(*chart);
   chart->footer(std::string(kChartExamples));
