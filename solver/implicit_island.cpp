@@ -84,15 +84,6 @@ void addProduct(double factor, const Weights& p, const Weights& q, Coupling& sum
   }
 }
 
-// Weights of a block's affine vectors at a place in space.
-Weights weightsAt(const BlockFrame& frame, const Vec3& place) {
-  const Vec3 arm = place - Vec3(frame.place.centre[0], frame.place.centre[1], frame.place.centre[2]);
-  Weights weights{1.0, 0.0, 0.0, 0.0};
-  for (std::size_t a = 0; a < 3; ++a)
-    weights[1 + a] = frame.dual[a][0] * arm[0] + frame.dual[a][1] * arm[1] + frame.dual[a][2] * arm[2];
-  return weights;
-}
-
 void addManifold(const IslandStep& step, ImplicitIsland& island, std::size_t at, double step_s) {
   const Engine& engine = step.engine;
   const Manifold& m = engine.pairs[static_cast<std::size_t>(island.touching[at])].manifold;
@@ -104,11 +95,6 @@ void addManifold(const IslandStep& step, ImplicitIsland& island, std::size_t at,
   static const AffineField kStill{};
   const PointForces points = pointForces(m, {&frameUpper, &kStill, &kStill}, {frameLower, &kStill, &kStill}, step.law);
 
-  const double stiffness = m.lower < 0 ? step.law.floorStiffness_n_m : step.law.stiffness_n_m;
-  const double damping = step.law.dampingTime_s / step_s;
-  const double relaxing = step.law.relaxingRatio * step.law.relaxingTime_s / (step.law.relaxingTime_s + step.drift_s);
-  const double normalFactor = 1.0 + relaxing + damping;
-  const double tangentialFactor = step.law.tangentialRatio * (1.0 + damping);
   const PointMemory& memory = engine.trial[static_cast<std::size_t>(island.touching[at])];
   BlockCholesky& matrix = island.matrix;
   const auto diagonalOf = [&](std::size_t block) {
@@ -126,12 +112,8 @@ void addManifold(const IslandStep& step, ImplicitIsland& island, std::size_t at,
   Coupling upperNormal{}, upperTangential{}, lowerNormal{}, lowerTangential{}, crossNormal{}, crossTangential{};
   for (std::size_t i = 0; i < static_cast<std::size_t>(m.count); ++i) {
     if ((mask >> i & 1U) == 0) continue;
-    const double k = stiffness * std::max(1.0, memory.scale[i]);
-    const double normal = k * normalFactor;
+    const auto [normal, tangential, along] = pointStiffness(step, m, memory, mask, i, step_s);
     const bool slides = (mask >> (8 + i) & 1U) != 0;
-    const double share = memory.sliding[i] > 0.0 ? memory.sliding[i] : m.sliding[i];  // nothing has moved yet: as it slid before
-    const double tangential = k * tangentialFactor * (slides ? share : 1.0);
-    const Vec3 along = slides ? Vec3(memory.stretchX[i], memory.stretchY[i], memory.stretchZ[i]).normalized() : Vec3::Zero();
     const Weights wu = weightsAt(frameUpper, points.place[i]);
     if (slides && ofUpper != nullptr) takeAlong(tangential, wu, wu, along, ofUpper);
     addProduct(normal, wu, wu, upperNormal);
@@ -175,6 +157,14 @@ void mix(std::uint64_t& hash, std::uint64_t value) {
 }
 
 }  // namespace
+
+std::array<double, kAffine> weightsAt(const BlockFrame& frame, const Vec3& place) {
+  const Vec3 arm = place - Vec3(frame.place.centre[0], frame.place.centre[1], frame.place.centre[2]);
+  Weights weights{1.0, 0.0, 0.0, 0.0};
+  for (std::size_t a = 0; a < 3; ++a)
+    weights[1 + a] = frame.dual[a][0] * arm[0] + frame.dual[a][1] * arm[1] + frame.dual[a][2] * arm[2];
+  return weights;
+}
 
 void layOut(IslandStep& step, ImplicitIsland& island) {
   Engine& engine = step.engine;
@@ -254,7 +244,11 @@ bool assemble(IslandStep& step, ImplicitIsland& island, double step_s) {
     addOwn(jacobianOf(island, i), island.axes[i],
            island.matrix.diagonal.data() + kNodeMatrix * static_cast<std::size_t>(island.matrix.position[i]));
   }
-  for (std::size_t at = 0; at < island.touching.size(); ++at) addManifold(step, island, at, step_s);
+  island.factorTangents.clear();
+  for (std::size_t at = 0; at < island.touching.size(); ++at) {
+    addManifold(step, island, at, step_s);
+    if (island.mask[at] > 0xFFU) addFactorTangents(step, island, at, island.mask[at], step_s, island.factorTangents);
+  }
   island.tether = tetherStiffness(step, step_s);
   if (island.tether.block != kFloor) addTether(step, island);
   island.step_s = step_s;

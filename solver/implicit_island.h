@@ -1,16 +1,15 @@
 #pragma once
 
 #include "solver/block_cholesky.h"
+#include "solver/block_frames.h"
 #include "solver/block_jacobian.h"
+#include "solver/contact_tangent.h"
 
 #include <array>
 #include <cstdint>
 #include <vector>
 
 namespace springtower {
-
-/// Which points of a pair's manifold push (low byte) and which of them slide (high byte).
-using ContactMask = std::uint16_t;
 
 /// How stiffly the hand's springs and dashpots follow their block in an implicit step, N/m; what is at its limit does not.
 struct TetherStiffness {
@@ -49,6 +48,13 @@ struct ImplicitIsland {
   std::vector<Kind> kinds;                                 ///< of the island's blocks; maybe more than it has now
   std::vector<std::int32_t> kindOf;                        ///< of each node
   double jacobianStep_s = 0.0;                             ///< what step these are for
+  AlignedVector<ContactTangent> factorTangents;            ///< what the factors know of pairs that slid when they were made
+  AlignedVector<ContactTangent> tangents;                  ///< what is to be added to what they know; may be empty
+  std::vector<std::int32_t> coupled;                       ///< working space of `solveCoupled`: nodes that the tangents touch
+  std::vector<std::int32_t> coupledAs;                     ///< and where each node is among them
+  std::vector<double> coupledMotion;                       ///< m, [coupled][12]
+  std::vector<double> coupledForce;                        ///< N, [direction][coupled][12]
+  std::vector<double> correction;                          ///< m, [direction][nodes][12]
   std::vector<std::int32_t> order;                         ///< working space of `layOut`
   std::vector<double> height;                              ///< working space of `layOut`, m
   std::vector<BlockPair> edges;                            ///< working space of `layOut`
@@ -60,6 +66,9 @@ inline const BlockJacobian& jacobianOf(const ImplicitIsland& island, std::size_t
 }
 
 struct IslandStep;
+
+/// Weights of a block's affine vectors at a place in space.
+std::array<double, kAffine> weightsAt(const BlockFrame& frame, const Vec3& place);
 
 /// Lays out the matrix anew where blocks have begun or ceased to touch, unless the island is too dense.
 void layOut(IslandStep& step, ImplicitIsland& island);

@@ -69,7 +69,9 @@ MemoryUse memoryUse(const Simulation& simulation) {
     use.working +=
         sizeof(ImplicitIsland) + sumOf(matrix.mark, matrix.firstChild, matrix.nextChild, matrix.edgeStart, matrix.edgeRow,
                                        matrix.work, island.touching, island.slot, island.mask, island.axes, island.residual,
-                                       island.affine, island.kinds, island.kindOf, island.order, island.height, island.edges);
+                                       island.affine, island.factorTangents, island.tangents, island.coupled, island.coupledAs,
+                                       island.coupledMotion, island.coupledForce, island.correction, island.kinds, island.kindOf,
+                                       island.order, island.height, island.edges);
   }
   for (const SparseFactors& sparse : engine.sparseFactors) use.factor += bytesOf(sparse);
   use.working += sumOf(engine.trial, engine.previousVelocity, engine.history, engine.stepVelocity, engine.target, engine.nodeOf,

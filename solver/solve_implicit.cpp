@@ -1,5 +1,6 @@
 #include "core/lanes.h"
 #include "solver/block_modes.h"
+#include "solver/correction.h"
 #include "solver/implicit.h"
 #include "solver/implicit_history.h"
 #include "solver/inertia.h"
@@ -22,6 +23,13 @@ constexpr int kMostMeetings = 4;
 // Residual force at which a step is taken, in weights of the block; in metres it is this share of the compression under its own
 // weight. Displacements are no measure: a sliding block hardly moves and is still wrong by a tenth of its friction.
 constexpr double kResidual = 1e-5;
+// How far a correction is solved for, in these units: the root of the sum of all blocks' squares, of which the largest is far
+// less. Less costs solutions that the next evaluation does not need, more costs evaluations.
+constexpr double kSolved = 2.0;
+// Residual from which on friction follows the normal forces in a correction: a block's weight. Farther from the solution points
+// slide that will not, and Newton's iteration with a cone that moves goes astray (design, section 11, trap 1); steps from rest,
+// in which a tower's load arrives, begin far away.
+constexpr double kNear = 1e5;
 
 ImplicitIsland& islandOf(IslandStep& step) {
   return step.engine.implicitIslands[static_cast<std::size_t>(step.blocks.front())];
@@ -35,18 +43,6 @@ constexpr double kSlow = 0.3;
 // A residual from which a step begins where the blocks are carried, not where they are: something moves.
 constexpr double kPredicted = 1.0;
 
-// Until the blocks have moved what slides is what slid before.
-ContactMask maskOf(const PointMemory& trial, const Manifold& manifold, bool moved) {
-  const PointMemory& slid = moved ? trial : manifold;
-  unsigned mask = 0;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(manifold.count); ++i) {
-    if (trial.live[i] == 0.0) continue;
-    mask |= 1U << i;
-    if (slid.sliding[i] != 0.0) mask |= 0x100U << i;
-  }
-  return static_cast<ContactMask>(mask);
-}
-
 // How the contacts stand now. Before the first iteration nothing has moved yet, so what slides is what slid before.
 struct ContactsNow {
   bool changed = false;  // against what the factors are for
@@ -57,7 +53,7 @@ ContactsNow contactsNow(const IslandStep& step, const ImplicitIsland& island, do
   ContactsNow now;
   for (std::size_t i = 0; i < island.touching.size(); ++i) {
     const auto at = static_cast<std::size_t>(island.touching[i]);
-    const ContactMask mask = maskOf(step.engine.trial[at], step.engine.pairs[at].manifold, island.moved);
+    const ContactMask mask = contactMask(step.engine.trial[at], step.engine.pairs[at].manifold, island.moved);
     now.changed = now.changed || mask != island.mask[i];
     now.slides = now.slides || mask > 0xFFU;
   }
@@ -69,20 +65,9 @@ ContactsNow contactsNow(const IslandStep& step, const ImplicitIsland& island, do
 bool renewFactors(IslandStep& step, ImplicitIsland& island, double effective_s) {
   for (std::size_t i = 0; i < island.touching.size(); ++i) {
     const auto at = static_cast<std::size_t>(island.touching[i]);
-    island.mask[i] = maskOf(step.engine.trial[at], step.engine.pairs[at].manifold, island.moved);
+    island.mask[i] = contactMask(step.engine.trial[at], step.engine.pairs[at].manifold, island.moved);
   }
   return assemble(step, island, effective_s);
-}
-
-// Turns the first `count` vectors into the block's frame, or back.
-SPRINGTOWER_INLINE void turn(const std::array<std::array<double, 3>, 3>& axes, bool back, std::size_t count, ModeVectors& modes) {
-  for (std::size_t m = 0; m < count; ++m) {
-    const std::array<double, 3> from = modes[m];
-    for (std::size_t i = 0; i < 3; ++i) {
-      modes[m][i] = back ? axes[0][i] * from[0] + axes[1][i] * from[1] + axes[2][i] * from[2]
-                         : axes[i][0] * from[0] + axes[i][1] * from[1] + axes[i][2] * from[2];
-    }
-  }
 }
 
 // The residual of all blocks, in the world's frame; returns the largest in units of what is allowed,
@@ -140,40 +125,6 @@ void moveAlong(IslandStep& step, const ImplicitIsland& island, double share, dou
     addModes(part, step.simulation.state.position, b);
     updateVelocities(step, b, effective_s);
   }
-}
-
-// One solution with the factors at hand: the correction.
-SPRINGTOWER_KERNEL
-void findCorrection(IslandStep& step, ImplicitIsland& island) {
-  const std::size_t count = island.residual.size();
-  for (std::size_t i = 0; i < count; ++i) {
-    turn(island.axes[i], false, kCorners, island.residual[i]);
-    ModeVectors reduced = island.residual[i];
-    eliminateWarps(jacobianOf(island, i), reduced);
-    turn(island.axes[i], true, kAffine, reduced);
-    for (std::size_t m = 0; m < kAffine; ++m)
-      std::copy(reduced[m].begin(), reduced[m].end(), island.affine.data() + kNodeSize * i + 3 * m);
-  }
-  solve(step, island);
-  for (std::size_t i = 0; i < count; ++i) {
-    ModeVectors& change = island.direction[i];
-    for (std::size_t m = 0; m < kAffine; ++m) std::copy_n(island.affine.data() + kNodeSize * i + 3 * m, 3, change[m].begin());
-    turn(island.axes[i], false, kAffine, change);
-    recoverWarps(jacobianOf(island, i), island.residual[i], change);
-    turn(island.axes[i], true, kCorners, change);
-    turn(island.axes[i], true, kCorners, island.residual[i]);
-  }
-}
-
-// Work of the present residual along the correction, J.
-double workAlong(const ImplicitIsland& island) {
-  double work = 0.0;
-  for (std::size_t i = 0; i < island.residual.size(); ++i) {
-    for (std::size_t m = 0; m < kCorners; ++m) {
-      for (std::size_t k = 0; k < 3; ++k) work += island.residual[i][m][k] * island.direction[i][m][k];
-    }
-  }
-  return work;
 }
 
 SPRINGTOWER_INLINE void copyPoints(const PointMemory& from, std::int32_t count, PointMemory& to) {
@@ -310,8 +261,8 @@ bool isCarried(const IslandStep& step, double effective_s) {
 }
 
 // Newton's iteration for the state at the step's end, from engine.target and engine.history. Unless the blocks are `carried` the
-// forces are known where they are. Returns whether it converged.
-bool solveStep(IslandStep& step, double effective_s, bool carried, int mostContactIterations) {
+// forces are known where they are. Friction follows the normal forces from a residual of `near` on. Returns whether it converged.
+bool solveStep(IslandStep& step, double effective_s, bool carried, int mostContactIterations, double near) {
   ImplicitIsland& island = islandOf(step);
   StageClock clock(step.times);
   layOut(step, island);
@@ -326,9 +277,14 @@ bool solveStep(IslandStep& step, double effective_s, bool carried, int mostConta
     const ContactsNow now = contactsNow(step, island, effective_s);
     if (now.changed) most = std::min(mostContactIterations, iteration + kMostIterations);
     const bool stale = slow && (now.changed || now.slides);
-    if ((stale || !island.factorised) && !renewFactors(step, island, effective_s)) break;
+    const bool renewed = stale || !island.factorised;
+    if (renewed && !renewFactors(step, island, effective_s)) break;
     const double before = residual;
-    findCorrection(step, island);
+    const bool differs = residual < near && (now.changed || now.slides || !island.factorTangents.empty());
+    if (!findCorrection(step, island, effective_s, kSolved * kResidual, differs) && !renewed) {
+      if (!renewFactors(step, island, effective_s)) break;
+      findCorrection(step, island, effective_s, kSolved * kResidual, differs);
+    }
     residual = takeCorrection(step, island, effective_s, clock);
     slow = residual > kSlow * before;
     ++step.counters.implicitIterations;
@@ -366,7 +322,7 @@ bool stepImplicit(IslandStep& step) {
   } else {
     foretell(step, effective_s);
   }
-  bool converged = solveStep(step, effective_s, carried, kMostContactIterations);
+  bool converged = solveStep(step, effective_s, carried, kMostContactIterations, kNear);
   for (int trial = 0; converged && trial < kMostMeetings; ++trial) {
     StageClock clock(step.times);
     const Meetings met = meetingsIn(step);
@@ -375,7 +331,7 @@ bool stepImplicit(IslandStep& step) {
     if (met == Meetings::none) break;
     goBack(step);
     evaluateForces(step, step.simulation.state, step.simulation.state.velocity, 0.0, Memory::trial);
-    converged = solveStep(step, effective_s, false, kMostContactIterations);
+    converged = solveStep(step, effective_s, false, kMostContactIterations, kNear);
   }
   return finishStep(step, converged);
 }
@@ -385,8 +341,8 @@ bool stepFromRest(IslandStep& step, double effective_s) {
   evaluateForces(step, step.simulation.state, step.simulation.state.velocity, 0.0, Memory::trial);
   foretellOneStep(step, effective_s);
   // The weight of a tower that is laid down comes to its foot row by row.
-  return finishStep(step,
-                    solveStep(step, effective_s, false, std::max(kMostContactIterations, static_cast<int>(step.blocks.size()))));
+  return finishStep(
+      step, solveStep(step, effective_s, false, std::max(kMostContactIterations, static_cast<int>(step.blocks.size())), 0.0));
 }
 
 }  // namespace springtower

@@ -1,4 +1,5 @@
 #include "core/error.h"
+#include "core/lanes.h"
 #include "solver/contact_births.h"
 #include "solver/frame_start.h"
 #include "solver/island_step.h"
@@ -12,6 +13,35 @@
 
 namespace springtower {
 
+namespace {
+
+// How a block moved in a step.
+struct BlockTravel {
+  double path;      // m, of its fastest corner
+  double deformed;  // m2, squares of the corners' moves against their mean, summed
+};
+
+SPRINGTOWER_INLINE BlockTravel blockTravel(const CornerArray& now, const CornerArray& before, std::size_t b) {
+  Lanes squared[2] = {};
+  Lanes deformed = {};
+  for (std::size_t a = 0; a < 3; ++a) {
+    Lanes moved[2];
+    for (std::size_t half = 0; half < 2; ++half) {
+      Lanes from;
+      load(now.values(a, b) + 4 * half, moved[half]);
+      load(before.values(a, b) + 4 * half, from);
+      moved[half] -= from;
+      squared[half] += moved[half] * moved[half];
+    }
+    const double mean = sum(moved[0] + moved[1]) / static_cast<double>(kCorners);
+    for (const Lanes& corners : moved) deformed += (corners - mean) * (corners - mean);
+  }
+  const Lanes most = squared[0] > squared[1] ? squared[0] : squared[1];
+  return {std::sqrt(std::max(std::max(most[0], most[1]), std::max(most[2], most[3]))), sum(deformed)};
+}
+
+}  // namespace
+
 // Adds up the path of each block's fastest corner. A block whose corners move apart by half its least side in one step has
 // diverged: free flight is as fast as it likes, but nothing sound deforms like that. NaN fails every comparison, so what is sound
 // is asked for.
@@ -20,21 +50,7 @@ bool addTravel(IslandStep& step) {
   bool inside = true;
   for (const std::int32_t block : step.blocks) {
     const auto b = static_cast<std::size_t>(block);
-    double moved[3][kCorners];
-    double squared[kCorners] = {};
-    double deformed = 0.0;
-    for (std::size_t a = 0; a < 3; ++a) {
-      const double* now = simulation.state.position.values(a, b);
-      const double* before = step.engine.previous.values(a, b);
-      double mean = 0.0;
-      for (std::size_t c = 0; c < kCorners; ++c) {
-        moved[a][c] = now[c] - before[c];
-        squared[c] += moved[a][c] * moved[a][c];
-        mean += moved[a][c] / static_cast<double>(kCorners);
-      }
-      for (std::size_t c = 0; c < kCorners; ++c) deformed += (moved[a][c] - mean) * (moved[a][c] - mean);
-    }
-    const double path = std::sqrt(*std::max_element(squared, squared + kCorners));
+    const auto [path, deformed] = blockTravel(simulation.state.position, step.engine.previous, b);
     const double most = kMostTravelPerStep * simulation.model.dimensions[b].minCoeff();
     if (!(deformed < static_cast<double>(kCorners) * most * most)) {
       const double time = step.time_s + step.drift_s;

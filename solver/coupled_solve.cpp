@@ -1,0 +1,145 @@
+#include "solver/coupled_solve.h"
+
+#include "core/lanes.h"
+#include "solver/implicit_island.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace springtower {
+
+namespace {
+
+// Directions tried for one correction; a drawn block takes two to four.
+constexpr std::size_t kMostDirections = 6;
+// What may be left over of the forces asked for: the next iteration looks at them anew.
+constexpr double kLeftOver = 0.01;
+
+// The tangents touch few nodes, and outside these the forces left over are none: the directions are kept for these nodes alone.
+void findCoupledNodes(ImplicitIsland& island) {
+  island.coupledAs.assign(island.residual.size(), -1);
+  island.coupled.clear();
+  const auto place = [&](std::int32_t& node) {
+    if (node < 0) return;
+    std::int32_t& as = island.coupledAs[static_cast<std::size_t>(node)];
+    if (as < 0) {
+      as = static_cast<std::int32_t>(island.coupled.size());
+      island.coupled.push_back(node);
+    }
+    node = as;
+  };
+  for (ContactTangent& tangent : island.tangents) {
+    place(tangent.upper);
+    place(tangent.lower);
+  }
+}
+
+SPRINGTOWER_INLINE double dot(const double* p, const double* q, std::size_t count) {
+  Lanes total = {};
+  for (std::size_t i = 0; i < count; i += 4) {
+    Lanes a, b;
+    load(p + i, a);
+    load(q + i, b);
+    total += a * b;
+  }
+  return sum(total);
+}
+
+SPRINGTOWER_INLINE void addScaled(double factor, const double* from, std::size_t count, double* to) {
+  for (std::size_t i = 0; i < count; ++i) to[i] += factor * from[i];
+}
+
+// What the tangents add at the coupled nodes' displacements in island.affine.
+SPRINGTOWER_INLINE void applyTangents(ImplicitIsland& island, double* force) {
+  const std::size_t count = kNodeSize * island.coupled.size();
+  for (std::size_t c = 0; c < island.coupled.size(); ++c) {
+    std::copy_n(island.affine.data() + kNodeSize * static_cast<std::size_t>(island.coupled[c]), kNodeSize,
+                island.coupledMotion.data() + kNodeSize * c);
+  }
+  std::fill_n(force, count, 0.0);
+  addTangentForces(island.tangents, {island.coupledMotion.data(), count}, {force, count});
+}
+
+// Turns column j of the Hessenberg matrix into one of a triangle (Givens), and the right-hand side with it.
+struct LeastSquares {
+  double column[kMostDirections][kMostDirections + 1] = {};
+  double cosine[kMostDirections] = {};
+  double sine[kMostDirections] = {};
+  double right[kMostDirections + 1] = {};
+
+  void turn(std::size_t j) {
+    double* h = column[j];
+    for (std::size_t k = 0; k < j; ++k) {
+      const double turned = cosine[k] * h[k] + sine[k] * h[k + 1];
+      h[k + 1] = cosine[k] * h[k + 1] - sine[k] * h[k];
+      h[k] = turned;
+    }
+    const double length = std::hypot(h[j], h[j + 1]);
+    cosine[j] = h[j] / length;
+    sine[j] = h[j + 1] / length;
+    h[j] = length;
+    right[j + 1] = -sine[j] * right[j];
+    right[j] *= cosine[j];
+  }
+  void backSubstitute(std::size_t count) {
+    for (std::size_t j = count; j-- > 0;) {
+      right[j] /= column[j][j];
+      for (std::size_t k = 0; k < j; ++k) right[k] -= column[j][k] * right[j];
+    }
+  }
+};
+
+}  // namespace
+
+bool solveCoupled(IslandStep& step, ImplicitIsland& island, double allowed_n) {
+  const std::size_t all = island.affine.size();
+  const double allowed = island.tangents.empty()
+                             ? 0.0
+                             : std::max(allowed_n, kLeftOver * std::sqrt(dot(island.affine.data(), island.affine.data(), all)));
+  solve(step, island);
+  if (island.tangents.empty()) return true;
+  findCoupledNodes(island);
+  const std::size_t count = kNodeSize * island.coupled.size();
+  island.coupledMotion.resize(count);
+  island.coupledForce.resize((kMostDirections + 1) * count);
+  island.correction.resize((kMostDirections + 1) * all);
+  const auto force = [&](std::size_t j) { return island.coupledForce.data() + j * count; };
+  const auto correction = [&](std::size_t j) { return island.correction.data() + j * all; };
+
+  LeastSquares squares;
+  std::copy(island.affine.begin(), island.affine.end(), correction(kMostDirections));
+  applyTangents(island, force(0));
+  squares.right[0] = std::sqrt(dot(force(0), force(0), count));
+  if (!(squares.right[0] > allowed)) return true;
+  for (std::size_t i = 0; i < count; ++i) force(0)[i] /= squares.right[0];
+
+  std::size_t used = 0;
+  while (used < kMostDirections) {
+    const std::size_t j = used++;
+    std::fill(island.affine.begin(), island.affine.end(), 0.0);
+    for (std::size_t c = 0; c < island.coupled.size(); ++c)
+      std::copy_n(force(j) + kNodeSize * c, kNodeSize,
+                  island.affine.data() + kNodeSize * static_cast<std::size_t>(island.coupled[c]));
+    solve(step, island);
+    std::copy(island.affine.begin(), island.affine.end(), correction(j));
+    double* next = force(j + 1);
+    applyTangents(island, next);
+    for (std::size_t i = 0; i < count; ++i) next[i] = force(j)[i] - next[i];
+    for (std::size_t k = 0; k <= j; ++k) {
+      squares.column[j][k] = dot(next, force(k), count);
+      addScaled(-squares.column[j][k], force(k), count, next);
+    }
+    const double length = std::sqrt(dot(next, next, count));
+    squares.column[j][j + 1] = length;
+    squares.turn(j);
+    if (!(std::abs(squares.right[j + 1]) > allowed) || !(length > 0.0)) break;
+    for (std::size_t i = 0; i < count; ++i) next[i] /= length;
+  }
+  const bool reached = !(std::abs(squares.right[used]) > allowed);
+  squares.backSubstitute(used);
+  std::copy_n(correction(kMostDirections), all, island.affine.data());
+  for (std::size_t j = 0; j < used; ++j) addScaled(squares.right[j], correction(j), all, island.affine.data());
+  return reached;
+}
+
+}  // namespace springtower

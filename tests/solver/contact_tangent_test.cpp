@@ -1,0 +1,201 @@
+// What implicit steps know of contacts beyond their symmetric factors, against the forces themselves and a dense solution.
+
+#include "solver/contact_tangent.h"
+
+#include "core/scene.h"
+#include "solver/coupled_solve.h"
+#include "solver/forces_now.h"
+#include "solver/implicit.h"
+#include "solver/implicit_island.h"
+#include "solver/island_step.h"
+#include "solver/simulation.h"
+#include "tests/support/block_scenes.h"
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <gtest/gtest.h>
+#include <random>
+#include <vector>
+
+namespace springtower {
+namespace {
+
+constexpr std::size_t kDrawn = 4;  // middle block of the middle row
+
+// Three rows, the middle block of the second drawn with half more than friction holds, until it slides between its neighbours.
+struct DrawnBlock {
+  DrawnBlock() {
+    step.drift_s = 0.25 * simulation.scene.settings.frame_s;
+    effective_s = endShare(Method::implicit) * step.drift_s;
+    evaluateForces(step, simulation.state, simulation.engine->stepVelocity, step.drift_s, Memory::trial);
+    island().moved = true;
+  }
+
+  static Scene scene() {
+    Scene scene = towerScene(3);
+    scene.settings.sleep = Sleep::off;
+    scene.settings.method = Method::implicit;
+    const BlockSpec& drawn = scene.blocks[kDrawn];
+    const double held_n = 3.0 * scene.staticFriction * drawn.mass * kStandardGravity_m_s2;
+    scene.forces.push_back({static_cast<int>(kDrawn), -1, 1.5 * held_n * (drawn.orientation * Vec3::UnitX()), 0.5, 1.0});
+    return scene;
+  }
+
+  static Simulation sliding() {
+    Simulation simulation(scene());
+    stepFor(simulation, 0.55);
+    return simulation;
+  }
+
+  ImplicitIsland& island() { return simulation.engine->implicitIslands[0]; }
+
+  // Moves the step's end by displacements [node][12], and finds what contacts put on the blocks there, [node][12].
+  std::vector<double> contactForcesAt(const std::vector<double>& displacement) {
+    Simulation& s = simulation;
+    const auto place = s.state;
+    const CornerArray carried = s.engine->stepVelocity;
+    for (const std::int32_t block : step.blocks) {
+      const auto b = static_cast<std::size_t>(block);
+      const double* d = displacement.data() + kNodeSize * static_cast<std::size_t>(s.engine->nodeOf[b]);
+      for (std::size_t a = 0; a < 3; ++a) {
+        for (std::size_t c = 0; c < kCorners; ++c) {
+          double moved = d[a];
+          for (std::size_t side = 0; side < 3; ++side) moved += 0.5 * cornerSide(c, side) * d[3 + 3 * side + a];
+          s.state.position.values(a, b)[c] += moved;
+          s.state.velocity.values(a, b)[c] += moved / effective_s;
+          s.engine->stepVelocity.values(a, b)[c] += moved / step.drift_s;
+        }
+      }
+    }
+    evaluateForces(step, s.state, s.engine->stepVelocity, step.drift_s, Memory::trial);
+    std::vector<double> force(displacement.size());
+    for (const std::int32_t block : step.blocks) {
+      const auto b = static_cast<std::size_t>(block);
+      const AffineField& on = s.engine->contactForce[b];
+      double* f = force.data() + kNodeSize * static_cast<std::size_t>(s.engine->nodeOf[b]);
+      for (std::size_t a = 0; a < 3; ++a) {
+        f[a] = on.centre[a];
+        for (std::size_t side = 0; side < 3; ++side) f[3 + 3 * side + a] = on.side[side][a];
+      }
+    }
+    s.state = place;
+    s.engine->stepVelocity = carried;
+    return force;
+  }
+
+  Simulation simulation = sliding();
+  Counters counters;
+  StageTimes times;
+  IslandStep step{
+      simulation, *simulation.engine,    simulation.engine->islands.island(0), simulation.engine->islandPairs, counters,
+      times,      contactLaw(simulation)};
+  double effective_s = 0.0;
+};
+
+std::vector<double> randomVector(std::size_t count, double size) {
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> number(-size, size);
+  std::vector<double> values(count);
+  for (double& value : values) value = number(random);
+  return values;
+}
+
+// With factors that know of no contact the tangents are the contacts' whole derivative, dashpots and friction that follows the
+// normal force included. Central differences over a nanometre, of a micrometre or more that contacts are deep: within a part in
+// a thousand of the largest force, which friction alone, at 0.4 of the normal forces, is far above.
+TEST(ContactTangent, IsTheDerivativeOfTheContactsForces) {
+  DrawnBlock drawn;
+  ImplicitIsland& island = drawn.island();
+  std::size_t sliding = 0;
+  for (std::size_t at = 0; at < island.touching.size(); ++at) {
+    const auto pair = static_cast<std::size_t>(island.touching[at]);
+    sliding += contactMask(drawn.simulation.engine->trial[pair], drawn.simulation.engine->pairs[pair].manifold, true) > 0xFFU;
+  }
+  ASSERT_GE(sliding, 6U) << "the block slides on three and under three";
+  island.mask.assign(island.touching.size(), 0);
+  island.factorTangents.clear();
+  findTangents(drawn.step, island, drawn.effective_s);
+  const std::vector<double> way = randomVector(kNodeSize * drawn.step.blocks.size(), 1e-9);
+  std::vector<double> back(way.size());
+  for (std::size_t i = 0; i < way.size(); ++i) back[i] = -way[i];
+  const std::vector<double> after = drawn.contactForcesAt(way);
+  const std::vector<double> before = drawn.contactForcesAt(back);
+  std::vector<double> told(way.size());
+  addTangentForces(island.tangents, way, told);
+  double largest = 0.0;
+  for (const double force : told) largest = std::max(largest, std::abs(force));
+  for (std::size_t i = 0; i < way.size(); ++i) EXPECT_NEAR(told[i], 0.5 * (after[i] - before[i]), 1e-3 * largest) << "row " << i;
+}
+
+// What the factors know and what the contacts are then differ by what is not symmetric alone.
+TEST(ContactTangent, FactorsLackWhatIsNotSymmetric) {
+  DrawnBlock drawn;
+  ImplicitIsland& island = drawn.island();
+  for (std::size_t at = 0; at < island.touching.size(); ++at) {
+    const auto pair = static_cast<std::size_t>(island.touching[at]);
+    island.mask[at] = contactMask(drawn.simulation.engine->trial[pair], drawn.simulation.engine->pairs[pair].manifold, true);
+  }
+  setJacobians(drawn.step, drawn.effective_s);
+  ASSERT_TRUE(assemble(drawn.step, island, drawn.effective_s));
+  ASSERT_FALSE(island.factorTangents.empty());
+  findTangents(drawn.step, island, drawn.effective_s);
+  const std::size_t count = kNodeSize * drawn.step.blocks.size();
+  const auto size = static_cast<Eigen::Index>(count);
+  Eigen::MatrixXd lacking = Eigen::MatrixXd::Zero(size, size);
+  for (std::size_t i = 0; i < count; ++i) {
+    std::vector<double> unit(count);
+    unit[i] = 1.0;
+    addTangentForces(island.tangents, unit, {lacking.col(static_cast<Eigen::Index>(i)).data(), count});
+  }
+  const double symmetric = (0.5 * (lacking + lacking.transpose())).norm();
+  const double rest = (0.5 * (lacking - lacking.transpose())).norm();
+  EXPECT_GT(rest, 0.0);
+  // s n^T, with s across n, is half symmetric and half not.
+  EXPECT_NEAR(symmetric, rest, 0.01 * rest);
+}
+
+// The solution with tangents against a dense one: forces left over are within what was allowed, and ten times as much without.
+TEST(CoupledSolve, SolvesWithTangents) {
+  DrawnBlock drawn;
+  ImplicitIsland& island = drawn.island();
+  for (std::size_t at = 0; at < island.touching.size(); ++at) {
+    const auto pair = static_cast<std::size_t>(island.touching[at]);
+    island.mask[at] = contactMask(drawn.simulation.engine->trial[pair], drawn.simulation.engine->pairs[pair].manifold, true);
+  }
+  setJacobians(drawn.step, drawn.effective_s);
+  ASSERT_TRUE(assemble(drawn.step, island, drawn.effective_s));
+  findTangents(drawn.step, island, drawn.effective_s);
+  const std::size_t count = kNodeSize * drawn.step.blocks.size();
+  const auto size = static_cast<Eigen::Index>(count);
+  const auto solved = [&](const std::vector<double>& force, double allowed_n) {
+    island.affine = force;
+    solveCoupled(drawn.step, island, allowed_n);
+    return Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(island.affine.data(), size));
+  };
+  // A^-1 by columns, and A - T with it.
+  Eigen::MatrixXd inverse(size, size);
+  Eigen::MatrixXd tangent = Eigen::MatrixXd::Zero(size, size);
+  for (std::size_t i = 0; i < count; ++i) {
+    std::vector<double> unit(count);
+    unit[i] = 1.0;
+    addTangentForces(island.tangents, unit, {tangent.col(static_cast<Eigen::Index>(i)).data(), count});
+    island.affine = unit;
+    solve(drawn.step, island);
+    inverse.col(static_cast<Eigen::Index>(i)) = Eigen::Map<const Eigen::VectorXd>(island.affine.data(), size);
+  }
+  const std::vector<double> force = randomVector(count, 1e-2);
+  const Eigen::VectorXd right = Eigen::Map<const Eigen::VectorXd>(force.data(), size);
+  const auto left = [&](const Eigen::VectorXd& moved) {  // with A d as the factors have it
+    const Eigen::VectorXd by = inverse.partialPivLu().solve(moved);
+    return (right - by + tangent * moved).norm();
+  };
+  constexpr double kAllowed_n = 1e-4;
+  const auto kept = island.tangents;
+  const double without = left(inverse * right);
+  EXPECT_GT(without, 10.0 * kAllowed_n);
+  island.tangents = kept;
+  EXPECT_LT(left(solved(force, kAllowed_n)), 2.0 * kAllowed_n);  // in float
+}
+
+}  // namespace
+}  // namespace springtower
