@@ -16,6 +16,7 @@ constexpr double kCollapseTilt_deg = 14.5;  // a tower of 18 rows topples, but d
 constexpr double kSway_deg = 0.1;
 constexpr double kSway_hz = 1.0;
 constexpr double kProfileHeightsSigma_m = 0.0002;
+constexpr double kProfilePullSpeed_m_s = 0.04;
 constexpr double kPullStart_m = 0.001;  // from here on the block slides
 constexpr double kPullLongest_s = 5.0;
 constexpr double kAsleepLongest_s = 60.0;

@@ -19,8 +19,6 @@ struct SteadyPull {
   double held_n = 0.0;  ///< what the last frames have shown to be needed, N
 };
 
-inline constexpr double kProfilePullSpeed_m_s = 0.04;  ///< at which the hand draws
-
 /// Sets the hand's force in the scene for the coming frame.
 void pull(SteadyPull& hand, Simulation& simulation);
 

@@ -13,7 +13,7 @@ namespace {
 // Directions tried for one correction; a drawn block takes two to four.
 constexpr std::size_t kMostDirections = 6;
 // What may be left over of the forces asked for: the next iteration looks at them anew.
-constexpr double kLeftOver = 0.01;
+constexpr double kLeftOver = 0.002;
 
 // The tangents touch few nodes, and outside these the forces left over are none: the directions are kept for these nodes alone.
 void findCoupledNodes(ImplicitIsland& island) {
@@ -96,6 +96,7 @@ bool solveCoupled(IslandStep& step, ImplicitIsland& island, double allowed_n) {
   const double allowed = island.tangents.empty()
                              ? 0.0
                              : std::max(allowed_n, kLeftOver * std::sqrt(dot(island.affine.data(), island.affine.data(), all)));
+  island.directions = 0;
   solve(step, island);
   if (island.tangents.empty()) return true;
   findCoupledNodes(island);
@@ -136,6 +137,7 @@ bool solveCoupled(IslandStep& step, ImplicitIsland& island, double allowed_n) {
     for (std::size_t i = 0; i < count; ++i) next[i] /= length;
   }
   const bool reached = !(std::abs(squares.right[used]) > allowed);
+  island.directions = static_cast<int>(used);
   squares.backSubstitute(used);
   std::copy_n(correction(kMostDirections), all, island.affine.data());
   for (std::size_t j = 0; j < used; ++j) addScaled(squares.right[j], correction(j), all, island.affine.data());

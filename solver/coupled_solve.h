@@ -8,7 +8,7 @@ struct ImplicitIsland;
 /// Solves for island.affine in place as `solve` does, but for the contacts as island.tangents has them: where these differ from
 /// what the factors know, and where friction follows the normal force, which a symmetric matrix cannot hold. GMRES (Saad &
 /// Schultz 1986), with the factors as preconditioner from the right, until the forces left over are within `allowed_n` (root of
-/// the sum of squares, N) or a hundredth of those asked for. Returns false where a few directions do not reach that: the contacts
+/// the sum of squares, N) or 2/1000 of those asked for. Returns false where a few directions do not reach that: the contacts
 /// are too far from what the factors know; island.affine is then the best of them. Precondition: island.factorised.
 bool solveCoupled(IslandStep& step, ImplicitIsland& island, double allowed_n);
 

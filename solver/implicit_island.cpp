@@ -245,6 +245,7 @@ bool assemble(IslandStep& step, ImplicitIsland& island, double step_s) {
            island.matrix.diagonal.data() + kNodeMatrix * static_cast<std::size_t>(island.matrix.position[i]));
   }
   island.factorTangents.clear();
+  island.directions = 0;
   for (std::size_t at = 0; at < island.touching.size(); ++at) {
     addManifold(step, island, at, step_s);
     if (island.mask[at] > 0xFFU) addFactorTangents(step, island, at, island.mask[at], step_s, island.factorTangents);

@@ -34,6 +34,7 @@ struct ImplicitIsland {
   bool factorised = false;
   double step_s = 0.0;       ///< the step times the method's factor that the factors are for
   TetherStiffness tether;    ///< the hand's springs that the factors contain
+  int directions = 0;        ///< that the last correction took beside the factors
   bool moved = false;        ///< whether engine.trial holds a state after the step's start
   bool forcesKnown = false;  ///< engine.force holds the forces at the island's present state
   bool forced = false;       ///< and with them those of a user or the hand

@@ -40,6 +40,8 @@ constexpr double kOvershoot = 0.5;
 constexpr int kMostShares = 6;
 // A residual that shrinks by less asks for new factors: friction has turned.
 constexpr double kSlow = 0.3;
+// Directions beside the factors from which on new ones cost less.
+constexpr int kOldDirections = 4;
 // A residual from which a step begins where the blocks are carried, not where they are: something moves.
 constexpr double kPredicted = 1.0;
 
@@ -276,7 +278,8 @@ bool solveStep(IslandStep& step, double effective_s, bool carried, int mostConta
   for (int iteration = 0; iteration < most; ++iteration) {
     const ContactsNow now = contactsNow(step, island, effective_s);
     if (now.changed) most = std::min(mostContactIterations, iteration + kMostIterations);
-    const bool stale = slow && (now.changed || now.slides);
+    const bool old = iteration == 0 && island.directions >= kOldDirections;
+    const bool stale = (slow || old) && (now.changed || now.slides);
     const bool renewed = stale || !island.factorised;
     if (renewed && !renewFactors(step, island, effective_s)) break;
     const double before = residual;

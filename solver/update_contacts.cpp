@@ -40,32 +40,39 @@ SPRINGTOWER_INLINE BlockTravel blockTravel(const CornerArray& now, const CornerA
   return {std::sqrt(std::max(std::max(most[0], most[1]), std::max(most[2], most[3]))), sum(deformed)};
 }
 
-}  // namespace
-
-// Adds up the path of each block's fastest corner. A block whose corners move apart by half its least side in one step has
-// diverged: free flight is as fast as it likes, but nothing sound deforms like that. NaN fails every comparison, so what is sound
-// is asked for.
-bool addTravel(IslandStep& step) {
-  Simulation& simulation = step.simulation;
-  bool inside = true;
+// Adds up the path of each block's fastest corner; `inside` tells whether all are in their swept boxes. A block whose corners
+// move apart by half its least side in one step has diverged: free flight is as fast as it likes, but nothing sound deforms like
+// that. NaN fails every comparison, so what is sound is asked for. Returns the first block that has diverged, or -1.
+SPRINGTOWER_KERNEL
+std::int32_t addPaths(IslandStep& step, bool& inside) {
+  inside = true;
   for (const std::int32_t block : step.blocks) {
     const auto b = static_cast<std::size_t>(block);
-    const auto [path, deformed] = blockTravel(simulation.state.position, step.engine.previous, b);
-    const double most = kMostTravelPerStep * simulation.model.dimensions[b].minCoeff();
-    if (!(deformed < static_cast<double>(kCorners) * most * most)) {
-      const double time = step.time_s + step.drift_s;
-      throw DivergenceError(
-          fmt::format("block {} diverged at {:.6f} s: {}", block, time,
-                      std::isfinite(deformed) ? fmt::format("its corners moved apart by {:.3g} m in one step of {:.3g} s",
-                                                            std::sqrt(deformed / static_cast<double>(kCorners)), step.drift_s)
-                                              : std::string("its positions are no longer finite")),
-          block, time);
-    }
+    const auto [path, deformed] = blockTravel(step.simulation.state.position, step.engine.previous, b);
+    const double most = kMostTravelPerStep * step.simulation.model.dimensions[b].minCoeff();
+    if (!(deformed < static_cast<double>(kCorners) * most * most)) return block;
     BlockClock& clock = step.engine.clock[b];
     clock.travel += path;
     if (clock.travel - step.engine.travelAtSweep[b] > step.engine.reach[b]) inside = false;
   }
-  return inside;
+  return -1;
+}
+
+}  // namespace
+
+bool addTravel(IslandStep& step) {
+  bool inside = true;
+  const std::int32_t diverged = addPaths(step, inside);
+  if (diverged < 0) return inside;
+  const double deformed =
+      blockTravel(step.simulation.state.position, step.engine.previous, static_cast<std::size_t>(diverged)).deformed;
+  const double time = step.time_s + step.drift_s;
+  throw DivergenceError(
+      fmt::format("block {} diverged at {:.6f} s: {}", diverged, time,
+                  std::isfinite(deformed) ? fmt::format("its corners moved apart by {:.3g} m in one step of {:.3g} s",
+                                                        std::sqrt(deformed / static_cast<double>(kCorners)), step.drift_s)
+                                          : std::string("its positions are no longer finite")),
+      diverged, time);
 }
 
 namespace {

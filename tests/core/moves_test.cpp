@@ -1,12 +1,10 @@
 #include "core/error.h"
 #include "core/scene.h"
+#include "tests/support/program.h"
 
-#include <filesystem>
-#include <fmt/format.h>
 #include <fstream>
 #include <gmock/gmock.h>
 #include <string>
-#include <unistd.h>
 
 namespace springtower {
 namespace {
@@ -15,11 +13,10 @@ using testing::HasSubstr;
 using testing::ThrowsMessage;
 
 Scene withMoves(const std::string& moves) {
-  const std::string path = testing::TempDir() + fmt::format("springtower_moves_{}.toml", getpid());
+  const ScratchFolder folder;
+  const std::string path = folder.file("moves.toml");
   std::ofstream(path) << "[tower]\nrows = 3\n" << moves;
-  Scene scene = sceneFromToml(path);
-  std::filesystem::remove(path);
-  return scene;
+  return sceneFromToml(path);
 }
 
 const std::string kTake = "[[moves]]\ndo = \"take\"\nrow = 1\nposition = 2\ntowards = \"-y\"\n";
