@@ -33,8 +33,8 @@ PointStiffness pointStiffness(const IslandStep& step, const Manifold& manifold, 
 /// How the forces of up to four points of a pair on upper change with the displacement g of upper against lower at each of them:
 /// isotropic g + n alongNormal (n . g) + s (alongSlip (s . g) + coupling (n . g)), n the normal and s the way of sliding.
 /// Friction follows the normal force by `coupling`; and what slides pushes at another place of the lower block.
-struct ContactTangent {
-  std::int32_t upper = -1;  ///< nodes of the blocks; -1: the floor, or asleep
+struct alignas(sizeof(Lanes)) ContactTangent {  // its AVX2 kernel counts on that; without AVX2 the compiler aligns by half of it
+  std::int32_t upper = -1;                      ///< nodes of the blocks; -1: the floor, or asleep
   std::int32_t lower = -1;
   double normal[3] = {0.0, 0.0, 0.0};
   double dual[3][3] = {};     ///< 1/m, of the lower block
