@@ -92,13 +92,14 @@ struct LeastSquares {
 }  // namespace
 
 bool solveCoupled(IslandStep& step, ImplicitIsland& island, double allowed_n) {
-  const std::size_t all = island.affine.size();
-  const double allowed = island.tangents.empty()
-                             ? 0.0
-                             : std::max(allowed_n, kLeftOver * std::sqrt(dot(island.affine.data(), island.affine.data(), all)));
   island.directions = 0;
+  if (island.tangents.empty()) {
+    solve(step, island);
+    return true;
+  }
+  const std::size_t all = island.affine.size();
+  const double allowed = std::max(allowed_n, kLeftOver * std::sqrt(dot(island.affine.data(), island.affine.data(), all)));
   solve(step, island);
-  if (island.tangents.empty()) return true;
   findCoupledNodes(island);
   const std::size_t count = kNodeSize * island.coupled.size();
   island.coupledMotion.resize(count);

@@ -47,6 +47,30 @@ struct DrawnBlock {
     return simulation;
   }
 
+  ContactMask maskNow(std::size_t at) {
+    const auto pair = static_cast<std::size_t>(island().touching[at]);
+    return contactMask(simulation.engine->trial[pair], simulation.engine->pairs[pair].manifold, true);
+  }
+
+  // New factors for the contacts as they stand.
+  bool factorise() {
+    for (std::size_t at = 0; at < island().touching.size(); ++at) island().mask[at] = maskNow(at);
+    setJacobians(step, effective_s);
+    return assemble(step, island(), effective_s);
+  }
+
+  // The tangents' forces at displacements of one freedom each, by columns.
+  Eigen::MatrixXd tangentMatrix() {
+    const auto size = static_cast<Eigen::Index>(kNodeSize * step.blocks.size());
+    Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(size, size);
+    for (Eigen::Index i = 0; i < size; ++i) {
+      const Eigen::VectorXd unit = Eigen::VectorXd::Unit(size, i);
+      addTangentForces(island().tangents, {unit.data(), static_cast<std::size_t>(size)},
+                       {matrix.col(i).data(), static_cast<std::size_t>(size)});
+    }
+    return matrix;
+  }
+
   ImplicitIsland& island() { return simulation.engine->implicitIslands[0]; }
 
   // Moves the step's end by displacements [node][12], and finds what contacts put on the blocks there, [node][12].
@@ -106,12 +130,9 @@ std::vector<double> randomVector(std::size_t count, double size) {
 TEST(ContactTangent, IsTheDerivativeOfTheContactsForces) {
   DrawnBlock drawn;
   ImplicitIsland& island = drawn.island();
-  std::size_t sliding = 0;
-  for (std::size_t at = 0; at < island.touching.size(); ++at) {
-    const auto pair = static_cast<std::size_t>(island.touching[at]);
-    sliding += contactMask(drawn.simulation.engine->trial[pair], drawn.simulation.engine->pairs[pair].manifold, true) > 0xFFU;
-  }
-  ASSERT_GE(sliding, 6U) << "the block slides on three and under three";
+  int sliding = 0;
+  for (std::size_t at = 0; at < island.touching.size(); ++at) sliding += drawn.maskNow(at) > 0xFFU ? 1 : 0;
+  ASSERT_GE(sliding, 6) << "the block slides on three and under three";
   island.mask.assign(island.touching.size(), 0);
   island.factorTangents.clear();
   findTangents(drawn.step, island, drawn.effective_s);
@@ -131,22 +152,10 @@ TEST(ContactTangent, IsTheDerivativeOfTheContactsForces) {
 TEST(ContactTangent, FactorsLackWhatIsNotSymmetric) {
   DrawnBlock drawn;
   ImplicitIsland& island = drawn.island();
-  for (std::size_t at = 0; at < island.touching.size(); ++at) {
-    const auto pair = static_cast<std::size_t>(island.touching[at]);
-    island.mask[at] = contactMask(drawn.simulation.engine->trial[pair], drawn.simulation.engine->pairs[pair].manifold, true);
-  }
-  setJacobians(drawn.step, drawn.effective_s);
-  ASSERT_TRUE(assemble(drawn.step, island, drawn.effective_s));
+  ASSERT_TRUE(drawn.factorise());
   ASSERT_FALSE(island.factorTangents.empty());
   findTangents(drawn.step, island, drawn.effective_s);
-  const std::size_t count = kNodeSize * drawn.step.blocks.size();
-  const auto size = static_cast<Eigen::Index>(count);
-  Eigen::MatrixXd lacking = Eigen::MatrixXd::Zero(size, size);
-  for (std::size_t i = 0; i < count; ++i) {
-    std::vector<double> unit(count);
-    unit[i] = 1.0;
-    addTangentForces(island.tangents, unit, {lacking.col(static_cast<Eigen::Index>(i)).data(), count});
-  }
+  const Eigen::MatrixXd lacking = drawn.tangentMatrix();
   const double symmetric = (0.5 * (lacking + lacking.transpose())).norm();
   const double rest = (0.5 * (lacking - lacking.transpose())).norm();
   EXPECT_GT(rest, 0.0);
@@ -158,43 +167,27 @@ TEST(ContactTangent, FactorsLackWhatIsNotSymmetric) {
 TEST(CoupledSolve, SolvesWithTangents) {
   DrawnBlock drawn;
   ImplicitIsland& island = drawn.island();
-  for (std::size_t at = 0; at < island.touching.size(); ++at) {
-    const auto pair = static_cast<std::size_t>(island.touching[at]);
-    island.mask[at] = contactMask(drawn.simulation.engine->trial[pair], drawn.simulation.engine->pairs[pair].manifold, true);
-  }
-  setJacobians(drawn.step, drawn.effective_s);
-  ASSERT_TRUE(assemble(drawn.step, island, drawn.effective_s));
+  ASSERT_TRUE(drawn.factorise());
   findTangents(drawn.step, island, drawn.effective_s);
   const std::size_t count = kNodeSize * drawn.step.blocks.size();
   const auto size = static_cast<Eigen::Index>(count);
-  const auto solved = [&](const std::vector<double>& force, double allowed_n) {
-    island.affine = force;
-    solveCoupled(drawn.step, island, allowed_n);
-    return Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(island.affine.data(), size));
-  };
-  // A^-1 by columns, and A - T with it.
-  Eigen::MatrixXd inverse(size, size);
-  Eigen::MatrixXd tangent = Eigen::MatrixXd::Zero(size, size);
-  for (std::size_t i = 0; i < count; ++i) {
-    std::vector<double> unit(count);
-    unit[i] = 1.0;
-    addTangentForces(island.tangents, unit, {tangent.col(static_cast<Eigen::Index>(i)).data(), count});
-    island.affine = unit;
+  const Eigen::MatrixXd tangent = drawn.tangentMatrix();
+  Eigen::MatrixXd inverse(size, size);  // of what the factors are of
+  for (Eigen::Index i = 0; i < size; ++i) {
+    island.affine.assign(count, 0.0);
+    island.affine[static_cast<std::size_t>(i)] = 1.0;
     solve(drawn.step, island);
-    inverse.col(static_cast<Eigen::Index>(i)) = Eigen::Map<const Eigen::VectorXd>(island.affine.data(), size);
+    inverse.col(i) = Eigen::Map<const Eigen::VectorXd>(island.affine.data(), size);
   }
   const std::vector<double> force = randomVector(count, 1e-2);
   const Eigen::VectorXd right = Eigen::Map<const Eigen::VectorXd>(force.data(), size);
-  const auto left = [&](const Eigen::VectorXd& moved) {  // with A d as the factors have it
-    const Eigen::VectorXd by = inverse.partialPivLu().solve(moved);
-    return (right - by + tangent * moved).norm();
-  };
+  const Eigen::PartialPivLU<Eigen::MatrixXd> matrix(inverse);
+  const auto left = [&](const Eigen::VectorXd& moved) { return (right - matrix.solve(moved) + tangent * moved).norm(); };
   constexpr double kAllowed_n = 1e-4;
-  const auto kept = island.tangents;
-  const double without = left(inverse * right);
-  EXPECT_GT(without, 10.0 * kAllowed_n);
-  island.tangents = kept;
-  EXPECT_LT(left(solved(force, kAllowed_n)), 2.0 * kAllowed_n);  // in float
+  EXPECT_GT(left(inverse * right), 10.0 * kAllowed_n);
+  island.affine = force;
+  EXPECT_TRUE(solveCoupled(drawn.step, island, kAllowed_n));
+  EXPECT_LT(left(Eigen::Map<const Eigen::VectorXd>(island.affine.data(), size)), 2.0 * kAllowed_n);  // in float
 }
 
 // Sets a force that draws a block steadily: what it took so far, and half of what would mend its speed within a frame.
