@@ -14,6 +14,9 @@ inline constexpr std::size_t kManifoldPoints = 8;  // two rectangles overlap in 
 /// What a pair of blocks (or a block and the floor) is to one another.
 enum class Touch : std::uint8_t { apart, face, edge };
 
+/// `live` of a point that touches and does not push: it lifts faster than its spring follows.
+inline constexpr double kUnpressed = 0.5;
+
 /// What the points of a manifold remember from step to step, structure of arrays, so that four points fill one SIMD register.
 struct PointMemory {
   alignas(32) std::array<double, kManifoldPoints> stretchX{};  ///< friction anchor: elastic tangential displacement of upper, m
@@ -22,7 +25,8 @@ struct PointMemory {
   alignas(32) std::array<double, kManifoldPoints> relaxed{};  ///< depth that the viscoelastic branch has forgotten, m
   alignas(32) std::array<double, kManifoldPoints> offset{};   ///< depth at which the point pushes nothing yet, m
   alignas(32) std::array<double, kManifoldPoints> scale{};    ///< its stiffness over the resting one, >= 1 after an impact
-  alignas(32) std::array<double, kManifoldPoints> live{};     ///< 1 where it touches, 0 where not (a double, to serve as a lane)
+  alignas(32) std::array<double, kManifoldPoints> live{};     ///< 1 where it pushes, kUnpressed where it only touches, else 0 (a
+                                                              ///< double, to serve as a lane)
   alignas(32) std::array<double, kManifoldPoints> sliding{};  ///< 0 where it sticks; else the share of friction left by the cone
 };
 

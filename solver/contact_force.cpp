@@ -92,7 +92,6 @@ SPRINGTOWER_INLINE void pointLaw(const LawStep& s, const Lanes& depth, const Lan
   p.scale = known ? 1.0 + (p.scale - 1.0) * s.scaleKeep : impact;
   const Lanes lower = p.offset < depth ? p.offset : depth;
   p.offset = known ? lower : depth * s.step.bornOffset;
-  p.live = touching ? one : zero;
 
   const Lanes elastic = depth - p.offset;
   const Lanes relaxed = p.relaxed + (elastic - p.relaxed) * s.relaxGain;
@@ -111,6 +110,7 @@ SPRINGTOWER_INLINE void pointLaw(const LawStep& s, const Lanes& depth, const Lan
     const Lanes most = (closing + back) * (s.pointMass / s.step.kick_s);
     push = (p.scale > one) & (push > most) ? (most > zero ? most : zero) : push;
   }
+  p.live = touching ? (push > zero ? one : zero + kUnpressed) : zero;
   p.normalForce = push;
 
   // Friction: carry the stretch along, keep it tangential, and bound it by the cone.

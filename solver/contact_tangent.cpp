@@ -83,11 +83,15 @@ SPRINGTOWER_INLINE void addMotion(const double* d, const Lanes (&weight)[3], dou
 
 }  // namespace
 
-ContactMask contactMask(const PointMemory& trial, const Manifold& manifold, bool moved) {
-  const PointMemory& slid = moved ? trial : manifold;
+ContactMask contactMask(const IslandStep& step, const ImplicitIsland& island, std::size_t at) {
+  const auto pair = static_cast<std::size_t>(island.touching[at]);
+  const Manifold& manifold = step.engine.pairs[pair].manifold;
+  const PointMemory& trial = step.engine.trial[pair];
+  const PointMemory& slid = island.moved ? trial : manifold;
+  const double least = island.near ? 1.0 : kUnpressed;
   unsigned mask = 0;
   for (std::size_t i = 0; i < static_cast<std::size_t>(manifold.count); ++i) {
-    if (trial.live[i] == 0.0) continue;
+    if (trial.live[i] < least) continue;
     mask |= 1U << i;
     if (slid.sliding[i] != 0.0) mask |= 0x100U << i;
   }
@@ -120,8 +124,7 @@ void addFactorTangents(const IslandStep& step, const ImplicitIsland& island, std
 void findTangents(const IslandStep& step, ImplicitIsland& island, double step_s) {
   island.tangents = island.factorTangents;
   for (std::size_t at = 0; at < island.touching.size(); ++at) {
-    const auto pair = static_cast<std::size_t>(island.touching[at]);
-    const ContactMask mask = contactMask(step.engine.trial[pair], step.engine.pairs[pair].manifold, island.moved);
+    const ContactMask mask = contactMask(step, island, at);
     const ContactMask known = island.mask[at];
     if (mask == known && mask <= 0xFFU) continue;
     if (known <= 0xFFU) addPair(step, island, at, known, Part::factors, step_s, island.tangents);

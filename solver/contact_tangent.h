@@ -16,8 +16,9 @@ struct ImplicitIsland;
 /// Which points of a pair's manifold push (low byte) and which of them slide (high byte).
 using ContactMask = std::uint16_t;
 
-/// How a contact stands after an evaluation of forces. Until the blocks have `moved` what slides is what slid before.
-ContactMask contactMask(const PointMemory& trial, const Manifold& manifold, bool moved);
+/// How a pair (position in island.touching) stands after an evaluation of forces. Until the blocks have `moved` what slides is
+/// what slid before; and unless the iteration is `near` what touches is taken to push.
+ContactMask contactMask(const IslandStep& step, const ImplicitIsland& island, std::size_t at);
 
 /// How a point that pushes resists displacements, without what is not symmetric.
 struct PointStiffness {

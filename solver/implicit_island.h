@@ -36,6 +36,7 @@ struct ImplicitIsland {
   TetherStiffness tether;    ///< the hand's springs that the factors contain
   int directions = 0;        ///< that the last correction took beside the factors
   bool moved = false;        ///< whether engine.trial holds a state after the step's start
+  bool near = false;         ///< whether the iteration is so near the solution that contacts may be taken as they stand
   bool forcesKnown = false;  ///< engine.force holds the forces at the island's present state
   bool forced = false;       ///< and with them those of a user or the hand
   BlockCholesky matrix;

@@ -54,8 +54,7 @@ struct ContactsNow {
 ContactsNow contactsNow(const IslandStep& step, const ImplicitIsland& island, double effective_s) {
   ContactsNow now;
   for (std::size_t i = 0; i < island.touching.size(); ++i) {
-    const auto at = static_cast<std::size_t>(island.touching[i]);
-    const ContactMask mask = contactMask(step.engine.trial[at], step.engine.pairs[at].manifold, island.moved);
+    const ContactMask mask = contactMask(step, island, i);
     now.changed = now.changed || mask != island.mask[i];
     now.slides = now.slides || mask > 0xFFU;
   }
@@ -65,10 +64,7 @@ ContactsNow contactsNow(const IslandStep& step, const ImplicitIsland& island, do
 
 // New factors for contacts as they stand now.
 bool renewFactors(IslandStep& step, ImplicitIsland& island, double effective_s) {
-  for (std::size_t i = 0; i < island.touching.size(); ++i) {
-    const auto at = static_cast<std::size_t>(island.touching[i]);
-    island.mask[i] = contactMask(step.engine.trial[at], step.engine.pairs[at].manifold, island.moved);
-  }
+  for (std::size_t i = 0; i < island.touching.size(); ++i) island.mask[i] = contactMask(step, island, i);
   return assemble(step, island, effective_s);
 }
 
@@ -276,6 +272,7 @@ bool solveStep(IslandStep& step, double effective_s, bool carried, int mostConta
   int most = island.tooDense ? 0 : kMostIterations;
   bool slow = false;
   for (int iteration = 0; iteration < most; ++iteration) {
+    island.near = residual < near;
     const ContactsNow now = contactsNow(step, island, effective_s);
     if (now.changed) most = std::min(mostContactIterations, iteration + kMostIterations);
     const bool old = iteration == 0 && island.directions >= kOldDirections;
@@ -283,7 +280,7 @@ bool solveStep(IslandStep& step, double effective_s, bool carried, int mostConta
     const bool renewed = stale || !island.factorised;
     if (renewed && !renewFactors(step, island, effective_s)) break;
     const double before = residual;
-    const bool differs = residual < near && (now.changed || now.slides || !island.factorTangents.empty());
+    const bool differs = island.near && (now.changed || now.slides || !island.factorTangents.empty());
     if (!findCorrection(step, island, effective_s, kSolved * kResidual, differs) && !renewed) {
       if (!renewFactors(step, island, effective_s)) break;
       findCorrection(step, island, effective_s, kSolved * kResidual, differs);

@@ -84,7 +84,8 @@ bool slides(const Manifold& manifold) {
 
 // Whether blocks touch at a corner or along a line only, where one rolls on the other.
 bool rolls(const Manifold& manifold) {
-  const auto live = std::count(manifold.live.begin(), manifold.live.begin() + manifold.count, 1.0);
+  const auto live =
+      std::count_if(manifold.live.begin(), manifold.live.begin() + manifold.count, [](double point) { return point != 0.0; });
   return live == 1 || live == 2;
 }
 
