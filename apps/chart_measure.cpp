@@ -2,7 +2,6 @@
 
 #include "apps/chart_peers.h"
 #include "apps/chart_scene.h"
-#include "apps/profile_scene.h"
 #include "core/error.h"
 #include "core/processor_time.h"
 #include "solver/balance.h"

@@ -9,6 +9,8 @@ namespace springtower {
 namespace {
 
 constexpr double kChartHeightsSigma_m = 0.0002;
+constexpr double kChartPullSpeed_m_s = 0.04;
+constexpr double kStrongestPull_n = 100.0;
 constexpr double kDrop_m = 0.02;
 constexpr int kDropRows = 3;
 // The collapsing tower leans by a little more than it can stand; a short one would slide before.
@@ -193,6 +195,19 @@ int pulledBlock(ChartScene scene, const Scene& blocks, int rows) {
   const auto found = std::find_if(blocks.blocks.begin(), blocks.blocks.end(),
                                   [&](const BlockSpec& block) { return block.row == rows / 2 && block.position == 2; });
   return static_cast<int>(found - blocks.blocks.begin());
+}
+
+void pull(SteadyPull& hand, Simulation& simulation) {
+  // Gains per frame, as shares of what would give the block the missing speed within one frame.
+  constexpr double kProportional = 0.5;
+  constexpr double kIntegral = 0.2;
+  const auto block = static_cast<std::size_t>(hand.block);
+  const double missing = kChartPullSpeed_m_s - centre(simulation.state.velocity, block).dot(hand.direction);
+  const double unit = simulation.model.mass[block] / simulation.scene.settings.frame_s * missing;
+  hand.held_n = std::clamp(hand.held_n + kIntegral * unit, 0.0, kStrongestPull_n);
+  const double force_n = std::clamp(hand.held_n + kProportional * unit, 0.0, kStrongestPull_n);
+  const double now = simulation.time_s;
+  simulation.scene.forces = {{hand.block, -1, force_n * hand.direction, now, now + 1.5 * simulation.scene.settings.frame_s}};
 }
 
 }  // namespace springtower

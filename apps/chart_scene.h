@@ -2,6 +2,7 @@
 
 #include "apps/chart.h"
 #include "core/scene.h"
+#include "solver/simulation.h"
 
 #include <vector>
 
@@ -32,5 +33,16 @@ std::optional<bool> expectedToStand(ChartScene scene);
 
 /// The block that is pulled in scene `pull`: the middle one of the middle row. -1 in other scenes.
 int pulledBlock(ChartScene scene, const Scene& blocks, int rows);
+
+/// A hand that pulls one block, as far as a force that holds for a frame can, at a steady speed (proportional and integral
+/// control); engines that know no hand of ours (solver/grip) know a force.
+struct SteadyPull {
+  int block = -1;  ///< -1: nobody pulls
+  Vec3 direction = Vec3::UnitX();
+  double held_n = 0.0;  ///< what the last frames have shown to be needed, N
+};
+
+/// Sets the hand's force in the scene for the coming frame.
+void pull(SteadyPull& hand, Simulation& simulation);
 
 }  // namespace springtower

@@ -16,7 +16,8 @@ constexpr double kCollapseTilt_deg = 14.5;  // a tower of 18 rows topples, but d
 constexpr double kSway_deg = 0.1;
 constexpr double kSway_hz = 1.0;
 constexpr double kProfileHeightsSigma_m = 0.0002;
-constexpr double kProfilePullSpeed_m_s = 0.04;
+constexpr double kPullSpeed_m_s = 0.04;
+constexpr double kSettingOut_s = 0.2;   // in which the hand comes to its speed, so that it does not start the tower swaying
 constexpr double kPullStart_m = 0.001;  // from here on the block slides
 constexpr double kPullLongest_s = 5.0;
 constexpr double kAsleepLongest_s = 60.0;
@@ -94,18 +95,17 @@ void layPile(int rows, Scene& scene) {
 // Pulls until the block slides, so that every timed frame has a moving block.
 void startPulling(PreparedScene& scene, int rows, const Deadline& deadline) {
   Simulation& simulation = scene.simulation;
-  scene.hand.block = pulledBlock(simulation.scene, rows);
-  const auto block = static_cast<std::size_t>(scene.hand.block);
-  const BlockSpec& spec = simulation.scene.blocks[block];
-  scene.hand.direction = spec.orientation * Vec3::UnitX();
+  const auto block = static_cast<std::size_t>(pulledBlock(simulation.scene, rows));
+  const Vec3 direction = simulation.scene.blocks[block].orientation * Vec3::UnitX();
+  scene.hand = drawingFrom(simulation, blockId(block), direction, 0.0, kStrongest_n);
+  scene.setOut_s = simulation.time_s;
   scene.leftOut.assign(simulation.scene.blocks.size(), 0);
   scene.leftOut[block] = 1;
   const Vec3 start = centre(simulation.state.position, block);
-  const double begin_s = simulation.time_s;
-  while ((centre(simulation.state.position, block) - start).dot(scene.hand.direction) < kPullStart_m) {
-    if (deadline.passed() || simulation.time_s > begin_s + kPullLongest_s) {
+  while ((centre(simulation.state.position, block) - start).dot(direction) < kPullStart_m) {
+    if (deadline.passed() || simulation.time_s > scene.setOut_s + kPullLongest_s) {
       scene.failure = fmt::format("the block does not slide yet after {:.2f} s of pulling, now with {:.2f} N",
-                                  simulation.time_s - begin_s, scene.hand.held_n);
+                                  simulation.time_s - scene.setOut_s, gripForce(simulation).force.norm());
       return;
     }
     scene.step();
@@ -114,17 +114,13 @@ void startPulling(PreparedScene& scene, int rows, const Deadline& deadline) {
 
 }  // namespace
 
-void pull(SteadyPull& hand, Simulation& simulation) {
-  // Gains per frame, as shares of what would give the block the missing speed within one frame.
-  constexpr double kProportional = 0.5;
-  constexpr double kIntegral = 0.2;
-  const auto block = static_cast<std::size_t>(hand.block);
-  const double missing = kProfilePullSpeed_m_s - centre(simulation.state.velocity, block).dot(hand.direction);
-  const double unit = simulation.model.mass[block] / simulation.scene.settings.frame_s * missing;
-  hand.held_n = std::clamp(hand.held_n + kIntegral * unit, 0.0, kStrongest_n);
-  const double force_n = std::clamp(hand.held_n + kProportional * unit, 0.0, kStrongest_n);
-  const double now = simulation.time_s;
-  simulation.scene.forces = {{hand.block, -1, force_n * hand.direction, now, now + 1.5 * simulation.scene.settings.frame_s}};
+void PreparedScene::step() {
+  const BlockId held = hand.hand.block;
+  if (held != kFloor) {
+    hand.speed_m_s = kPullSpeed_m_s * std::min(1.0, (simulation.time_s - setOut_s) / kSettingOut_s);
+    drawOn(hand, contactForcesOn(simulation, held), simulation);
+  }
+  stepFrame(simulation);
 }
 
 Scene sceneOf(const ProfileCase& what) {

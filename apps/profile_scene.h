@@ -2,6 +2,7 @@
 
 #include "apps/profile.h"
 #include "core/scene.h"
+#include "solver/grip.h"
 #include "solver/simulation.h"
 
 #include <cstdint>
@@ -11,17 +12,6 @@
 
 namespace springtower {
 
-/// A hand that pulls one block at a steady speed: a force on its centre, set before each frame from how fast the block moves
-/// (proportional and integral control).
-struct SteadyPull {
-  int block = -1;  ///< -1: nobody pulls
-  Vec3 direction = Vec3::UnitX();
-  double held_n = 0.0;  ///< what the last frames have shown to be needed, N
-};
-
-/// Sets the hand's force in the scene for the coming frame.
-void pull(SteadyPull& hand, Simulation& simulation);
-
 /// The scene of a case. Throws InputError for a tower that is not allowed.
 Scene sceneOf(const ProfileCase& what);
 
@@ -30,9 +20,10 @@ struct PreparedScene {
   explicit PreparedScene(const ProfileCase& what) : simulation(sceneOf(what)) {}
 
   Simulation simulation;
-  SteadyPull hand;
+  Draw hand;              ///< that pulls a block; it holds none in other scenes
+  double setOut_s = 0.0;  ///< when it set out
   std::shared_ptr<const Snapshot> snapshot;
-  SteadyPull handKept;                ///< the hand of the snapshot
+  Draw handKept;                      ///< the hand of the snapshot
   std::vector<std::uint8_t> leftOut;  ///< 1 for blocks that need not stand: the pulled one, a pile's; [blocks] or empty
   std::string failure;                ///< why the scene does not come to what is to be timed; empty when it does
 
@@ -42,10 +33,7 @@ struct PreparedScene {
     hand = handKept;
   }
   /// One frame, the hand included.
-  void step() {
-    if (hand.block >= 0) pull(hand, simulation);
-    stepFrame(simulation);
-  }
+  void step();
 };
 
 /// Runs a new scene up to what is to be timed and keeps its state: settles it, starts to pull, or lets it fall asleep. Divergence

@@ -1,5 +1,4 @@
 #include "apps/forces_report.h"
-#include "apps/profile_scene.h"
 #include "apps/validate.h"
 #include "solver/run.h"
 #include "solver/statics.h"

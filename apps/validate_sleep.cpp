@@ -39,9 +39,7 @@ struct SleepPull {
 };
 
 bool touchesAnything(const Simulation& simulation, BlockId block) {
-  const std::vector<ContactForce> forces = contactForces(simulation);
-  return std::any_of(forces.begin(), forces.end(),
-                     [&](const ContactForce& force) { return force.upper == block || force.lower == block; });
+  return !contactForcesOn(simulation, block).empty();
 }
 
 void drawOut(SleepPull& what) {
@@ -58,7 +56,7 @@ void drawOut(SleepPull& what) {
   const Vec3 before = centre(simulation.state.position, block);
   const double begin_s = simulation.time_s;
   while (!what.freed && simulation.time_s < begin_s + kLongestPull_s) {
-    drawOn(draw, contactForces(simulation), simulation);
+    drawOn(draw, contactForcesOn(simulation, blockId(block)), simulation);
     stepFrame(simulation);
     const double moved = (centre(simulation.state.position, block) - before).dot(direction);
     if (moved < kSlides_m) continue;
@@ -69,7 +67,7 @@ void drawOut(SleepPull& what) {
   draw.hand.velocity = Vec3::Zero();
   draw.hand.line = Vec3::Zero();
   while (what.freed && simulation.time_s < end_s) {
-    hold(draw.hand, contactForces(simulation), draw.grip, simulation);
+    hold(draw.hand, contactForcesOn(simulation, blockId(block)), draw.grip, simulation);
     stepFrame(simulation);
   }
   what.stands = standing(simulation.model, start, simulation.state.position, leftOut).stands;

@@ -62,6 +62,20 @@ double energyOf(const ManifoldNow& now, const ContactLaw& law) {
   return energy;
 }
 
+// Appends what the points of a manifold that push do.
+void addContactForces(const Simulation& simulation, const Manifold& m, std::vector<ContactForce>& forces) {
+  if (m.touch == Touch::apart) return;
+  const ManifoldNow now(simulation, m);
+  const PointForces& points = now.points;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(m.count); ++i) {
+    if (points.normal[i] <= 0.0) continue;
+    forces.push_back({static_cast<BlockId>(m.upper), static_cast<BlockId>(m.lower), points.place[i], points.lowerPlace[i],
+                      points.direction, points.normal[i],
+                      Vec3(points.friction[i][0], points.friction[i][1], points.friction[i][2]), points.depth[i],
+                      now.manifold.sliding[i] != 0.0});
+  }
+}
+
 }  // namespace
 
 ContactLaw contactLaw(const Simulation& simulation) {
@@ -102,18 +116,15 @@ Push pushOnUpper(const Simulation& simulation, const Manifold& manifold) {
 
 std::vector<ContactForce> contactForces(const Simulation& simulation) {
   std::vector<ContactForce> forces;
+  for (const NearPair& pair : simulation.engine->pairs) addContactForces(simulation, pair.manifold, forces);
+  return forces;
+}
+
+std::vector<ContactForce> contactForcesOn(const Simulation& simulation, BlockId block) {
+  const auto on = static_cast<std::int32_t>(block);
+  std::vector<ContactForce> forces;
   for (const NearPair& pair : simulation.engine->pairs) {
-    const Manifold& m = pair.manifold;
-    if (m.touch == Touch::apart) continue;
-    const ManifoldNow now(simulation, m);
-    const PointForces& points = now.points;
-    for (std::size_t i = 0; i < static_cast<std::size_t>(m.count); ++i) {
-      if (points.normal[i] <= 0.0) continue;
-      forces.push_back({static_cast<BlockId>(m.upper), static_cast<BlockId>(m.lower), points.place[i], points.lowerPlace[i],
-                        points.direction, points.normal[i],
-                        Vec3(points.friction[i][0], points.friction[i][1], points.friction[i][2]), points.depth[i],
-                        now.manifold.sliding[i] != 0.0});
-    }
+    if (pair.manifold.upper == on || pair.manifold.lower == on) addContactForces(simulation, pair.manifold, forces);
   }
   return forces;
 }

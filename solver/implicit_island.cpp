@@ -2,6 +2,7 @@
 
 #include "solver/island_step.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -132,19 +133,25 @@ void addManifold(const IslandStep& step, ImplicitIsland& island, std::size_t at,
   if (ofBoth != nullptr) addContacts(crossNormal, crossTangential, points.direction, !slot.firstIsRow, -1.0, ofBoth);
 }
 
-// The hand's springs on its block: C moves all eight corners, E_a each by a half.
-void addTether(const IslandStep& step, ImplicitIsland& island) {
-  const TetherStiffness& tether = island.tether;
-  const Vec3& line = step.simulation.tether.line;
-  const double edges = 0.25 * static_cast<double>(kCorners) * tether.corner;
-  const auto node = static_cast<std::size_t>(step.engine.nodeOf[index(tether.block)]);
+// The hand's springs on its block at the step's end.
+TetherMatrix resistanceNow(const IslandStep& step, double step_s) {
+  const Simulation& simulation = step.simulation;
+  return tetherResistance(simulation.tether, simulation.model, simulation.state, step.time_s + step.drift_s, step_s);
+}
+
+// Adds the hand's springs; of those at their limit what is symmetric and takes nothing away.
+void addTether(IslandStep& step, ImplicitIsland& island, double step_s) {
+  TetherMatrix& known = step.engine.tetherFactors;
+  known = resistanceNow(step, step_s);
+  if (island.limited) {
+    const Eigen::SelfAdjointEigenSolver<TetherMatrix> modes(0.5 * (known + known.transpose()));
+    known = modes.eigenvectors() * modes.eigenvalues().cwiseMax(0.0).asDiagonal() * modes.eigenvectors().transpose();
+  }
+  const auto node = static_cast<std::size_t>(step.engine.nodeOf[index(island.tether.block)]);
   float* diagonal = island.matrix.diagonal.data() + kNodeMatrix * static_cast<std::size_t>(island.matrix.position[node]);
-  for (std::size_t i = 0; i < kNodeSize; ++i) diagonal[(kNodeSize + 1) * i] += static_cast<float>(i < 3 ? tether.across : edges);
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      diagonal[kNodeSize * i + k] += static_cast<float>((tether.along - tether.across) * line[static_cast<Eigen::Index>(i)] *
-                                                        line[static_cast<Eigen::Index>(k)]);
-    }
+  for (std::size_t i = 0; i < kNodeSize; ++i) {
+    for (std::size_t k = 0; k < kNodeSize; ++k)
+      diagonal[kNodeSize * i + k] += static_cast<float>(known(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)));
   }
 }
 
@@ -231,10 +238,20 @@ void layOut(IslandStep& step, ImplicitIsland& island) {
 TetherStiffness tetherStiffness(const IslandStep& step, double step_s) {
   if (!holdsTether(step)) return {};
   const Tether& tether = step.simulation.tether;
+  return {tether.block, tether.stiffness_n_m + tether.damping_n_s_m / step_s,
+          tether.cornerStiffness_n_m + tether.cornerDamping_n_s_m / step_s};
+}
+
+bool isTetherLimited(const IslandStep& step) {
   const GripForce& now = step.engine.tetherNow;
-  const double centre = now.limited ? 0.0 : tether.stiffness_n_m + tether.damping_n_s_m / step_s;
-  const double corner = now.turnLimited ? 0.0 : tether.cornerStiffness_n_m + tether.cornerDamping_n_s_m / step_s;
-  return {tether.block, centre, now.acrossLimited ? 0.0 : centre, corner};
+  return holdsTether(step) && (now.limited || now.acrossLimited || now.turnLimited);
+}
+
+void findTetherTangent(IslandStep& step, ImplicitIsland& island, double step_s) {
+  island.heldNode = -1;
+  if (island.tether.block == kFloor || !(island.limited || isTetherLimited(step))) return;
+  island.heldNode = step.engine.nodeOf[index(island.tether.block)];
+  step.engine.tetherLacking = step.engine.tetherFactors - resistanceNow(step, step_s);
 }
 
 bool assemble(IslandStep& step, ImplicitIsland& island, double step_s) {
@@ -251,7 +268,8 @@ bool assemble(IslandStep& step, ImplicitIsland& island, double step_s) {
     if (island.mask[at] > 0xFFU) addFactorTangents(step, island, at, island.mask[at], step_s, island.factorTangents);
   }
   island.tether = tetherStiffness(step, step_s);
-  if (island.tether.block != kFloor) addTether(step, island);
+  island.limited = isTetherLimited(step);
+  if (island.tether.block != kFloor) addTether(step, island, step_s);
   island.step_s = step_s;
   ++step.counters.factorisations;
   std::vector<SparseFactors>& sparse = step.engine.sparseFactors;

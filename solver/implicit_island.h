@@ -11,12 +11,11 @@
 
 namespace springtower {
 
-/// How stiffly the hand's springs and dashpots follow their block in an implicit step, N/m; what is at its limit does not.
+/// The hand's springs and dashpots as factors are made for them.
 struct TetherStiffness {
   BlockId block = kFloor;
-  double along = 0.0;   ///< of the centre along the hand's line, or every way where it has none
-  double across = 0.0;  ///< of the centre across it
-  double corner = 0.0;  ///< of one corner about the centre
+  double centre = 0.0;  ///< N/m, in an implicit step, where nothing is at its limit
+  double corner = 0.0;  ///< N/m, of one corner about the centre
   bool operator==(const TetherStiffness&) const = default;
 };
 
@@ -33,7 +32,9 @@ struct ImplicitIsland {
   bool tooDense = false;      ///< so many blocks touch one another that explicit steps cost less
   bool factorised = false;
   double step_s = 0.0;       ///< the step times the method's factor that the factors are for
-  TetherStiffness tether;    ///< the hand's springs that the factors contain
+  TetherStiffness tether;    ///< the hand's springs that the factors contain, as engine.tetherFactors has them
+  bool limited = false;      ///< whether one of them was at its limit then
+  int heldNode = -1;         ///< the hand's block, where its springs are to be added to what the factors know
   int directions = 0;        ///< that the last correction took beside the factors
   bool moved = false;        ///< whether engine.trial holds a state after the step's start
   bool near = false;         ///< whether the iteration is so near the solution that contacts may be taken as they stand
@@ -77,6 +78,13 @@ void layOut(IslandStep& step, ImplicitIsland& island);
 
 /// The hand's springs as they act on the island now. `step_s` as in `assemble`.
 TetherStiffness tetherStiffness(const IslandStep& step, double step_s);
+
+/// Whether the hand is at a limit of its forces.
+bool isTetherLimited(const IslandStep& step);
+
+/// How far the hand's springs, as they stand now, differ from what the factors know: engine.tetherLacking and island.heldNode.
+/// None where they are within their limits now as then.
+void findTetherTangent(IslandStep& step, ImplicitIsland& island, double step_s);
 
 /// Assembles and factorises for contacts that stand as `mask` says. `step_s` is the step times the method's factor. Returns false
 /// where the matrix is not positive definite.

@@ -90,6 +90,9 @@ struct ContactForce {
 };
 std::vector<ContactForce> contactForces(const Simulation& simulation);
 
+/// Those on one block.
+std::vector<ContactForce> contactForcesOn(const Simulation& simulation, BlockId block);
+
 /// A copy of all that the next frame depends on, and back. A restored simulation repeats its future bit for bit.
 struct Snapshot;
 std::shared_ptr<const Snapshot> takeSnapshot(const Simulation& simulation);

@@ -49,16 +49,18 @@ constexpr double kPredicted = 1.0;
 struct ContactsNow {
   bool changed = false;  // against what the factors are for
   bool slides = false;   // whether any point slides
+  bool limited = false;  // whether the hand is at a limit of its forces
 };
 
-ContactsNow contactsNow(const IslandStep& step, const ImplicitIsland& island, double effective_s) {
+ContactsNow contactsNow(const IslandStep& step, const ImplicitIsland& island) {
   ContactsNow now;
   for (std::size_t i = 0; i < island.touching.size(); ++i) {
     const ContactMask mask = contactMask(step, island, i);
     now.changed = now.changed || mask != island.mask[i];
     now.slides = now.slides || mask > 0xFFU;
   }
-  now.changed = now.changed || tetherStiffness(step, effective_s) != island.tether;
+  now.limited = isTetherLimited(step);
+  now.changed = now.changed || now.limited != island.limited;
   return now;
 }
 
@@ -273,14 +275,14 @@ bool solveStep(IslandStep& step, double effective_s, bool carried, int mostConta
   bool slow = false;
   for (int iteration = 0; iteration < most; ++iteration) {
     island.near = residual < near;
-    const ContactsNow now = contactsNow(step, island, effective_s);
+    const ContactsNow now = contactsNow(step, island);
     if (now.changed) most = std::min(mostContactIterations, iteration + kMostIterations);
     const bool old = iteration == 0 && island.directions >= kOldDirections;
-    const bool stale = (slow || old) && (now.changed || now.slides);
+    const bool stale = (slow || old) && (now.changed || now.slides || now.limited);
     const bool renewed = stale || !island.factorised;
     if (renewed && !renewFactors(step, island, effective_s)) break;
     const double before = residual;
-    const bool differs = island.near && (now.changed || now.slides || !island.factorTangents.empty());
+    const bool differs = island.near && (now.changed || now.slides || now.limited || !island.factorTangents.empty());
     if (!findCorrection(step, island, effective_s, kSolved * kResidual, differs) && !renewed) {
       if (!renewFactors(step, island, effective_s)) break;
       findCorrection(step, island, effective_s, kSolved * kResidual, differs);

@@ -12,42 +12,120 @@ Vec3 within(const Vec3& vector, double length) {
   return norm > length ? Vec3(vector * (length / norm)) : vector;
 }
 
+// Its derivative.
+Eigen::Matrix3d withinSlope(const Vec3& vector, double length) {
+  const double norm = vector.norm();
+  if (!(norm > length)) return Eigen::Matrix3d::Identity();
+  const Vec3 way = vector / norm;
+  return length / norm * (Eigen::Matrix3d::Identity() - way * way.transpose());
+}
+
+// What the tether would do to the block's centre without its limits.
+struct CentrePull {
+  Vec3 missing;   // m, from the block to the copy
+  Vec3 distance;  // m, of it, as far as springs reach
+  Vec3 wanted;    // N
+  Vec3 along;     // N, of it along the hand's line
+  Vec3 across;    // N, the rest
+};
+
+CentrePull centrePull(const Tether& tether, const MotionState& state, double ahead_s) {
+  const std::size_t b = index(tether.block);
+  CentrePull pull;
+  pull.missing = tether.place + ahead_s * tether.velocity - centre(state.position, b);
+  pull.distance = within(pull.missing, tether.limit_n / tether.stiffness_n_m);
+  pull.wanted = tether.stiffness_n_m * pull.distance + tether.damping_n_s_m * (tether.velocity - centre(state.velocity, b)) +
+                tether.carried_n;
+  pull.along = pull.wanted.dot(tether.line) * tether.line;
+  pull.across = pull.wanted - pull.along;
+  return pull;
+}
+
+// What would turn it: force per half edge, N, and the torque that comes of it. The tether holds the mean edges: corners that warp
+// are left to the block's own springs.
+struct EdgePull {
+  Eigen::Matrix3d edges;   // m
+  Eigen::Matrix3d wanted;  // N
+  Vec3 torque;             // N m
+};
+
+EdgePull edgePull(const Tether& tether, const BlockModel& model, const MotionState& state, double ahead_s) {
+  const std::size_t b = index(tether.block);
+  const Eigen::Matrix3d axes = (rotation(ahead_s * tether.spin) * tether.turn).toRotationMatrix();
+  const Eigen::Matrix3d copy = axes * model.dimensions[b].asDiagonal();
+  EdgePull pull;
+  pull.edges = meanEdges(state.position, b);
+  Eigen::Matrix3d turning;
+  for (int a = 0; a < 3; ++a) turning.col(a) = tether.spin.cross(copy.col(a));
+  pull.wanted =
+      tether.cornerStiffness_n_m * (copy - pull.edges) + tether.cornerDamping_n_s_m * (turning - meanEdges(state.velocity, b));
+  // Corners are half an edge away, and there are eight.
+  pull.torque = Vec3::Zero();
+  for (int a = 0; a < 3; ++a) pull.torque += 0.25 * kCorners * pull.edges.col(a).cross(pull.wanted.col(a));
+  return pull;
+}
+
+double shareOf(const Vec3& torque, double limit_n_m) {
+  const double size = torque.norm();
+  return size > limit_n_m ? limit_n_m / size : 1.0;
+}
+
 }  // namespace
 
 GripForce tetherForces(const Tether& tether, const BlockModel& model, const MotionState& state, double time_s,
                        std::array<Vec3, kCorners>& corner) {
-  const std::size_t b = index(tether.block);
-  const Vec3 middle = centre(state.position, b);
-  const Vec3 velocity = centre(state.velocity, b);
   const double ahead_s = time_s - tether.time_s;
+  const CentrePull pull = centrePull(tether, state, ahead_s);
   GripForce sum;
-  const Vec3 missing = tether.place + ahead_s * tether.velocity - middle;
-  const Vec3 distance = within(missing, tether.limit_n / tether.stiffness_n_m);
-  const Vec3 wanted = tether.stiffness_n_m * distance + tether.damping_n_s_m * (tether.velocity - velocity) + tether.carried_n;
-  const Vec3 along = wanted.dot(tether.line) * tether.line;
-  const Vec3 across = wanted - along;
-  sum.force = within(tether.line.isZero(0.0) ? wanted : Vec3(along + within(across, tether.acrossLimit_n)), tether.limit_n);
-  sum.acrossLimited = !tether.line.isZero(0.0) && across.norm() > tether.acrossLimit_n;
-  sum.limited = wanted.norm() > tether.limit_n || distance.norm() < missing.norm();
+  sum.force = within(tether.line.isZero(0.0) ? pull.wanted : Vec3(pull.along + within(pull.across, tether.acrossLimit_n)),
+                     tether.limit_n);
+  sum.acrossLimited = !tether.line.isZero(0.0) && pull.across.norm() > tether.acrossLimit_n;
+  sum.limited = pull.wanted.norm() > tether.limit_n || pull.distance.norm() < pull.missing.norm();
 
-  const Eigen::Matrix3d axes = (rotation(ahead_s * tether.spin) * tether.turn).toRotationMatrix();
-  // It holds the mean edges: corners that warp are left to the block's own springs.
-  const Eigen::Matrix3d edges = meanEdges(state.position, b);
-  const Eigen::Matrix3d edgeRates = meanEdges(state.velocity, b);
+  const EdgePull turn = edgePull(tether, model, state, ahead_s);
+  const double share = shareOf(turn.torque, tether.torqueLimit_n_m);
+  sum.turnLimited = share < 1.0;
+  sum.torque = share * turn.torque;
   for (std::size_t c = 0; c < kCorners; ++c) {
     const Vec3 sides = 0.5 * Vec3(cornerSide(c, 0), cornerSide(c, 1), cornerSide(c, 2));
-    const Vec3 arm = axes * sides.cwiseProduct(model.dimensions[b]);
-    const Vec3 own = edges * sides;
-    corner[c] =
-        tether.cornerStiffness_n_m * (arm - own) + tether.cornerDamping_n_s_m * (tether.spin.cross(arm) - edgeRates * sides);
-    sum.torque += own.cross(corner[c]);
+    corner[c] = share * turn.wanted * sides + sum.force / static_cast<double>(kCorners);
   }
-  const double torque = sum.torque.norm();
-  const double share = torque > tether.torqueLimit_n_m ? tether.torqueLimit_n_m / torque : 1.0;
-  sum.turnLimited = share < 1.0;
-  sum.torque *= share;
-  for (Vec3& force : corner) force = share * force + sum.force / static_cast<double>(kCorners);
   return sum;
+}
+
+TetherMatrix tetherResistance(const Tether& tether, const BlockModel& model, const MotionState& state, double time_s,
+                              double step_s) {
+  const double ahead_s = time_s - tether.time_s;
+  TetherMatrix result = TetherMatrix::Zero();
+  const CentrePull pull = centrePull(tether, state, ahead_s);
+  const Eigen::Matrix3d identity = Eigen::Matrix3d::Identity();
+  const Eigen::Matrix3d wanted = tether.stiffness_n_m * withinSlope(pull.missing, tether.limit_n / tether.stiffness_n_m) +
+                                 tether.damping_n_s_m / step_s * identity;
+  if (tether.line.isZero(0.0)) {
+    result.topLeftCorner<3, 3>() = withinSlope(pull.wanted, tether.limit_n) * wanted;
+  } else {
+    const Eigen::Matrix3d onLine = tether.line * tether.line.transpose();
+    const Vec3 force = pull.along + within(pull.across, tether.acrossLimit_n);
+    result.topLeftCorner<3, 3>() = withinSlope(force, tether.limit_n) *
+                                   (onLine + withinSlope(pull.across, tether.acrossLimit_n) * (identity - onLine)) * wanted;
+  }
+
+  const EdgePull turn = edgePull(tether, model, state, ahead_s);
+  const double resists = 0.25 * kCorners * (tether.cornerStiffness_n_m + tether.cornerDamping_n_s_m / step_s);
+  const double share = shareOf(turn.torque, tether.torqueLimit_n_m);
+  result.bottomRightCorner<9, 9>().diagonal().setConstant(share * resists);
+  if (share < 1.0 && share > 0.0) {
+    // The share falls as the torque grows that it is of.
+    const Vec3 way = turn.torque.normalized();
+    for (int a = 0; a < 3; ++a) {
+      for (int b = 0; b < 3; ++b) {
+        const Vec3 force = 0.25 * kCorners * turn.wanted.col(b);
+        const Vec3 growth = (force.cross(way) - resists * way.cross(turn.edges.col(b))) / turn.torque.norm();
+        result.block<3, 3>(3 + 3 * a, 3 + 3 * b) += share * 0.25 * kCorners * turn.wanted.col(a) * growth.transpose();
+      }
+    }
+  }
+  return result;
 }
 
 }  // namespace springtower

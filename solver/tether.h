@@ -37,10 +37,18 @@ struct GripForce {
   bool turnLimited = false;    ///< the same of the torque
 };
 
+using TetherMatrix = Eigen::Matrix<double, 12, 12>;
+
 /// The tether's forces on the block's corners (N) with the copy where it is at `time_s`, and their sum. Springs reach no further
 /// than where they alone give the limit: a far hand draws at full force up to the speed from which it can still stop.
 /// Precondition: the tether holds a block.
 GripForce tetherForces(const Tether& tether, const BlockModel& model, const MotionState& state, double time_s,
                        std::array<Vec3, kCorners>& corner);
+
+/// How the tether resists that its block moves, N/m: minus the derivative of its forces on [C, E_0, E_1, E_2]
+/// (solver/block_frames.h, each three components), where a displacement changes velocities by 1 / `step_s` of it. A force at its
+/// limit grows no more, and turns with what it is the limit of. Precondition: the tether holds a block.
+TetherMatrix tetherResistance(const Tether& tether, const BlockModel& model, const MotionState& state, double time_s,
+                              double step_s);
 
 }  // namespace springtower
