@@ -68,19 +68,11 @@ double workAlong(const ImplicitIsland& island) {
 
 bool findCorrection(IslandStep& step, ImplicitIsland& island, double effective_s, double allowed, bool differ) {
   const double allowed_n = allowed * lightest(step) * std::max(step.simulation.scene.gravity.magnitude, 1.0);
-  const auto takeAsFactored = [&] {
-    island.tangents.clear();
-    island.heldNode = -1;
-  };
-  takeAsFactored();
-  if (differ) {
-    findTangents(step, island, effective_s);
-    findTetherTangent(step, island, effective_s);
-  }
+  island.tangents.clear();
+  if (differ) findTangents(step, island, effective_s);
   const bool reached = solveForCorrection(step, island, allowed_n);
-  if ((!island.tangents.empty() || island.heldNode >= 0) &&
-      !(workAlong(island) > 0.0)) {  // what is symmetric always works forwards
-    takeAsFactored();
+  if (!island.tangents.empty() && !(workAlong(island) > 0.0)) {  // what is symmetric always works forwards
+    island.tangents.clear();
     solveForCorrection(step, island, allowed_n);
   }
   return reached;

@@ -2,7 +2,6 @@
 
 #include "core/lanes.h"
 #include "solver/implicit_island.h"
-#include "solver/island_step.h"
 
 #include <algorithm>
 #include <cmath>
@@ -33,7 +32,6 @@ void findCoupledNodes(ImplicitIsland& island) {
     place(tangent.upper);
     place(tangent.lower);
   }
-  if (island.heldNode >= 0) place(island.heldNode);
 }
 
 SPRINGTOWER_INLINE double dot(const double* p, const double* q, std::size_t count) {
@@ -52,7 +50,7 @@ SPRINGTOWER_INLINE void addScaled(double factor, const double* from, std::size_t
 }
 
 // What the tangents add at the coupled nodes' displacements in island.affine.
-SPRINGTOWER_INLINE void applyTangents(const Engine& engine, ImplicitIsland& island, double* force) {
+SPRINGTOWER_INLINE void applyTangents(ImplicitIsland& island, double* force) {
   const std::size_t count = kNodeSize * island.coupled.size();
   for (std::size_t c = 0; c < island.coupled.size(); ++c) {
     std::copy_n(island.affine.data() + kNodeSize * static_cast<std::size_t>(island.coupled[c]), kNodeSize,
@@ -60,10 +58,6 @@ SPRINGTOWER_INLINE void applyTangents(const Engine& engine, ImplicitIsland& isla
   }
   std::fill_n(force, count, 0.0);
   addTangentForces(island.tangents, {island.coupledMotion.data(), count}, {force, count});
-  if (island.heldNode < 0) return;
-  using Node = Eigen::Matrix<double, static_cast<int>(kNodeSize), 1>;
-  const std::size_t held = kNodeSize * static_cast<std::size_t>(island.heldNode);
-  Eigen::Map<Node>(force + held) += engine.tetherLacking * Eigen::Map<const Node>(island.coupledMotion.data() + held);
 }
 
 // Turns column j of the Hessenberg matrix into one of a triangle (Givens), and the right-hand side with it.
@@ -99,7 +93,7 @@ struct LeastSquares {
 
 bool solveCoupled(IslandStep& step, ImplicitIsland& island, double allowed_n) {
   island.directions = 0;
-  if (island.tangents.empty() && island.heldNode < 0) {
+  if (island.tangents.empty()) {
     solve(step, island);
     return true;
   }
@@ -116,7 +110,7 @@ bool solveCoupled(IslandStep& step, ImplicitIsland& island, double allowed_n) {
 
   LeastSquares squares;
   std::copy(island.affine.begin(), island.affine.end(), correction(kMostDirections));
-  applyTangents(step.engine, island, force(0));
+  applyTangents(island, force(0));
   squares.right[0] = std::sqrt(dot(force(0), force(0), count));
   if (!(squares.right[0] > allowed)) return true;
   for (std::size_t i = 0; i < count; ++i) force(0)[i] /= squares.right[0];
@@ -131,7 +125,7 @@ bool solveCoupled(IslandStep& step, ImplicitIsland& island, double allowed_n) {
     solve(step, island);
     std::copy(island.affine.begin(), island.affine.end(), correction(j));
     double* next = force(j + 1);
-    applyTangents(step.engine, island, next);
+    applyTangents(island, next);
     for (std::size_t i = 0; i < count; ++i) next[i] = force(j)[i] - next[i];
     for (std::size_t k = 0; k <= j; ++k) {
       squares.column[j][k] = dot(next, force(k), count);

@@ -105,31 +105,29 @@ struct Engine {
   CornerArray carried;                           ///< m/s, mean velocity of the last step of a multi-stage method
   std::vector<PointMemory> trial;  ///< by position in `pairs`: contact memory at the end of an implicit step not yet taken
   CornerArray previousVelocity;    ///< m/s, at the start of the step; for implicit steps
-  std::vector<ImplicitIsland> implicitIslands;        ///< by the island's smallest block; empty for other methods
-  std::vector<SparseFactors> sparseFactors;           ///< by the island's smallest block; of `implicitEigen` alone
-  std::vector<RigidIsland> rigidIslands;              ///< by the island's smallest block; empty for other methods
-  CornerArray history;                                ///< m, what past steps give of the position at an implicit step's end
-  CornerArray stepVelocity;                           ///< m/s, mean over the implicit step
-  CornerArray target;                                 ///< m, where the implicit step ends without forces
-  TetherMatrix tetherFactors = TetherMatrix::Zero();  ///< N/m, of its springs, in the factors of the island that it holds
-  TetherMatrix tetherLacking = TetherMatrix::Zero();  ///< N/m, of these, more than its springs resist now
-  GripForce tetherNow;                                ///< the hand's, as last evaluated
-  std::vector<std::int32_t> nodeOf;       ///< the place of each block in its island, for implicit steps and rigid methods
-  std::vector<PairForce> pairForce;       ///< N, by position in `pairs`; for islands that run on many threads
-  std::vector<BlockClock> clock;          ///< [blocks]
-  std::vector<std::int32_t> lostPartner;  ///< sleeping blocks whose awake neighbour went out of reach in this frame
-  std::vector<std::int32_t> beginning;    ///< working space: pairs of each block that may begin to push in this frame
-  std::vector<std::int32_t> toWake;       ///< working space
-  std::vector<std::int32_t> pushed;       ///< working space: sleeping blocks with awake neighbours
-  std::vector<PushChange> change;         ///< working space, [blocks]
-  std::vector<std::int32_t> restless;     ///< working space
-  std::vector<std::int32_t> parent;       ///< working space of connectedBlocks
-  std::vector<std::uint8_t> touched;      ///< working space: 1 where a block touches one of toWake, directly or through others
-  std::vector<std::uint8_t> joined;       ///< working space: 1 where a block touches a restless one, directly or through others
-  std::vector<RestWindow> rest;           ///< [blocks]
-  Vec3 gravitySlept = Vec3::Zero();       ///< m/s2, gravity when the last block fell asleep
-  ReportState report;                     ///< of method `report`; empty for the others
-  MotionState frameStart;                 ///< what a frame that has to be run again starts from
+  std::vector<ImplicitIsland> implicitIslands;  ///< by the island's smallest block; empty for other methods
+  std::vector<SparseFactors> sparseFactors;     ///< by the island's smallest block; of `implicitEigen` alone
+  std::vector<RigidIsland> rigidIslands;        ///< by the island's smallest block; empty for other methods
+  CornerArray history;                          ///< m, what past steps give of the position at an implicit step's end
+  CornerArray stepVelocity;                     ///< m/s, mean over the implicit step
+  CornerArray target;                           ///< m, where the implicit step ends without forces
+  GripForce tetherNow;                          ///< the hand's, as last evaluated
+  std::vector<std::int32_t> nodeOf;             ///< the place of each block in its island, for implicit steps and rigid methods
+  std::vector<PairForce> pairForce;             ///< N, by position in `pairs`; for islands that run on many threads
+  std::vector<BlockClock> clock;                ///< [blocks]
+  std::vector<std::int32_t> lostPartner;        ///< sleeping blocks whose awake neighbour went out of reach in this frame
+  std::vector<std::int32_t> beginning;          ///< working space: pairs of each block that may begin to push in this frame
+  std::vector<std::int32_t> toWake;             ///< working space
+  std::vector<std::int32_t> pushed;             ///< working space: sleeping blocks with awake neighbours
+  std::vector<PushChange> change;               ///< working space, [blocks]
+  std::vector<std::int32_t> restless;           ///< working space
+  std::vector<std::int32_t> parent;             ///< working space of connectedBlocks
+  std::vector<std::uint8_t> touched;  ///< working space: 1 where a block touches one of toWake, directly or through others
+  std::vector<std::uint8_t> joined;   ///< working space: 1 where a block touches a restless one, directly or through others
+  std::vector<RestWindow> rest;       ///< [blocks]
+  Vec3 gravitySlept = Vec3::Zero();   ///< m/s2, gravity when the last block fell asleep
+  ReportState report;                 ///< of method `report`; empty for the others
+  MotionState frameStart;             ///< what a frame that has to be run again starts from
   std::vector<BlockClock> frameStartClock;
   std::vector<FewPoints> frameStartPoints;  ///< by position in `pairs`: what the points of those that touch remember
   std::vector<std::uint8_t> pairKept;       ///< 1 where a pair has changed since otherwise than in that

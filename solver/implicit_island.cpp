@@ -133,25 +133,20 @@ void addManifold(const IslandStep& step, ImplicitIsland& island, std::size_t at,
   if (ofBoth != nullptr) addContacts(crossNormal, crossTangential, points.direction, !slot.firstIsRow, -1.0, ofBoth);
 }
 
-// The hand's springs on its block at the step's end.
-TetherMatrix resistanceNow(const IslandStep& step, double step_s) {
+// Adds the hand's springs on its block; of those at their limit what is symmetric and takes nothing away.
+void addTether(const IslandStep& step, ImplicitIsland& island, double step_s) {
   const Simulation& simulation = step.simulation;
-  return tetherResistance(simulation.tether, simulation.model, simulation.state, step.time_s + step.drift_s, step_s);
-}
-
-// Adds the hand's springs; of those at their limit what is symmetric and takes nothing away.
-void addTether(IslandStep& step, ImplicitIsland& island, double step_s) {
-  TetherMatrix& known = step.engine.tetherFactors;
-  known = resistanceNow(step, step_s);
+  TetherMatrix resistance =
+      tetherResistance(simulation.tether, simulation.model, simulation.state, step.time_s + step.drift_s, step_s);
   if (island.limited) {
-    const Eigen::SelfAdjointEigenSolver<TetherMatrix> modes(0.5 * (known + known.transpose()));
-    known = modes.eigenvectors() * modes.eigenvalues().cwiseMax(0.0).asDiagonal() * modes.eigenvectors().transpose();
+    const Eigen::SelfAdjointEigenSolver<TetherMatrix> modes(0.5 * (resistance + resistance.transpose()));
+    resistance = modes.eigenvectors() * modes.eigenvalues().cwiseMax(0.0).asDiagonal() * modes.eigenvectors().transpose();
   }
   const auto node = static_cast<std::size_t>(step.engine.nodeOf[index(island.tether.block)]);
   float* diagonal = island.matrix.diagonal.data() + kNodeMatrix * static_cast<std::size_t>(island.matrix.position[node]);
   for (std::size_t i = 0; i < kNodeSize; ++i) {
     for (std::size_t k = 0; k < kNodeSize; ++k)
-      diagonal[kNodeSize * i + k] += static_cast<float>(known(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)));
+      diagonal[kNodeSize * i + k] += static_cast<float>(resistance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)));
   }
 }
 
@@ -245,13 +240,6 @@ TetherStiffness tetherStiffness(const IslandStep& step, double step_s) {
 bool isTetherLimited(const IslandStep& step) {
   const GripForce& now = step.engine.tetherNow;
   return holdsTether(step) && (now.limited || now.acrossLimited || now.turnLimited);
-}
-
-void findTetherTangent(IslandStep& step, ImplicitIsland& island, double step_s) {
-  island.heldNode = -1;
-  if (island.tether.block == kFloor || !(island.limited || isTetherLimited(step))) return;
-  island.heldNode = step.engine.nodeOf[index(island.tether.block)];
-  step.engine.tetherLacking = step.engine.tetherFactors - resistanceNow(step, step_s);
 }
 
 bool assemble(IslandStep& step, ImplicitIsland& island, double step_s) {

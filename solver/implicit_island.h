@@ -32,9 +32,8 @@ struct ImplicitIsland {
   bool tooDense = false;      ///< so many blocks touch one another that explicit steps cost less
   bool factorised = false;
   double step_s = 0.0;       ///< the step times the method's factor that the factors are for
-  TetherStiffness tether;    ///< the hand's springs that the factors contain, as engine.tetherFactors has them
+  TetherStiffness tether;    ///< the hand's springs that the factors contain
   bool limited = false;      ///< whether one of them was at its limit then
-  int heldNode = -1;         ///< the hand's block, where its springs are to be added to what the factors know
   int directions = 0;        ///< that the last correction took beside the factors
   bool moved = false;        ///< whether engine.trial holds a state after the step's start
   bool near = false;         ///< whether the iteration is so near the solution that contacts may be taken as they stand
@@ -81,10 +80,6 @@ TetherStiffness tetherStiffness(const IslandStep& step, double step_s);
 
 /// Whether the hand is at a limit of its forces.
 bool isTetherLimited(const IslandStep& step);
-
-/// How far the hand's springs, as they stand now, differ from what the factors know: engine.tetherLacking and island.heldNode.
-/// None where they are within their limits now as then.
-void findTetherTangent(IslandStep& step, ImplicitIsland& island, double step_s);
 
 /// Assembles and factorises for contacts that stand as `mask` says. `step_s` is the step times the method's factor. Returns false
 /// where the matrix is not positive definite.

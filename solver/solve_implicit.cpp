@@ -16,8 +16,6 @@ namespace springtower {
 namespace {
 
 constexpr int kMostIterations = 12;
-// While points begin or cease to push or slide: a front of load takes an iteration a row.
-constexpr int kMostContactIterations = 40;
 // How often a step is solved again with contacts that it turned out to make.
 constexpr int kMostMeetings = 4;
 // Residual force at which a step is taken, in weights of the block; in metres it is this share of the compression under its own
@@ -26,10 +24,20 @@ constexpr double kResidual = 1e-5;
 // How far a correction is solved for, in these units: the root of the sum of all blocks' squares, of which the largest is far
 // less. Less costs solutions that the next evaluation does not need, more costs evaluations.
 constexpr double kSolved = 2.0;
-// Residual from which on friction follows the normal forces in a correction: a block's weight. Farther from the solution points
-// slide that will not, and Newton's iteration with a cone that moves goes astray (design, section 11, trap 1); steps from rest,
-// in which a tower's load arrives, begin far away.
-constexpr double kNear = 1e5;
+// How an iteration goes on.
+struct Iteration {
+  int mostContactIterations;  // while points begin or cease to push or slide: a front of load takes an iteration a row
+  double near;                // residual below which friction follows the normal forces in a correction
+  double enough;              // share of the residual at the beginning that may be left over
+};
+
+// Near the solution is within a block's weight of it. Farther away points slide that will not, and Newton's iteration with a cone
+// that moves goes astray (design, section 11, trap 1). Where blocks move, a part of what a step has to find may be left over, up
+// to kMostLeft: a ten thousandth of a weight alters a speed by 4 micrometres a second, and the next step looks at it anew.
+constexpr Iteration kInMotion{40, 1e5, 0.005};
+constexpr double kMostLeft = 10.0;
+// In steps from rest the weight of a tower that is laid down comes to its foot row by row, from far away.
+constexpr Iteration kFromRest{40, 0.0, 0.0};
 
 ImplicitIsland& islandOf(IslandStep& step) {
   return step.engine.implicitIslands[static_cast<std::size_t>(step.blocks.front())];
@@ -195,13 +203,13 @@ double evaluateResidual(IslandStep& step, ImplicitIsland& island, double effecti
 // Takes the correction as far as the residual still works along it: where contacts open or friction turns round on the way, the
 // whole of it would go too far, and back in the next iteration (Newton with line search; Nocedal & Wright 2006). Returns the
 // residual there.
-double takeCorrection(IslandStep& step, ImplicitIsland& island, double effective_s, StageClock& clock) {
+double takeCorrection(IslandStep& step, ImplicitIsland& island, double effective_s, double enough, StageClock& clock) {
   const double work = workAlong(island);
   island.moved = true;
   double share = 1.0;
   moveAlong(step, island, 1.0, effective_s);
   double residual = evaluateResidual(step, island, effective_s, clock);
-  if (!std::isfinite(residual) || residual <= 1.0) return residual;
+  if (!std::isfinite(residual) || residual <= enough) return residual;
   double far = workAlong(island);
   if (far >= -kOvershoot * work) return residual;
   double least = 0.0;  // share at which it still works forwards, and where it does no more
@@ -213,7 +221,7 @@ double takeCorrection(IslandStep& step, ImplicitIsland& island, double effective
     share = next;
     residual = evaluateResidual(step, island, effective_s, clock);
     const double here = workAlong(island);
-    if (std::abs(here) <= kOvershoot * work || residual <= 1.0) break;
+    if (std::abs(here) <= kOvershoot * work || residual <= enough) break;
     (here > 0.0 ? least : most) = share;
     (here > 0.0 ? near : far) = here;
   }
@@ -261,8 +269,8 @@ bool isCarried(const IslandStep& step, double effective_s) {
 }
 
 // Newton's iteration for the state at the step's end, from engine.target and engine.history. Unless the blocks are `carried` the
-// forces are known where they are. Friction follows the normal forces from a residual of `near` on. Returns whether it converged.
-bool solveStep(IslandStep& step, double effective_s, bool carried, int mostContactIterations, double near) {
+// forces are known where they are. Returns whether it converged.
+bool solveStep(IslandStep& step, double effective_s, bool carried, const Iteration& how) {
   ImplicitIsland& island = islandOf(step);
   StageClock clock(step.times);
   layOut(step, island);
@@ -270,27 +278,28 @@ bool solveStep(IslandStep& step, double effective_s, bool carried, int mostConta
   if (island.step_s != effective_s || tetherStiffness(step, effective_s) != island.tether) island.factorised = false;
   double residual = island.tooDense || carried ? 0.0 : findResidual(step, island, effective_s);
   if (!island.tooDense && (carried || residual > kPredicted)) residual = predict(step, island, effective_s, clock);
+  const double enough = std::clamp(how.enough * residual, 1.0, kMostLeft);
   bool converged = false;
   int most = island.tooDense ? 0 : kMostIterations;
   bool slow = false;
   for (int iteration = 0; iteration < most; ++iteration) {
-    island.near = residual < near;
+    island.near = residual < how.near;
     const ContactsNow now = contactsNow(step, island);
-    if (now.changed) most = std::min(mostContactIterations, iteration + kMostIterations);
+    if (now.changed) most = std::min(how.mostContactIterations, iteration + kMostIterations);
     const bool old = iteration == 0 && island.directions >= kOldDirections;
     const bool stale = (slow || old) && (now.changed || now.slides || now.limited);
     const bool renewed = stale || !island.factorised;
     if (renewed && !renewFactors(step, island, effective_s)) break;
     const double before = residual;
-    const bool differs = island.near && (now.changed || now.slides || now.limited || !island.factorTangents.empty());
+    const bool differs = island.near && (now.changed || now.slides || !island.factorTangents.empty());
     if (!findCorrection(step, island, effective_s, kSolved * kResidual, differs) && !renewed) {
       if (!renewFactors(step, island, effective_s)) break;
       findCorrection(step, island, effective_s, kSolved * kResidual, differs);
     }
-    residual = takeCorrection(step, island, effective_s, clock);
+    residual = takeCorrection(step, island, effective_s, enough, clock);
     slow = residual > kSlow * before;
     ++step.counters.implicitIterations;
-    converged = residual <= 1.0;
+    converged = residual <= enough;
     if (converged || !std::isfinite(residual)) break;
   }
   clock.lap(Stage::integration);
@@ -324,7 +333,7 @@ bool stepImplicit(IslandStep& step) {
   } else {
     foretell(step, effective_s);
   }
-  bool converged = solveStep(step, effective_s, carried, kMostContactIterations, kNear);
+  bool converged = solveStep(step, effective_s, carried, kInMotion);
   for (int trial = 0; converged && trial < kMostMeetings; ++trial) {
     StageClock clock(step.times);
     const Meetings met = meetingsIn(step);
@@ -333,7 +342,7 @@ bool stepImplicit(IslandStep& step) {
     if (met == Meetings::none) break;
     goBack(step);
     evaluateForces(step, step.simulation.state, step.simulation.state.velocity, 0.0, Memory::trial);
-    converged = solveStep(step, effective_s, false, kMostContactIterations, kNear);
+    converged = solveStep(step, effective_s, false, kInMotion);
   }
   return finishStep(step, converged);
 }
@@ -342,9 +351,9 @@ bool stepFromRest(IslandStep& step, double effective_s) {
   step.drift_s = effective_s / kBdf2;
   evaluateForces(step, step.simulation.state, step.simulation.state.velocity, 0.0, Memory::trial);
   foretellOneStep(step, effective_s);
-  // The weight of a tower that is laid down comes to its foot row by row.
-  return finishStep(
-      step, solveStep(step, effective_s, false, std::max(kMostContactIterations, static_cast<int>(step.blocks.size())), 0.0));
+  Iteration how = kFromRest;
+  how.mostContactIterations = std::max(how.mostContactIterations, static_cast<int>(step.blocks.size()));
+  return finishStep(step, solveStep(step, effective_s, false, how));
 }
 
 }  // namespace springtower
