@@ -46,7 +46,7 @@ struct Manifold : PointMemory {
 };
 
 /// Whether any point of a manifold touches.
-inline bool pushes(const Manifold& manifold) {
+inline bool anyPointTouches(const Manifold& manifold) {
   return std::any_of(manifold.live.begin(), manifold.live.begin() + manifold.count, [](double live) { return live != 0.0; });
 }
 

@@ -230,7 +230,7 @@ void renewManifold(IslandStep& step, NearPair& pair, Counters& counters) {
   if (pair.b < 0) {
     const CornerView block = cornersOf(position, static_cast<std::size_t>(pair.a));
     const double gap = lowestCorner(block);
-    if (gap > partingGap && !pushes(pair.manifold)) {
+    if (gap > partingGap && !anyPointTouches(pair.manifold)) {
       part(pair, Vec3::UnitZ(), gap);
       return;
     }
@@ -240,7 +240,7 @@ void renewManifold(IslandStep& step, NearPair& pair, Counters& counters) {
     const CornerView a = cornersOf(position, static_cast<std::size_t>(pair.a));
     const CornerView b = cornersOf(position, static_cast<std::size_t>(pair.b));
     const Separation separation = findSeparation(a, b);
-    if (separation.best() > partingGap && !pushes(pair.manifold)) {
+    if (separation.best() > partingGap && !anyPointTouches(pair.manifold)) {
       part(pair, separation.bestNormal(), separation.best());
       return;
     }

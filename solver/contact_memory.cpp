@@ -79,7 +79,7 @@ void keepContactMemory(const Manifold& old, const CornerArray& position, const C
   } else {
     carryMemory(old, cornersOf(position, oldUpper), fresh, cornersOf(position, freshUpper), radius);
   }
-  if (!pushes(old)) return;
+  if (!anyPointTouches(old)) return;
 
   const BlockFrame a = blockFrame(position, oldUpper);
   const BlockFrame b = old.lower < 0 ? a : blockFrame(position, static_cast<std::size_t>(old.lower));

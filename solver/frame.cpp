@@ -73,7 +73,7 @@ Approach approachOf(const IslandStep& step) {
     const bool apart = pair.manifold.touch == Touch::apart;
     const bool mayMeet = apart && pair.margin - (travel - pair.checkedTravel) < speed * frame_s;
     if (apart && !mayMeet) continue;
-    if (apart || !pushes(pair.manifold)) {
+    if (apart || !anyPointTouches(pair.manifold)) {
       approach.together = std::max(approach.together, ++beginning[a]);
       if (pair.b >= 0) approach.together = std::max(approach.together, ++beginning[static_cast<std::size_t>(pair.b)]);
     }

@@ -75,7 +75,7 @@ std::array<double, kAffine> weightsAt(const BlockFrame& frame, const Vec3& place
 /// Lays out the matrix anew where blocks have begun or ceased to touch, unless the island is too dense.
 void layOut(IslandStep& step, ImplicitIsland& island);
 
-/// The hand's springs as they act on the island now. `step_s` as in `assemble`.
+/// The hand's springs on the island's block, wherever the hand is. `step_s` as in `assemble`.
 TetherStiffness tetherStiffness(const IslandStep& step, double step_s);
 
 /// Whether the hand is at a limit of its forces.

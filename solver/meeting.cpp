@@ -117,12 +117,12 @@ bool metAnew(const IslandStep& step, const NearPair& pair, const PointMemory& tr
   const Manifold& manifold = pair.manifold;
   const auto count = static_cast<std::size_t>(manifold.count);
   bool begins = false;
-  bool pushes = false;
+  bool touches = false;
   for (std::size_t i = 0; i < count; ++i) {
-    pushes = pushes || trial.live[i] != 0.0;
+    touches = touches || trial.live[i] != 0.0;
     begins = begins || (trial.live[i] != 0.0 && manifold.live[i] == 0.0);
   }
-  const bool late = pair.b >= 0 && (!pushes || way > refreshTravel(step.simulation));
+  const bool late = pair.b >= 0 && (!touches || way > refreshTravel(step.simulation));
   if (!begins && !late) return false;
   const CornerArray& now = step.simulation.state.position;
   const std::array<double, kManifoldPoints> depth = depthsAt(step, manifold, now);
@@ -162,7 +162,7 @@ double slowestRate(const IslandStep& step, const Manifold& manifold) {
   const AffineField lowerMotion = manifold.lower < 0 ? still : affineField(state.velocity, l);
   const PointForces points =
       pointForces(manifold, {&upper, &still, &still}, {manifold.lower < 0 ? nullptr : &lower, &still, &still}, step.law);
-  const bool any = pushes(manifold);
+  const bool any = anyPointTouches(manifold);
   double slowest = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < static_cast<std::size_t>(manifold.count); ++i) {
     if (any && manifold.live[i] == 0.0) continue;

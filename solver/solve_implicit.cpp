@@ -24,10 +24,12 @@ constexpr double kResidual = 1e-5;
 // How far a correction is solved for, in these units: the root of the sum of all blocks' squares, of which the largest is far
 // less. Less costs solutions that the next evaluation does not need, more costs evaluations.
 constexpr double kSolved = 2.0;
+
 // How an iteration goes on.
 struct Iteration {
   int mostContactIterations;  // while points begin or cease to push or slide: a front of load takes an iteration a row
-  double near;                // residual below which friction follows the normal forces in a correction
+  double near;                // residual below which a correction takes contacts as they stand: friction follows the
+                              // normal forces, and what touches and does not push is open
   double enough;              // share of the residual at the beginning that may be left over
 };
 

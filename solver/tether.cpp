@@ -6,6 +6,10 @@ namespace springtower {
 
 namespace {
 
+// Each of eight corners is half an edge from the centre: forces that are halved on them, and halved again in their sum on the
+// edge.
+constexpr double kOnEdge = 0.25 * kCorners;
+
 // A vector shortened to a length.
 Vec3 within(const Vec3& vector, double length) {
   const double norm = vector.norm();
@@ -41,11 +45,10 @@ CentrePull centrePull(const Tether& tether, const MotionState& state, double ahe
   return pull;
 }
 
-// What would turn it: force per half edge, N, and the torque that comes of it. The tether holds the mean edges: corners that warp
-// are left to the block's own springs.
+// What would turn it without its limit. The tether holds the mean edges: corners that warp are left to the block's own springs.
 struct EdgePull {
   Eigen::Matrix3d edges;   // m
-  Eigen::Matrix3d wanted;  // N
+  Eigen::Matrix3d wanted;  // N, a column an edge: a corner is pushed by the sum of half of each, to its side
   Vec3 torque;             // N m
 };
 
@@ -59,9 +62,8 @@ EdgePull edgePull(const Tether& tether, const BlockModel& model, const MotionSta
   for (int a = 0; a < 3; ++a) turning.col(a) = tether.spin.cross(copy.col(a));
   pull.wanted =
       tether.cornerStiffness_n_m * (copy - pull.edges) + tether.cornerDamping_n_s_m * (turning - meanEdges(state.velocity, b));
-  // Corners are half an edge away, and there are eight.
   pull.torque = Vec3::Zero();
-  for (int a = 0; a < 3; ++a) pull.torque += 0.25 * kCorners * pull.edges.col(a).cross(pull.wanted.col(a));
+  for (int a = 0; a < 3; ++a) pull.torque += kOnEdge * pull.edges.col(a).cross(pull.wanted.col(a));
   return pull;
 }
 
@@ -111,18 +113,16 @@ TetherMatrix tetherResistance(const Tether& tether, const BlockModel& model, con
   }
 
   const EdgePull turn = edgePull(tether, model, state, ahead_s);
-  const double resists = 0.25 * kCorners * (tether.cornerStiffness_n_m + tether.cornerDamping_n_s_m / step_s);
+  const double resists = kOnEdge * (tether.cornerStiffness_n_m + tether.cornerDamping_n_s_m / step_s);
   const double share = shareOf(turn.torque, tether.torqueLimit_n_m);
   result.bottomRightCorner<9, 9>().diagonal().setConstant(share * resists);
   if (share < 1.0 && share > 0.0) {
     // The share falls as the torque grows that it is of.
     const Vec3 way = turn.torque.normalized();
-    for (int a = 0; a < 3; ++a) {
-      for (int b = 0; b < 3; ++b) {
-        const Vec3 force = 0.25 * kCorners * turn.wanted.col(b);
-        const Vec3 growth = (force.cross(way) - resists * way.cross(turn.edges.col(b))) / turn.torque.norm();
-        result.block<3, 3>(3 + 3 * a, 3 + 3 * b) += share * 0.25 * kCorners * turn.wanted.col(a) * growth.transpose();
-      }
+    const Eigen::Matrix3d force = kOnEdge * turn.wanted;
+    for (int b = 0; b < 3; ++b) {
+      const Vec3 growth = (force.col(b).cross(way) - resists * way.cross(turn.edges.col(b))) / turn.torque.norm();
+      for (int a = 0; a < 3; ++a) result.block<3, 3>(3 + 3 * a, 3 + 3 * b) += share * force.col(a) * growth.transpose();
     }
   }
   return result;
