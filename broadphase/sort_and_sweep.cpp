@@ -249,6 +249,7 @@ std::uint64_t findPairs(SortAndSweep& sweep, const SweptBoxes& boxes, std::span<
   }
   if (sweep.outOfOrder.empty()) {
     pairs.swap(ascending);
+    ascending.reserve(pairs.capacity());  // the two change places: as large as one has grown, the other will be
     return tests;
   }
   std::sort(sweep.outOfOrder.begin(), sweep.outOfOrder.end());

@@ -23,7 +23,7 @@ struct SweptBoxes {
 };
 
 /// Computes, for each listed block, the box of its corners now, grown on every side by its reach: how far (m) any of its corners
-/// may travel before the box stops being valid,
+/// may travel before one can be outside,
 ///   reach = speed duration + gravity duration^2 / 2 + margin,
 /// with the speed of its fastest corner. The margin is there for what contacts and springs may add. A block about to sleep takes
 /// duration 0: its box as it lies, grown by the margin. Other blocks keep their boxes and reaches.

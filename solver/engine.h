@@ -42,8 +42,11 @@ struct BlockClock {
   double lastDrift_s = 0.0;         ///< s; the explicit step in which the block's positions last moved; 0 after an implicit one
   double history_s = 0.0;           ///< s; the implicit step that led here from engine.previous, 0 where it was none
   std::int32_t explicitFrames = 0;  ///< frames that the block's island is still to be stepped explicitly
-  double travel = 0.0;              ///< m; path length of the block's fastest corner, ever growing
-  double spectralRadius = 0.0;      ///< 1/s2; bound of the largest eigenvalue of M^-1 K of the block's island
+  std::int32_t implicitSteps = 0;   ///< steps of a frame that its ringing asked for last
+  double jerk = 0.0;            ///< kg m2/s6; mass by the square of its corners' change of acceleration, mean over some frames
+  double motion = 0.0;          ///< kg m2/s2; mass by the square of its corners' velocity, alike
+  double travel = 0.0;          ///< m; path length of the block's fastest corner, ever growing
+  double spectralRadius = 0.0;  ///< 1/s2; bound of the largest eigenvalue of M^-1 K of the block's island
   std::uint64_t contactSignature = 0;  ///< what that bound was computed for
 };
 
@@ -73,7 +76,7 @@ inline constexpr std::size_t kParallelBlocks = 256;
 struct Engine {
   SortAndSweep sweep;
   SweptBoxes boxes;
-  std::vector<double> reach;          ///< m a block may travel before its swept box is spent, [blocks]
+  std::vector<double> reach;          ///< m a block may travel before it can be out of its swept box, [blocks]
   std::vector<double> travelAtSweep;  ///< m, [blocks]
   bool swept = false;                 ///< whether the order of the sweep has been set up
   std::vector<BlockPair> sweptPairs;

@@ -1,6 +1,7 @@
 #include "solver/implicit.h"
 
 #include "solver/meeting.h"
+#include "solver/ringing.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,17 +10,16 @@ namespace springtower {
 
 namespace {
 
-// Steps of a frame where the user names none; and where nothing moves farther than kCalm tolerances in it.
+// Steps of a frame where the user names none: where fewer do not do, and where a hand or a force moves something, at least.
 constexpr int kImplicitSteps = 4;
-constexpr int kCalmSteps = 1;
-constexpr double kCalm = 0.1;
+constexpr int kForcedSteps = 2;
 // Angle by which a block may turn in an implicit step, rad: the two-step formula turns along chords.
 constexpr double kMostTurn = 0.01;
 
-// Whether the island does so little that one step tells it as well as four. What a hand or a force begins to move is not calm.
+// Whether the island does so little that one step tells it as well as many.
 bool isCalm(const IslandStep& step) {
   const Simulation& simulation = step.simulation;
-  const double most = kCalm * simulation.tolerance_m / simulation.scene.settings.frame_s;
+  const double most = calmSpeed(simulation);
   for (const std::int32_t block : step.blocks) {
     // What has just been let go of has no speed yet, and what explicit steps brought here may be at a bounce's turn.
     const auto b = static_cast<std::size_t>(block);
@@ -31,13 +31,41 @@ bool isCalm(const IslandStep& step) {
       }
     }
   }
-  return !holdsTether(step) && !isPushed(step);
+  return true;
 }
 
-int implicitSteps(const IslandStep& step) {
-  const int asked = step.simulation.scene.settings.substeps;
-  if (asked > 0) return asked;
-  return isCalm(step) ? kCalmSteps : kImplicitSteps;
+// Whether it touches what sleeps: that wakes by how it is pushed, and would not by a rattle that few steps have damped.
+bool leansOnSleepers(const IslandStep& step) {
+  return std::any_of(step.pairs.begin(), step.pairs.end(), [&](std::int32_t at) {
+    const NearPair& pair = step.engine.pairs[static_cast<std::size_t>(at)];
+    return pair.b >= 0 && pair.manifold.touch != Touch::apart &&
+           (sleeps(step.simulation, pair.a) || sleeps(step.simulation, pair.b));
+  });
+}
+
+// How many steps the frame takes. `forced`: whether a force or the hand acts; `known`: as it did in the frame before.
+int implicitSteps(const IslandStep& step, bool forced, bool known) {
+  const Settings& settings = step.simulation.scene.settings;
+  if (settings.substeps > 0) return settings.substeps;
+  const bool calm = isCalm(step) && !forced;
+  if (settings.method == Method::implicitEuler) return calm ? 1 : kImplicitSteps;
+  std::int32_t present = 1;
+  for (const std::int32_t block : step.blocks) {
+    const BlockClock& clock = step.engine.clock[static_cast<std::size_t>(block)];
+    present = std::max(present, clock.implicitSteps);
+    known = known && clock.history_s > 0.0;
+  }
+  int least = forced ? kForcedSteps : 1;
+  if (!calm && leansOnSleepers(step)) least = kImplicitSteps;
+  if (!calm && !known) least = kMostRingingSteps;
+  const int steps = std::max(least, stepsForRinging(step, present));
+  for (const std::int32_t block : step.blocks) step.engine.clock[static_cast<std::size_t>(block)].implicitSteps = steps;
+  return steps;
+}
+
+// A force that has ended leaves another acceleration than that of the step before. One that begins has friction against it soon.
+void forgetSteps(IslandStep& step) {
+  for (const std::int32_t block : step.blocks) step.engine.clock[static_cast<std::size_t>(block)].history_s = 0.0;
 }
 
 // The angular speed of a block is at most this, rad/s: how fast its mean edges change against their length.
@@ -112,40 +140,50 @@ IslandOutcome runImplicitSteps(IslandStep& step, double& reached_s) {
   Simulation& simulation = step.simulation;
   Engine& engine = step.engine;
   IslandOutcome outcome;
+  const double frame_s = simulation.scene.settings.frame_s;
   reached_s = 0.0;
-  int steps = implicitSteps(step);
-  const bool fits = implicitStepsFit(step, simulation.scene.settings.frame_s / steps);
+  ImplicitIsland& island = engine.implicitIslands[static_cast<std::size_t>(step.blocks.front())];
+  const bool forced = holdsTether(step) || isPushed(step);
+  if (island.forced && !forced) forgetSteps(step);
+  int steps = implicitSteps(step, forced, forced == island.forced);
+  bool fits = implicitStepsFit(step, frame_s / steps);
+  if (!fits && steps < kImplicitSteps && simulation.scene.settings.substeps == 0) {
+    steps = kImplicitSteps;
+    fits = implicitStepsFit(step, frame_s / steps);
+  }
   for (const std::int32_t block : step.blocks) {
     std::int32_t& frames = engine.clock[static_cast<std::size_t>(block)].explicitFrames;
     frames = std::max(0, frames - 1);
   }
-  ImplicitIsland& island = engine.implicitIslands[static_cast<std::size_t>(step.blocks.front())];
   // Where nothing has come or gone since, the forces are those that the last frame ended with.
-  const bool forced = holdsTether(step) || isPushed(step);
   const bool known = island.forcesKnown && !engine.regrouped && !island.forced && !forced;
   island.forced = forced;
   island.forcesKnown = false;
   if (!fits) return outcome;
-  step.drift_s = simulation.scene.settings.frame_s / steps;
-  setJacobians(step, endShare(simulation.scene.settings.method) * step.drift_s);
+  const auto takeSteps = [&](int count) {
+    steps = count;
+    step.drift_s = (frame_s - reached_s) / count;
+    setJacobians(step, endShare(simulation.scene.settings.method) * step.drift_s);
+  };
+  takeSteps(steps);
   step.scaleMost = 1.0;
   island.forcesKnown = known;
-  for (int i = 0; i < steps; ++i) {
-    step.time_s = simulation.time_s + i * step.drift_s;
+  while (steps > 0) {
+    step.time_s = simulation.time_s + reached_s;
     step.gravity = simulation.scene.gravity.at(step.time_s + step.drift_s);  // forces are those of the step's end
-    if (!stepImplicit(step)) {
-      if (steps < kImplicitSteps && simulation.scene.settings.substeps == 0) {  // it was not calm after all
-        steps = kImplicitSteps;
-        step.drift_s = simulation.scene.settings.frame_s / steps;
-        setJacobians(step, endShare(simulation.scene.settings.method) * step.drift_s);
-        i = -1;
+    const int finer = static_cast<int>(std::lround((1.0 - reached_s / frame_s) * kImplicitSteps));
+    const bool finerFollow = finer > steps && simulation.scene.settings.substeps == 0;  // if it does more than it was known for
+    if (!stepImplicit(step, finerFollow)) {
+      if (finerFollow) {
+        takeSteps(finer);
         continue;
       }
       for (const std::int32_t block : step.blocks) engine.clock[static_cast<std::size_t>(block)].explicitFrames = kExplicitFrames;
       return outcome;
     }
     ++outcome.substeps;
-    reached_s = simulation.scene.settings.frame_s * (i + 1) / steps;
+    --steps;
+    reached_s = frame_s - steps * step.drift_s;
     const std::uint64_t looked = step.counters.manifoldRefreshes + step.counters.contactsBorn;
     outcome.inside = updateContacts(step, renewalOfImplicitSteps(simulation));
     if (!outcome.inside) return outcome;

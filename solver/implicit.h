@@ -28,8 +28,8 @@ struct IslandOutcome {
 IslandOutcome runImplicitSteps(IslandStep& step, double& reached_s);
 
 /// One implicit step of step.drift_s. Returns false when it does not converge, or when blocks meet at speed in it; everything is
-/// then as before.
-bool stepImplicit(IslandStep& step);
+/// then as before. It gives up soon where `finerFollow`.
+bool stepImplicit(IslandStep& step, bool finerFollow);
 
 /// One step of implicit Euler from rest, of `effective_s`; a step towards static equilibrium. The contact memory ages by more
 /// than that, as in stepImplicit. Returns false when it does not converge; everything is then as before.

@@ -5,6 +5,7 @@
 #include "solver/implicit_history.h"
 #include "solver/inertia.h"
 #include "solver/meeting.h"
+#include "solver/ringing.h"
 #include "solver/stage_clock.h"
 
 #include <algorithm>
@@ -38,6 +39,8 @@ struct Iteration {
 // to kMostLeft: a ten thousandth of a weight alters a speed by 4 micrometres a second, and the next step looks at it anew.
 constexpr Iteration kInMotion{40, 1e5, 0.005};
 constexpr double kMostLeft = 10.0;
+// What does not converge in a few iterations does so in fewer with finer steps.
+constexpr Iteration kBeforeFiner{kMostIterations, 1e5, 0.005};
 // In steps from rest the weight of a tower that is laid down comes to its foot row by row, from far away.
 constexpr Iteration kFromRest{40, 0.0, 0.0};
 
@@ -324,7 +327,7 @@ bool finishStep(IslandStep& step, bool taken) {
 
 }  // namespace
 
-bool stepImplicit(IslandStep& step) {
+bool stepImplicit(IslandStep& step, bool finerFollow) {
   const double effective_s = endShare(step.simulation.scene.settings.method) * step.drift_s;
   synchronise(step);
   const bool carried = !islandOf(step).forcesKnown && isCarried(step, effective_s);
@@ -335,7 +338,8 @@ bool stepImplicit(IslandStep& step) {
   } else {
     foretell(step, effective_s);
   }
-  bool converged = solveStep(step, effective_s, carried, kInMotion);
+  const Iteration& how = finerFollow ? kBeforeFiner : kInMotion;
+  bool converged = solveStep(step, effective_s, carried, how);
   for (int trial = 0; converged && trial < kMostMeetings; ++trial) {
     StageClock clock(step.times);
     const Meetings met = meetingsIn(step);
@@ -344,8 +348,9 @@ bool stepImplicit(IslandStep& step) {
     if (met == Meetings::none) break;
     goBack(step);
     evaluateForces(step, step.simulation.state, step.simulation.state.velocity, 0.0, Memory::trial);
-    converged = solveStep(step, effective_s, false, kInMotion);
+    converged = solveStep(step, effective_s, false, how);
   }
+  if (converged && step.simulation.scene.settings.method != Method::implicitEuler) noteRinging(step, effective_s);
   return finishStep(step, converged);
 }
 

@@ -40,6 +40,17 @@ SPRINGTOWER_INLINE BlockTravel blockTravel(const CornerArray& now, const CornerA
   return {std::sqrt(std::max(std::max(most[0], most[1]), std::max(most[2], most[3]))), sum(deformed)};
 }
 
+// A path longer than its box reaches need not lead out of it.
+bool isInSweptBox(const IslandStep& step, std::size_t block) {
+  const SweptBoxes& boxes = step.engine.boxes;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const double* x = step.simulation.state.position.values(a, block);
+    const auto [least, most] = std::minmax_element(x, x + kCorners);
+    if (*least < boxes.lower[a][block] || *most > boxes.upper[a][block]) return false;
+  }
+  return true;
+}
+
 // Adds up the path of each block's fastest corner; `inside` tells whether all are in their swept boxes. A block whose corners
 // move apart by half its least side in one step has diverged: free flight is as fast as it likes, but nothing sound deforms like
 // that. NaN fails every comparison, so what is sound is asked for. Returns the first block that has diverged, or -1.
@@ -53,7 +64,7 @@ std::int32_t addPaths(IslandStep& step, bool& inside) {
     if (!(deformed < static_cast<double>(kCorners) * most * most)) return block;
     BlockClock& clock = step.engine.clock[b];
     clock.travel += path;
-    if (clock.travel - step.engine.travelAtSweep[b] > step.engine.reach[b]) inside = false;
+    if (clock.travel - step.engine.travelAtSweep[b] > step.engine.reach[b]) inside = inside && isInSweptBox(step, b);
   }
   return -1;
 }
