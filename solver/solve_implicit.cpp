@@ -350,7 +350,9 @@ bool stepImplicit(IslandStep& step, bool finerFollow) {
     evaluateForces(step, step.simulation.state, step.simulation.state.velocity, 0.0, Memory::trial);
     converged = solveStep(step, effective_s, false, how);
   }
-  if (converged && step.simulation.scene.settings.method != Method::implicitEuler) noteRinging(step, effective_s);
+  // Where a frame begins a force or the hand may jump, which is no ringing.
+  const bool jumps = islandOf(step).forced && step.time_s == step.simulation.time_s;
+  if (converged && !jumps && step.simulation.scene.settings.method != Method::implicitEuler) noteRinging(step, effective_s);
   return finishStep(step, converged);
 }
 
