@@ -57,26 +57,6 @@ Closing closingOf(const Simulation& simulation, const NearPair& pair) {
   return {gap, (gap - gapSoon) / soon};
 }
 
-// The same along whatever separates the blocks best now and at the end of the frame, as their corners go now: the direction known
-// of old turns neither with them nor with the tower that leans.
-Closing bestClosingOf(const Simulation& simulation, const NearPair& pair) {
-  const double soon = simulation.scene.settings.frame_s;
-  std::array<std::array<std::array<double, kCorners>, 3>, 2> ahead;
-  const auto carried = [&](std::int32_t block, std::size_t i) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const double* x = simulation.state.position.values(axis, static_cast<std::size_t>(block));
-      const double* v = simulation.state.velocity.values(axis, static_cast<std::size_t>(block));
-      for (std::size_t c = 0; c < kCorners; ++c) ahead[i][axis][c] = x[c] + soon * v[c];
-    }
-    return CornerView{ahead[i][0].data(), ahead[i][1].data(), ahead[i][2].data()};
-  };
-  const CornerArray& x = simulation.state.position;
-  const double gap =
-      findSeparation(cornersOf(x, static_cast<std::size_t>(pair.a)), cornersOf(x, static_cast<std::size_t>(pair.b))).best();
-  const double gapSoon = findSeparation(carried(pair.a, 0), carried(pair.b, 1)).best();
-  return {gap, (gap - gapSoon) / soon};
-}
-
 // The longest way of a corner of a block in the step just found, m, or a little more; the floor and what sleeps go none.
 double wayOf(const IslandStep& step, std::int32_t block) {
   if (sleeps(step.simulation, block)) return 0.0;
@@ -224,11 +204,9 @@ bool meetsSoon(const IslandStep& step, double step_s) {
   return std::any_of(step.pairs.begin(), step.pairs.end(), [&](std::int32_t at) {
     const NearPair& pair = step.engine.pairs[static_cast<std::size_t>(at)];
     if (pair.manifold.touch != Touch::apart) return false;
-    const auto meets = [&](const Closing& closing) {
-      const double reach = frame_s * (std::max(0.0, closing.speed) + 0.5 * frame_s * simulation.scene.gravity.magnitude);
-      return closing.gap < reach && closing.speed * step_s > kMostClosing * simulation.tolerance_m;
-    };
-    return meets(closingOf(simulation, pair)) && (pair.b < 0 || meets(bestClosingOf(simulation, pair)));
+    const Closing closing = closingOf(simulation, pair);
+    const double reach = frame_s * (std::max(0.0, closing.speed) + 0.5 * frame_s * simulation.scene.gravity.magnitude);
+    return closing.gap < reach && closing.speed * step_s > kMostClosing * simulation.tolerance_m;
   });
 }
 

@@ -6,7 +6,6 @@
 #include "solver/forces_now.h"
 #include "solver/implicit.h"
 #include "solver/island_step.h"
-#include "solver/meeting.h"
 #include "solver/simulation.h"
 #include "tests/support/block_scenes.h"
 
@@ -128,35 +127,6 @@ TEST(Ringing, OfWhatIsCalmIsNotFollowed) {
   };
   EXPECT_EQ(stepsAt(10.0 * calm), 8);
   EXPECT_EQ(stepsAt(0.01 * calm), 1);
-}
-
-// A tower of three rows that turns as one about an edge of its foot: nothing in it meets, though neighbours' faces close along
-// any direction that stands still.
-TEST(Meeting, IsNotSeenBetweenNeighboursThatTurnTogether) {
-  constexpr double kTurning = 1.0;  // rad/s
-  Scene scene = towerScene(3);
-  scene.settings.sleep = Sleep::off;
-  scene.settings.method = Method::implicit;
-  Simulation simulation(scene);
-  stepFor(simulation, 0.5);
-  double edge = 0.0;
-  for (std::size_t c = 0; c < kCorners; ++c) edge = std::max(edge, simulation.state.position.at(0, c).x());
-  for (std::size_t b = 0; b < simulation.model.blockCount(); ++b) {
-    for (std::size_t c = 0; c < kCorners; ++c) {
-      const Vec3 arm = simulation.state.position.at(b, c) - Vec3(edge, 0.0, 0.0);
-      simulation.state.velocity.values(0, b)[c] = kTurning * arm.z();
-      simulation.state.velocity.values(1, b)[c] = 0.0;
-      simulation.state.velocity.values(2, b)[c] = -kTurning * arm.x();
-    }
-  }
-  std::vector<std::int32_t> blocks;
-  std::vector<std::int32_t> pairs;
-  for (std::size_t b = 0; b < simulation.model.blockCount(); ++b) blocks.push_back(static_cast<std::int32_t>(b));
-  for (std::size_t p = 0; p < simulation.engine->pairs.size(); ++p) pairs.push_back(static_cast<std::int32_t>(p));
-  Counters counters;
-  StageTimes times;
-  const IslandStep step{simulation, *simulation.engine, blocks, pairs, counters, times, contactLaw(simulation)};
-  EXPECT_FALSE(meetsSoon(step, 0.25 * scene.settings.frame_s));
 }
 
 }  // namespace
