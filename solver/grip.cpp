@@ -15,6 +15,12 @@ constexpr double kCarryTime_s = 0.03;
 // Most force across its line that a hand which draws has, in the block's weights, and most torque, in what holds the block level
 // by its end.
 constexpr double kSteady = 1.5;
+// How fast a hand that draws gives in to the height at which its block lies.
+constexpr double kGiveIn_s = 0.05;
+// How far inside what it lies on such a hand keeps the centre of its block from tipping, in heights of the block.
+constexpr double kInside = 0.75;
+// Contacts that push upwards rather than aside, by the cosine.
+constexpr double kUpwards = 0.5;
 // Below this the block counts as free.
 constexpr double kTouch_n = 1e-4;
 
@@ -27,6 +33,27 @@ double bearable(double rate_rad_s, const Simulation& simulation) {
   return std::min(rate_rad_s, kShare * simulation.fixedSubsteps / settings.frame_s);
 }
 
+// What lies under a block: how it lifts the block, N, and from where to where it reaches along a line from the block's centre, m.
+struct Support {
+  double lift_n = 0.0;
+  double from_m = 1e300;
+  double to_m = -1e300;
+};
+
+Support supportOf(std::span<const ContactForce> contacts, BlockId block, const Vec3& middle, const Vec3& line) {
+  Support support;
+  for (const ContactForce& contact : contacts) {
+    if (contact.upper != block && contact.lower != block) continue;
+    const double sense = contact.upper == block ? 1.0 : -1.0;
+    if (!(contact.normalForce > 0.0) || sense * contact.normal.z() < kUpwards) continue;
+    const double along = (contact.point - middle).dot(line);
+    support.from_m = std::min(support.from_m, along);
+    support.to_m = std::max(support.to_m, along);
+    support.lift_n += sense * contact.normalForce * contact.normal.z();
+  }
+  return support;
+}
+
 // What all contacts together lift a block with, N.
 double liftOf(std::span<const ContactForce> contacts, BlockId block) {
   double lift = 0.0;
@@ -36,6 +63,15 @@ double liftOf(std::span<const ContactForce> contacts, BlockId block) {
     if (contact.lower == block) lift -= onUpper;
   }
   return lift;
+}
+
+// Share of a block's weight that a hand has to take up. One that draws leaves it all to what lies under the block, as long as
+// that bears half of it: it would else hold its block at the height where that was, and lift what is light off its other
+// supports.
+double missingOf(std::span<const ContactForce> contacts, const Support& support, const Hand& hand, double weight) {
+  if (!(weight > 0.0)) return 0.0;
+  const double borne = hand.line.isZero(0.0) ? liftOf(contacts, hand.block) : 2.0 * support.lift_n;
+  return std::clamp(1.0 - borne / weight, 0.0, 1.0);
 }
 
 // Moves the hand's turn towards the one that is wanted, critically damped (exact for any time).
@@ -58,9 +94,16 @@ double followCourse(double rate_rad_s, double time_s) {
 }
 
 Eigen::Quaterniond orientationOf(const CornerArray& position, std::size_t block) {
-  const Eigen::Matrix3d edges = meanEdges(position, block).colwise().normalized();
+  Eigen::Matrix3d edges = meanEdges(position, block);
+  const Vec3 length = edges.colwise().norm();
+  Eigen::Index shortest = 0;
+  length.minCoeff(&shortest);
+  edges = (edges * length.asDiagonal()).eval();
+  edges.col(shortest).setZero();
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(edges, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  return Eigen::Quaterniond(Eigen::Matrix3d(svd.matrixU() * svd.matrixV().transpose())).normalized();
+  const double sense = svd.matrixU().determinant() * svd.matrixV().determinant();  // two edges are told from their mirror image
+  const Eigen::Matrix3d turn = svd.matrixU() * Vec3(1.0, 1.0, sense).asDiagonal() * svd.matrixV().transpose();
+  return Eigen::Quaterniond(turn).normalized();
 }
 
 void hold(const Hand& hand, std::span<const ContactForce> contacts, Grip& grip, Simulation& simulation) {
@@ -69,7 +112,9 @@ void hold(const Hand& hand, std::span<const ContactForce> contacts, Grip& grip, 
   const double mass = simulation.model.mass[b];
   const Vec3 gravity = simulation.scene.gravity.at(simulation.time_s);
   const double weight = mass * std::max(-gravity.z(), 0.0);
-  const double missing = weight > 0.0 ? std::clamp(1.0 - liftOf(contacts, hand.block) / weight, 0.0, 1.0) : 0.0;
+  const bool draws = !hand.line.isZero(0.0);
+  const Support support = supportOf(contacts, hand.block, centre(simulation.state.position, b), hand.line);
+  const double missing = missingOf(contacts, support, hand, weight);
   if (grip.block != hand.block) {
     grip = {hand.block, missing, orientationOf(simulation.state.position, b), Vec3::Zero()};
   } else {
@@ -96,7 +141,16 @@ void hold(const Hand& hand, std::span<const ContactForce> contacts, Grip& grip, 
   tether.damping_n_s_m = 2.0 * mass * rate;
   tether.cornerStiffness_n_m = cornerMass * level * level;
   tether.cornerDamping_n_s_m = 2.0 * cornerMass * level;
+  const double tilt = draws ? std::min(level, kTilt_rad_s) : level;
+  tether.tiltStiffness_n_m = cornerMass * tilt * tilt;
+  tether.tiltDamping_n_s_m = 2.0 * cornerMass * tilt;
   tether.carried_n = -grip.carried * mass * gravity;
+  tether.carriedOnEdges_n.setZero();
+  if (draws && support.lift_n > 0.0) {
+    const double inside = std::min(kInside * simulation.model.dimensions[b].minCoeff(), 0.5 * (support.to_m - support.from_m));
+    const double over = std::max(0.0, inside - support.to_m);
+    tether.carriedOnEdges_n = forcesOnEdges(-over * mass * hand.line.cross(gravity), meanEdges(simulation.state.position, b));
+  }
   Vec3 sides = simulation.model.dimensions[b];
   std::sort(sides.data(), sides.data() + 3);
   tether.limit_n = hand.limit_n;
@@ -125,6 +179,8 @@ void drawOn(Draw& draw, std::span<const ContactForce> contacts, Simulation& simu
   const double ahead = (hand.place - centre(simulation.state.position, b)).dot(hand.line);
   hand.velocity = (ahead < reach ? draw.speed_m_s : 0.0) * hand.line;
   hand.place += simulation.scene.settings.frame_s * hand.velocity;
+  const double give = (1.0 - draw.grip.carried) * (1.0 - std::exp(-simulation.scene.settings.frame_s / kGiveIn_s));
+  hand.place.z() += give * (centre(simulation.state.position, b).z() - hand.place.z());
   hold(hand, contacts, draw.grip, simulation);
 }
 

@@ -13,8 +13,9 @@ namespace springtower {
 inline constexpr double kGripForce_n = 5.0;     ///< N, the default limit
 inline constexpr double kFollow_rad_s = 50.0;   ///< natural frequency of the follow of a free block, 1/s
 inline constexpr double kLead_rad_s = 300.0;    ///< the same of a hand that leads its block along a line
-inline constexpr double kLevel_rad_s = 3000.0;  ///< and of its hold on the block's orientation: softer, a block that hangs over
-                                                ///< tips, and its end lifts what lies on it and drags it along
+inline constexpr double kLevel_rad_s = 3000.0;  ///< and of its hold on the block's orientation
+inline constexpr double kTilt_rad_s = 100.0;    ///< but where it draws, on how the block leans: a hand that is as stiff as above
+                                                ///< presses it against rows that lean as the tower sways, and lifts what is light
 
 /// What the hand wants in one frame.
 struct Hand {
@@ -25,9 +26,10 @@ struct Hand {
                                                              ///< block's middle side, what two fingers on its sides can give
   Vec3 velocity = Vec3::Zero();                              ///< m/s, of the place during the frame
   double rate_rad_s = kFollow_rad_s;                         ///< how stiffly its place is followed
-  Vec3 line = Vec3::Zero();                                  ///< unit where it draws along a line: it then holds the block on
-                                                             ///< the line and level by no more than the block's weight asks
-                                                             ///< for, and does not force it against its neighbours
+  Vec3 line = Vec3::Zero();                                  ///< unit where it draws along a line: it then lets the block lie as
+                                                             ///< its supports do, and carries what hangs over them, so that its
+                                                             ///< other end does not lift what lies on it; all by no more than
+                                                             ///< the block's weight asks for
 };
 
 /// Distance left after a time, from rest at distance 1, of a free block that follows the hand: critically damped, (1 + w t)
@@ -46,7 +48,8 @@ struct Grip {
 /// How the held block touches others.
 enum class Hold { none, free, sticks, slips };
 
-/// The orientation of a (slightly deformed) block: the rotation nearest to its mean edges.
+/// The orientation of a (slightly deformed) block: the rotation nearest to its two longer mean edges. The shortest is left out,
+/// as friction shears it without turning the block.
 Eigen::Quaterniond orientationOf(const CornerArray& position, std::size_t block);
 
 /// Lets the hand hold its block in the coming frame (simulation.tether), and brings its memory up to date. `contacts`:

@@ -63,6 +63,13 @@ int implicitSteps(const IslandStep& step, bool forced, bool known) {
   return steps;
 }
 
+// Steps that what is left of a frame takes where it does more than fewer were chosen for: where friction gives way at once all
+// along a block, not even those do.
+int finerSteps(double share, int steps) {
+  const auto of = [&](int frame) { return static_cast<int>(std::lround(share * frame)); };
+  return of(kImplicitSteps) > steps ? of(kImplicitSteps) : of(kMostRingingSteps);
+}
+
 // A force that has ended leaves another acceleration than that of the step before. One that begins has friction against it soon.
 void forgetSteps(IslandStep& step) {
   for (const std::int32_t block : step.blocks) step.engine.clock[static_cast<std::size_t>(block)].history_s = 0.0;
@@ -171,8 +178,8 @@ IslandOutcome runImplicitSteps(IslandStep& step, double& reached_s) {
   while (steps > 0) {
     step.time_s = simulation.time_s + reached_s;
     step.gravity = simulation.scene.gravity.at(step.time_s + step.drift_s);  // forces are those of the step's end
-    const int finer = static_cast<int>(std::lround((1.0 - reached_s / frame_s) * kImplicitSteps));
-    const bool finerFollow = finer > steps && simulation.scene.settings.substeps == 0;  // if it does more than it was known for
+    const int finer = finerSteps(1.0 - reached_s / frame_s, steps);
+    const bool finerFollow = finer > steps && simulation.scene.settings.substeps == 0;
     if (!stepImplicit(step, finerFollow)) {
       if (finerFollow) {
         takeSteps(finer);

@@ -234,7 +234,8 @@ TetherStiffness tetherStiffness(const IslandStep& step, double step_s) {
   if (!holdsTether(step)) return {};
   const Tether& tether = step.simulation.tether;
   return {tether.block, tether.stiffness_n_m + tether.damping_n_s_m / step_s,
-          tether.cornerStiffness_n_m + tether.cornerDamping_n_s_m / step_s};
+          tether.cornerStiffness_n_m + tether.cornerDamping_n_s_m / step_s,
+          tether.tiltStiffness_n_m + tether.tiltDamping_n_s_m / step_s};
 }
 
 bool isTetherLimited(const IslandStep& step) {

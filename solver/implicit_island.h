@@ -15,7 +15,8 @@ namespace springtower {
 struct TetherStiffness {
   BlockId block = kFloor;
   double centre = 0.0;  ///< N/m, in an implicit step, where nothing is at its limit
-  double corner = 0.0;  ///< N/m, of one corner about the centre
+  double corner = 0.0;  ///< N/m, of one corner about the centre, level
+  double tilt = 0.0;    ///< N/m, the same up and down
   bool operator==(const TetherStiffness&) const = default;
 };
 

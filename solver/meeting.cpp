@@ -150,7 +150,9 @@ Vec3 velocityAt(const BlockFrame& frame, const AffineField& motion, const Vec3& 
   return velocity;
 }
 
-// How fast the points of a manifold open or close, the slowest of them, m/s; of those that push, where any does.
+// How fast the points of a manifold open or close, the slowest of them, m/s; of those that pushed last, where any did. What is
+// open and opens further has parted, as where the end of a block that is drawn out leaves its support; but what explicit steps
+// brought here rebounds.
 double slowestRate(const IslandStep& step, const Manifold& manifold) {
   const MotionState& state = step.simulation.state;
   const auto u = static_cast<std::size_t>(manifold.upper);
@@ -163,11 +165,14 @@ double slowestRate(const IslandStep& step, const Manifold& manifold) {
   const PointForces points =
       pointForces(manifold, {&upper, &still, &still}, {manifold.lower < 0 ? nullptr : &lower, &still, &still}, step.law);
   const bool any = anyPointTouches(manifold);
+  const bool rebounds = step.engine.clock[u].lastDrift_s > 0.0 || (manifold.lower >= 0 && step.engine.clock[l].lastDrift_s > 0.0);
   double slowest = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < static_cast<std::size_t>(manifold.count); ++i) {
     if (any && manifold.live[i] == 0.0) continue;
     const Vec3 apart = velocityAt(upper, upperMotion, points.place[i]) - velocityAt(lower, lowerMotion, points.lowerPlace[i]);
-    slowest = std::min(slowest, std::abs(points.direction.dot(apart)));
+    const double opening = points.direction.dot(apart);
+    const bool parted = !rebounds && points.depth[i] <= 0.0 && opening > 0.0;
+    slowest = std::min(slowest, parted ? 0.0 : std::abs(opening));
   }
   return slowest;
 }

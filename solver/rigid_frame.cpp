@@ -167,11 +167,14 @@ void applyTether(IslandStep& step) {
   const double h = step.drift_s;
   const double cornerInverseMass = inverseMass(step.simulation.scene.settings.inertia).own * body.inverseMass;
   const double centre = 1.0 + h * body.inverseMass * (tether.damping_n_s_m + h * tether.stiffness_n_m);
-  const double corners = 1.0 + h * cornerInverseMass * (tether.cornerDamping_n_s_m + h * tether.cornerStiffness_n_m);
+  const double level = 1.0 + h * cornerInverseMass * (tether.cornerDamping_n_s_m + h * tether.cornerStiffness_n_m);
+  const double tilt = 1.0 + h * cornerInverseMass * (tether.tiltDamping_n_s_m + h * tether.tiltStiffness_n_m);
   tether.stiffness_n_m /= centre;
   tether.damping_n_s_m /= centre;
-  tether.cornerStiffness_n_m /= corners;
-  tether.cornerDamping_n_s_m /= corners;
+  tether.cornerStiffness_n_m /= level;
+  tether.cornerDamping_n_s_m /= level;
+  tether.tiltStiffness_n_m /= tilt;
+  tether.tiltDamping_n_s_m /= tilt;
   MotionState& state = step.simulation.state;
   for (std::size_t c = 0; c < kCorners; ++c)
     state.velocity.set(b, c, body.velocity + body.spin.cross(state.position.at(b, c) - body.place));

@@ -45,12 +45,19 @@ CentrePull centrePull(const Tether& tether, const MotionState& state, double ahe
   return pull;
 }
 
-// What would turn it without its limit. The tether holds the mean edges: corners that warp are left to the block's own springs.
+// What would turn it without its limit. The tether holds the two longer mean edges: corners that warp are left to the block's own
+// springs, and so is the shortest edge, which friction on the faces shears without turning the block.
 struct EdgePull {
   Eigen::Matrix3d edges;   // m
   Eigen::Matrix3d wanted;  // N, a column an edge: a corner is pushed by the sum of half of each, to its side
   Vec3 torque;             // N m
 };
+
+Eigen::Index shortestEdge(const BlockModel& model, std::size_t block) {
+  Eigen::Index shortest = 0;
+  model.dimensions[block].minCoeff(&shortest);
+  return shortest;
+}
 
 EdgePull edgePull(const Tether& tether, const BlockModel& model, const MotionState& state, double ahead_s) {
   const std::size_t b = index(tether.block);
@@ -60,8 +67,11 @@ EdgePull edgePull(const Tether& tether, const BlockModel& model, const MotionSta
   pull.edges = meanEdges(state.position, b);
   Eigen::Matrix3d turning;
   for (int a = 0; a < 3; ++a) turning.col(a) = tether.spin.cross(copy.col(a));
-  pull.wanted =
-      tether.cornerStiffness_n_m * (copy - pull.edges) + tether.cornerDamping_n_s_m * (turning - meanEdges(state.velocity, b));
+  const Vec3 stiffness(tether.cornerStiffness_n_m, tether.cornerStiffness_n_m, tether.tiltStiffness_n_m);
+  const Vec3 damping(tether.cornerDamping_n_s_m, tether.cornerDamping_n_s_m, tether.tiltDamping_n_s_m);
+  pull.wanted = stiffness.asDiagonal() * (copy - pull.edges) + damping.asDiagonal() * (turning - meanEdges(state.velocity, b));
+  pull.wanted.col(shortestEdge(model, b)).setZero();
+  pull.wanted += tether.carriedOnEdges_n;
   pull.torque = Vec3::Zero();
   for (int a = 0; a < 3; ++a) pull.torque += kOnEdge * pull.edges.col(a).cross(pull.wanted.col(a));
   return pull;
@@ -73,6 +83,14 @@ double shareOf(const Vec3& torque, double limit_n_m) {
 }
 
 }  // namespace
+
+Eigen::Matrix3d forcesOnEdges(const Vec3& torque_n_m, const Eigen::Matrix3d& edges) {
+  const Eigen::Matrix3d resists = edges.squaredNorm() * Eigen::Matrix3d::Identity() - edges * edges.transpose();
+  const Vec3 turn = resists.inverse() * torque_n_m / kOnEdge;
+  Eigen::Matrix3d forces;
+  for (int a = 0; a < 3; ++a) forces.col(a) = turn.cross(edges.col(a));
+  return forces;
+}
 
 GripForce tetherForces(const Tether& tether, const BlockModel& model, const MotionState& state, double time_s,
                        std::array<Vec3, kCorners>& corner) {
@@ -113,15 +131,21 @@ TetherMatrix tetherResistance(const Tether& tether, const BlockModel& model, con
   }
 
   const EdgePull turn = edgePull(tether, model, state, ahead_s);
-  const double resists = kOnEdge * (tether.cornerStiffness_n_m + tether.cornerDamping_n_s_m / step_s);
+  const double level = kOnEdge * (tether.cornerStiffness_n_m + tether.cornerDamping_n_s_m / step_s);
+  const double tilt = kOnEdge * (tether.tiltStiffness_n_m + tether.tiltDamping_n_s_m / step_s);
+  const Vec3 resists(level, level, tilt);
   const double share = shareOf(turn.torque, tether.torqueLimit_n_m);
-  result.bottomRightCorner<9, 9>().diagonal().setConstant(share * resists);
+  const Eigen::Index free = shortestEdge(model, index(tether.block));
+  for (Eigen::Index a = 0; a < 3; ++a) {
+    if (a != free) result.diagonal().segment<3>(3 + 3 * a) = share * resists;
+  }
   if (share < 1.0 && share > 0.0) {
     // The share falls as the torque grows that it is of.
     const Vec3 way = turn.torque.normalized();
     const Eigen::Matrix3d force = kOnEdge * turn.wanted;
     for (int b = 0; b < 3; ++b) {
-      const Vec3 growth = (force.col(b).cross(way) - resists * way.cross(turn.edges.col(b))) / turn.torque.norm();
+      const Vec3 spring = b == free ? Vec3(Vec3::Zero()) : Vec3(resists.cwiseProduct(way.cross(turn.edges.col(b))));
+      const Vec3 growth = (force.col(b).cross(way) - spring) / turn.torque.norm();
       for (int a = 0; a < 3; ++a) result.block<3, 3>(3 + 3 * a, 3 + 3 * b) += share * force.col(a) * growth.transpose();
     }
   }

@@ -17,15 +17,19 @@ struct Tether {
   Eigen::Quaterniond turn = Eigen::Quaterniond::Identity();  ///< from the copy's axes to the world's at `time_s`; unit
   Vec3 spin = Vec3::Zero();                                  ///< rad/s
   double time_s = 0.0;
-  double stiffness_n_m = 0.0;        ///< of the centre
-  double damping_n_s_m = 0.0;        ///< of the centre
-  double cornerStiffness_n_m = 0.0;  ///< of one corner about the centre
-  double cornerDamping_n_s_m = 0.0;  ///< of one corner about the centre
-  Vec3 carried_n = Vec3::Zero();     ///< what the hand carries of the block's weight whatever its place
-  double limit_n = 0.0;              ///< most force
-  Vec3 line = Vec3::Zero();          ///< unit where the hand draws along a line, else zero
-  double acrossLimit_n = 0.0;        ///< most force across that line
-  double torqueLimit_n_m = 0.0;      ///< most torque
+  double stiffness_n_m = 0.0;                                  ///< of the centre
+  double damping_n_s_m = 0.0;                                  ///< of the centre
+  double cornerStiffness_n_m = 0.0;                            ///< of one corner about the centre, level
+  double cornerDamping_n_s_m = 0.0;                            ///< likewise
+  double tiltStiffness_n_m = 0.0;                              ///< of one corner about the centre, up and down
+  double tiltDamping_n_s_m = 0.0;                              ///< likewise
+  Vec3 carried_n = Vec3::Zero();                               ///< what the hand carries of the block's weight whatever its place
+  Eigen::Matrix3d carriedOnEdges_n = Eigen::Matrix3d::Zero();  ///< and of its weight's torque about what it hangs over, a column
+                                                               ///< an edge: a corner is pushed by the sum of half of each
+  double limit_n = 0.0;                                        ///< most force
+  Vec3 line = Vec3::Zero();                                    ///< unit where the hand draws along a line, else zero
+  double acrossLimit_n = 0.0;                                  ///< most force across that line
+  double torqueLimit_n_m = 0.0;                                ///< most torque
 };
 
 /// What a hand does to its block.
@@ -36,6 +40,9 @@ struct GripForce {
   bool acrossLimited = false;  ///< the same of its part across the line
   bool turnLimited = false;    ///< the same of the torque
 };
+
+/// A torque (N m) as forces on a block's mean edges (m, a column each), N: those that turn all of them alike.
+Eigen::Matrix3d forcesOnEdges(const Vec3& torque_n_m, const Eigen::Matrix3d& edges);
 
 using TetherMatrix = Eigen::Matrix<double, 12, 12>;
 

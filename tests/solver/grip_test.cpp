@@ -246,6 +246,18 @@ TEST(Grip, RigidMethodsFollowToo) {
   }
 }
 
+// Friction on both faces shears a block by a tenth of a radian: its bottom and its top lie as before, so it is not turned.
+TEST(Grip, AShearedBlockIsNotTurned) {
+  Simulation simulation(oneBlockScene(false));
+  const Eigen::Quaterniond turn = orientationOf(simulation.state.position, 0);
+  const double height = simulation.model.dimensions[0].z();
+  for (std::size_t c = 0; c < kCorners; ++c) {
+    const Vec3 shear(0.05 * cornerSide(c, 2) * height, 0.0, 0.0);
+    simulation.state.position.set(0, c, simulation.state.position.at(0, c) + shear);
+  }
+  EXPECT_LT(orientationOf(simulation.state.position, 0).angularDistance(turn), 1e-7);
+}
+
 // A hand that lets go of one block and takes another in the same frame.
 TEST(Grip, TakesAnotherBlockAtOnce) {
   Held held(towerScene(6));

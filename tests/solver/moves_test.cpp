@@ -75,6 +75,19 @@ TEST(Moves, ABlockUnderTheTopRowLeavesItWhereItIs) {
   }
 }
 
+// The same under the top row of 18 that sway, as nothing sleeps: a hand that held the block level against the row that leans
+// under it took the top row along.
+TEST(Moves, ABlockUnderTheTopRowOfASwayingTowerLeavesItWhereItIs) {
+  Scene scene = towerScene(18);
+  scene.settings.sleep = Sleep::off;
+  scene.moves = {take(16, 2, Vec3::UnitX())};
+  Simulation simulation(scene);
+  const RunResult result = play(simulation);
+  ASSERT_EQ(result.moves.size(), 1U);
+  EXPECT_TRUE(result.moves[0].done && result.moves[0].rested);
+  EXPECT_LT(result.moves[0].moved_m, toleranceOf(scene));
+}
+
 // The lone block under others, at the side: statics says that what is left falls, and it falls.
 TEST(Moves, TakingTheLastSupportBringsTheTowerDown) {
   Scene scene = bitCodeScene("(111)-(110)-(111)");
