@@ -54,8 +54,8 @@ Eigen::Quaterniond orientationOf(const CornerArray& position, std::size_t block)
 
 /// Lets the hand hold its block in the coming frame (simulation.tether), and brings its memory up to date. `contacts`:
 /// those on the block (contactForcesOn) or all, as the simulation stands. The hand takes the weight of a block as far as no
-/// contact carries it: a gripped block of the tower rests as before, and one in the air does not sag. Precondition: the hand
-/// holds a block.
+/// contact carries it, one that draws as far as nothing below the block does: a gripped block of the tower rests as before, and
+/// one in the air does not sag. Precondition: the hand holds a block.
 void hold(const Hand& hand, std::span<const ContactForce> contacts, Grip& grip, Simulation& simulation);
 
 /// Lets go.
