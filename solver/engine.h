@@ -43,6 +43,7 @@ struct BlockClock {
   double history_s = 0.0;           ///< s; the implicit step that led here from engine.previous, 0 where it was none
   std::int32_t explicitFrames = 0;  ///< frames that the block's island is still to be stepped explicitly
   std::int32_t implicitSteps = 0;   ///< steps of a frame that its ringing asked for last
+  bool forced = false;              ///< whether a user's force or the hand acts on its island, as of the last frame begun
   double jerk = 0.0;            ///< kg m2/s6; mass by the square of its corners' change of acceleration, mean over some frames
   double motion = 0.0;          ///< kg m2/s2; mass by the square of its corners' velocity, alike
   double travel = 0.0;          ///< m; path length of the block's fastest corner, ever growing

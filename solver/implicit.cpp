@@ -151,20 +151,21 @@ IslandOutcome runImplicitSteps(IslandStep& step, double& reached_s) {
   reached_s = 0.0;
   ImplicitIsland& island = engine.implicitIslands[static_cast<std::size_t>(step.blocks.front())];
   const bool forced = holdsTether(step) || isPushed(step);
-  if (island.forced && !forced) forgetSteps(step);
-  int steps = implicitSteps(step, forced, forced == island.forced);
+  const bool wasForced = engine.clock[static_cast<std::size_t>(step.blocks.front())].forced;
+  if (wasForced && !forced) forgetSteps(step);
+  int steps = implicitSteps(step, forced, forced == wasForced);
   bool fits = implicitStepsFit(step, frame_s / steps);
   if (!fits && steps < kImplicitSteps && simulation.scene.settings.substeps == 0) {
     steps = kImplicitSteps;
     fits = implicitStepsFit(step, frame_s / steps);
   }
   for (const std::int32_t block : step.blocks) {
-    std::int32_t& frames = engine.clock[static_cast<std::size_t>(block)].explicitFrames;
-    frames = std::max(0, frames - 1);
+    BlockClock& clock = engine.clock[static_cast<std::size_t>(block)];
+    clock.explicitFrames = std::max(0, clock.explicitFrames - 1);
+    clock.forced = forced;
   }
   // Where nothing has come or gone since, the forces are those that the last frame ended with.
-  const bool known = island.forcesKnown && !engine.regrouped && !island.forced && !forced;
-  island.forced = forced;
+  const bool known = island.forcesKnown && !engine.regrouped && !wasForced && !forced;
   island.forcesKnown = false;
   if (!fits) return outcome;
   const auto takeSteps = [&](int count) {

@@ -39,7 +39,6 @@ struct ImplicitIsland {
   bool moved = false;        ///< whether engine.trial holds a state after the step's start
   bool near = false;         ///< whether the iteration is so near the solution that contacts may be taken as they stand
   bool forcesKnown = false;  ///< engine.force holds the forces at the island's present state
-  bool forced = false;       ///< and with them those of a user or the hand
   BlockCholesky matrix;
   std::vector<std::int32_t> touching;                      ///< touching pairs, as positions in engine.pairs
   std::vector<BlockSlot> slot;                             ///< of each of these; at = -1 where one side is the floor or asleep

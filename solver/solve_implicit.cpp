@@ -351,7 +351,8 @@ bool stepImplicit(IslandStep& step, bool finerFollow) {
     converged = solveStep(step, effective_s, false, how);
   }
   // Where a frame begins a force or the hand may jump, which is no ringing.
-  const bool jumps = islandOf(step).forced && step.time_s == step.simulation.time_s;
+  const bool jumps =
+      step.engine.clock[static_cast<std::size_t>(step.blocks.front())].forced && step.time_s == step.simulation.time_s;
   if (converged && !jumps && step.simulation.scene.settings.method != Method::implicitEuler) noteRinging(step, effective_s);
   return finishStep(step, converged);
 }
