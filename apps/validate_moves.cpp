@@ -149,8 +149,7 @@ void pullAll(RemovalSequence& sequence) {
   }
 }
 
-void addRemovalsByPulling(const ValidationPlan& plan, Sleep sleep, ValidationSection& section) {
-  std::vector<RemovalSequence> sequences = removalSequences(plan);
+void addRemovalsByPulling(std::vector<RemovalSequence> sequences, Sleep sleep, ValidationSection& section) {
   for (RemovalSequence& sequence : sequences) sequence.scene.settings.sleep = sleep;
   tbb::parallel_for(std::size_t{0}, sequences.size(),
                     [&](std::size_t i) { tbb::this_task_arena::isolate([&] { pullAll(sequences[i]); }); });
@@ -179,8 +178,9 @@ ValidationSection validateMoves(const ValidationPlan& plan) {
       "comes, and once with nothing asleep. "
       "After a state that differs a sequence is not counted further."};
   addSequence(plan, section);
-  addRemovalsByPulling(plan, Sleep::on, section);
-  addRemovalsByPulling(plan, Sleep::off, section);
+  const std::vector<RemovalSequence> sequences = removalSequences(plan);
+  addRemovalsByPulling(sequences, Sleep::on, section);
+  addRemovalsByPulling(sequences, Sleep::off, section);
   return section;
 }
 
