@@ -163,7 +163,9 @@ std::unique_ptr<PreparedScene> prepareScene(const ProfileCase& what, const Profi
   try {
     if (what.scene == ProfileScene::asleep) {
       fallAsleep(*scene, deadline);
-    } else if (what.scene != ProfileScene::collapse && what.scene != ProfileScene::pile) {
+    } else if (what.scene == ProfileScene::collapse) {
+      scene->step();  // it looks for the equilibrium that the tower starts from: that is loading
+    } else if (what.scene != ProfileScene::pile) {
       settle(*scene, limits.settle_s, deadline);
     }
     if (isPull(what.scene)) startPulling(*scene, what.rows, Deadline(limits.prepare_s));

@@ -1,6 +1,7 @@
 #include "solver/contact_force.h"
 
 #include "core/lanes.h"
+#include "solver/point_lanes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,36 +12,6 @@ namespace {
 
 constexpr double kLeastRelaxingRatio = 1e-9;  // stands for none: no branch, no lag
 constexpr double kLeastShare = 1e-30;         // of friction, left to a point that slides unpressed: that it slides must be seen
-
-// Memory and force of up to four points.
-struct PointLanes {
-  Lanes stretch[3];
-  Lanes relaxed, offset, scale, live, sliding;
-  Lanes force[3];
-  Lanes normalForce;
-};
-
-SPRINGTOWER_INLINE void loadPoints(const PointMemory& m, std::size_t first, PointLanes& p) {
-  load(m.stretchX.data() + first, p.stretch[0]);
-  load(m.stretchY.data() + first, p.stretch[1]);
-  load(m.stretchZ.data() + first, p.stretch[2]);
-  load(m.relaxed.data() + first, p.relaxed);
-  load(m.offset.data() + first, p.offset);
-  load(m.scale.data() + first, p.scale);
-  load(m.live.data() + first, p.live);
-  load(m.sliding.data() + first, p.sliding);
-}
-
-SPRINGTOWER_INLINE void storePoints(const PointLanes& p, std::size_t first, PointMemory& m) {
-  store(p.stretch[0], m.stretchX.data() + first);
-  store(p.stretch[1], m.stretchY.data() + first);
-  store(p.stretch[2], m.stretchZ.data() + first);
-  store(p.relaxed, m.relaxed.data() + first);
-  store(p.offset, m.offset.data() + first);
-  store(p.scale, m.scale.data() + first);
-  store(p.live, m.live.data() + first);
-  store(p.sliding, m.sliding.data() + first);
-}
 
 // Inverse mass of a point of a face whose four points are pushed alike, over that of the block: 4 (1 + 3), as it moves and
 // squashes.
@@ -53,6 +24,7 @@ struct LawStep {
   double impactFactor;  // stiffness scale per squared approach speed
   double scaleKeep;     // what is left of a scale's excess after the step
   double relaxGain;     // how much of its lag the relaxing branch forgets in the step
+  double scaleMost;     // that a point born now may have
   double pointMass;     // kg that a point moves at least: all four of a face that is hit flat push and squash the block
 };
 
@@ -65,6 +37,7 @@ SPRINGTOWER_INLINE LawStep lawStep(const Manifold& m, const ContactLaw& law, con
           reducedMass / (stiffness * aim * aim),
           1.0 / (1.0 + step.advance_s / law.scaleTime_s),
           step.advance_s / (law.relaxingTime_s + step.advance_s),
+          std::max(law.longSteps ? law.restingScale : step.scaleMost, step.bornMost_s2 * reducedMass / stiffness),
           reducedMass / kFlatInverse};
 }
 
@@ -81,15 +54,15 @@ SPRINGTOWER_INLINE void pointLaw(const LawStep& s, const Lanes& depth, const Lan
   const ContactLaw& law = s.law;
   const Lanes closing = -(relative[0] * normal[0] + relative[1] * normal[1] + relative[2] * normal[2]);
 
-  // A point that is reached in this step starts with no force: its offset is the depth it is found at (or, seen from a step's
-  // end, the surface), so it adds no energy. It is stiffened so that its impact stops within the depth aimed at. The offset
-  // shrinks as the point lifts, where it stores nothing.
+  // A point that is reached in this step starts with no force, so that it adds no energy: its offset is the depth it is found at
+  // (or, seen from a step's end, the surface), and shrinks as it lifts. It is stiffened to stop within the depth aimed at.
   const LaneMask touching = (depth > zero) & (inUse > zero);
   const LaneMask known = touching & (p.live > zero);
   Lanes impact = s.impactFactor * closing * closing;
-  impact = impact > one ? impact : one;
-  impact = impact < s.step.scaleMost ? impact : zero + s.step.scaleMost;
-  p.scale = known ? 1.0 + (p.scale - 1.0) * s.scaleKeep : impact;
+  const Lanes resting = zero + law.restingScale;
+  impact = impact > resting ? impact : resting;
+  impact = impact < s.scaleMost ? impact : zero + s.scaleMost;
+  p.scale = known ? resting + (p.scale - resting) * s.scaleKeep : impact;
   const Lanes lower = p.offset < depth ? p.offset : depth;
   p.offset = known ? lower : depth * s.step.bornOffset;
 
@@ -101,14 +74,21 @@ SPRINGTOWER_INLINE void pointLaw(const LawStep& s, const Lanes& depth, const Lan
   const Lanes stiffness = s.stiffness * p.scale;
   Lanes push = stiffness * (elastic + law.relaxingRatio * (elastic - p.relaxed) + law.dampingTime_s * closing);
   push = touching & (push > zero) & (elastic > zero) ? push : zero;
-  if (s.step.kick_s > 0.0 && any(p.scale > one)) {
-    // A point that is thrown back within the step is given no more energy than it came with and its spring stores.
+  if (s.step.kick_s > 0.0 && (law.longSteps || any(p.scale > one))) {
+    // A point that is thrown back within the step is given no more energy than it came with and its spring stores; where steps
+    // are as long as a fall allows, one that leaves in a step that it begins well below the surface.
     const Lanes spring = stiffness * (elastic + law.relaxingRatio * (elastic - p.relaxed));
-    const Lanes given = closing * closing + spring * (elastic - closing * s.step.kick_s) / s.pointMass;
+    LaneMask bounded = p.scale > one;
+    Lanes stored = spring * (elastic - closing * s.step.kick_s);
+    if (law.longSteps) {
+      bounded = (push * s.step.kick_s / s.pointMass - closing) * s.step.kick_s > elastic;
+      stored = (spring > zero ? spring : zero) * elastic;
+    }
+    const Lanes given = closing * closing + stored / s.pointMass;
     Lanes back;
     squareRoot(given > zero ? given : zero, back);
     const Lanes most = (closing + back) * (s.pointMass / s.step.kick_s);
-    push = (p.scale > one) & (push > most) ? (most > zero ? most : zero) : push;
+    push = bounded & (push > most) ? (most > zero ? most : zero) : push;
   }
   p.live = touching ? (push > zero ? one : zero + kUnpressed) : zero;
   p.normalForce = push;

@@ -7,6 +7,7 @@
 #include "core/state.h"
 #include "narrowphase/manifold.h"
 #include "solver/contact_force.h"
+#include "solver/falling_block.h"
 #include "solver/implicit_island.h"
 #include "solver/report_state.h"
 #include "solver/rigid_island.h"
@@ -37,6 +38,9 @@ struct FewPoints {
   alignas(32) std::array<std::array<double, 4>, 8> memory;
 };
 
+/// How the second block of a pair lies to the first: its centre and sides along the other's edges, m.
+using RelativePose = std::array<float, 12>;
+
 /// One island's private record, kept by the island's smallest block so that it survives other islands' coming and going.
 struct BlockClock {
   double lastDrift_s = 0.0;         ///< s; the explicit step in which the block's positions last moved; 0 after an implicit one
@@ -44,6 +48,8 @@ struct BlockClock {
   std::int32_t explicitFrames = 0;  ///< frames that the block's island is still to be stepped explicitly
   std::int32_t implicitSteps = 0;   ///< steps of a frame that its ringing asked for last
   bool forced = false;              ///< whether a user's force or the hand acts on its island, as of the last frame begun
+  bool explicitLast = false;        ///< whether explicit steps brought it where it is
+  bool falls = false;               ///< whether its island fell in the last frame begun
   double jerk = 0.0;            ///< kg m2/s6; mass by the square of its corners' change of acceleration, mean over some frames
   double motion = 0.0;          ///< kg m2/s2; mass by the square of its corners' velocity, alike
   double travel = 0.0;          ///< m; path length of the block's fastest corner, ever growing
@@ -91,6 +97,9 @@ struct Engine {
   bool regrouped = true;                ///< whether pairs or islands are others than in the frame before
   std::vector<std::int32_t> pairStart;  ///< pairs of island i are islandPairs[pairStart[i] .. pairStart[i + 1]]
   std::vector<std::int32_t> islandPairs;
+  std::vector<std::int32_t> watchedPairs;  ///< by position in islandPairs: those of each island that are watched, from its first
+  std::vector<double> path;                ///< m, of each block's fastest corner in the last step, [blocks]
+  std::vector<double> foreseenPath;        ///< m, most that is counted on in a step while a list of watched pairs holds, [blocks]
   std::vector<std::int32_t> blockPairStart;  ///< pairs of block b are blockPairs[blockPairStart[b] .. blockPairStart[b + 1]]
   std::vector<std::int32_t> blockPairs;
   std::vector<std::int32_t> cursor;  ///< working space of counting sorts
@@ -112,26 +121,28 @@ struct Engine {
   std::vector<ImplicitIsland> implicitIslands;  ///< by the island's smallest block; empty for other methods
   std::vector<SparseFactors> sparseFactors;     ///< by the island's smallest block; of `implicitEigen` alone
   std::vector<RigidIsland> rigidIslands;        ///< by the island's smallest block; empty for other methods
-  CornerArray history;                          ///< m, what past steps give of the position at an implicit step's end
-  CornerArray stepVelocity;                     ///< m/s, mean over the implicit step
-  CornerArray target;                           ///< m, where the implicit step ends without forces
-  GripForce tetherNow;                          ///< the hand's, as last evaluated
-  std::vector<std::int32_t> nodeOf;             ///< the place of each block in its island, for implicit steps and rigid methods
-  std::vector<PairForce> pairForce;             ///< N, by position in `pairs`; for islands that run on many threads
-  std::vector<BlockClock> clock;                ///< [blocks]
-  std::vector<std::int32_t> lostPartner;        ///< sleeping blocks whose awake neighbour went out of reach in this frame
-  std::vector<std::int32_t> beginning;          ///< working space: pairs of each block that may begin to push in this frame
-  std::vector<std::int32_t> toWake;             ///< working space
-  std::vector<std::int32_t> pushed;             ///< working space: sleeping blocks with awake neighbours
-  std::vector<PushChange> change;               ///< working space, [blocks]
-  std::vector<std::int32_t> restless;           ///< working space
-  std::vector<std::int32_t> parent;             ///< working space of connectedBlocks
-  std::vector<std::uint8_t> touched;  ///< working space: 1 where a block touches one of toWake, directly or through others
-  std::vector<std::uint8_t> joined;   ///< working space: 1 where a block touches a restless one, directly or through others
-  std::vector<RestWindow> rest;       ///< [blocks]
-  Vec3 gravitySlept = Vec3::Zero();   ///< m/s2, gravity when the last block fell asleep
-  ReportState report;                 ///< of method `report`; empty for the others
-  MotionState frameStart;             ///< what a frame that has to be run again starts from
+  std::vector<FallingBlock> falling;            ///< [blocks]; empty for other methods
+  std::vector<RelativePose> pose;         ///< by position in `pairs`: where a fall's blocks lay when their manifold was renewed
+  CornerArray history;                    ///< m, what past steps give of the position at an implicit step's end
+  CornerArray stepVelocity;               ///< m/s, mean over the implicit step
+  CornerArray target;                     ///< m, where the implicit step ends without forces
+  GripForce tetherNow;                    ///< the hand's, as last evaluated
+  std::vector<std::int32_t> nodeOf;       ///< the place of each block in its island, for implicit steps and rigid methods
+  std::vector<PairForce> pairForce;       ///< N, by position in `pairs`; for islands that run on many threads
+  std::vector<BlockClock> clock;          ///< [blocks]
+  std::vector<std::int32_t> lostPartner;  ///< sleeping blocks whose awake neighbour went out of reach in this frame
+  std::vector<std::int32_t> beginning;    ///< working space: pairs of each block that may begin to push in this frame
+  std::vector<std::int32_t> toWake;       ///< working space
+  std::vector<std::int32_t> pushed;       ///< working space: sleeping blocks with awake neighbours
+  std::vector<PushChange> change;         ///< working space, [blocks]
+  std::vector<std::int32_t> restless;     ///< working space
+  std::vector<std::int32_t> parent;       ///< working space of connectedBlocks
+  std::vector<std::uint8_t> touched;      ///< working space: 1 where a block touches one of toWake, directly or through others
+  std::vector<std::uint8_t> joined;       ///< working space: 1 where a block touches a restless one, directly or through others
+  std::vector<RestWindow> rest;           ///< [blocks]
+  Vec3 gravitySlept = Vec3::Zero();       ///< m/s2, gravity when the last block fell asleep
+  ReportState report;                     ///< of method `report`; empty for the others
+  MotionState frameStart;                 ///< what a frame that has to be run again starts from
   std::vector<BlockClock> frameStartClock;
   std::vector<FewPoints> frameStartPoints;  ///< by position in `pairs`: what the points of those that touch remember
   std::vector<std::uint8_t> pairKept;       ///< 1 where a pair has changed since otherwise than in that

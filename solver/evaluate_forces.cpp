@@ -1,3 +1,4 @@
+#include "solver/evaluate_contacts.h"
 #include "solver/inertia.h"
 #include "solver/island_step.h"
 #include "solver/spring_force.h"
@@ -55,7 +56,7 @@ void contactsInOrder(IslandStep& step, const Evaluation& evaluation) {
   Engine& engine = step.engine;
   const std::vector<std::uint8_t>& asleep = step.simulation.asleep;
   for (const std::int32_t block : step.blocks) engine.contactForce[static_cast<std::size_t>(block)] = AffineField{};
-  for (const std::int32_t at : step.pairs) {
+  for (const std::int32_t at : step.watched) {
     const Manifold& manifold = engine.pairs[static_cast<std::size_t>(at)].manifold;
     if (manifold.touch == Touch::apart) continue;
     PairForce force;
@@ -71,9 +72,9 @@ void contactsInOrder(IslandStep& step, const Evaluation& evaluation) {
 // The same sums in the same order: first all pairs, then each block gathers its own.
 void contactsInParallel(IslandStep& step, const Evaluation& evaluation) {
   Engine& engine = step.engine;
-  tbb::parallel_for(Range(0, step.pairs.size(), kPairGrain), [&](const Range& range) {
+  tbb::parallel_for(Range(0, step.watched.size(), kPairGrain), [&](const Range& range) {
     for (std::size_t i = range.begin(); i < range.end(); ++i) {
-      const auto at = static_cast<std::size_t>(step.pairs[i]);
+      const auto at = static_cast<std::size_t>(step.watched[i]);
       if (engine.pairs[at].manifold.touch != Touch::apart) evaluatePair(step, evaluation, at, engine.pairForce[at]);
     }
   });
@@ -117,12 +118,22 @@ void addTether(IslandStep& step, const MotionState& state, double time_s) {
 
 std::uint64_t pointsOf(const IslandStep& step) {
   std::uint64_t points = 0;
-  for (const std::int32_t at : step.pairs)
+  for (const std::int32_t at : step.watched)
     points += static_cast<std::uint64_t>(step.engine.pairs[static_cast<std::size_t>(at)].manifold.count);
   return points;
 }
 
 }  // namespace
+
+void evaluateContacts(IslandStep& step, double advance_s, double kick_s) {
+  const Evaluation evaluation{{advance_s, step.scaleMost, 1.0, step.bornMost_s2, kick_s}, true, Memory::advance};
+  if (step.blocks.size() >= kParallelBlocks) {
+    contactsInParallel(step, evaluation);
+  } else {
+    contactsInOrder(step, evaluation);
+  }
+  step.counters.contactEvaluations += pointsOf(step);
+}
 
 void evaluateForces(IslandStep& step, const MotionState& state, const CornerArray& carried, double advance_s, Memory memory) {
   StageClock clock(step.times);
@@ -130,7 +141,7 @@ void evaluateForces(IslandStep& step, const MotionState& state, const CornerArra
   const bool parallel = step.blocks.size() >= kParallelBlocks;
   const bool sameMotion = &carried == &state.velocity;
   const double kick_s = sameMotion && memory == Memory::advance ? step.kick_s : 0.0;
-  const Evaluation evaluation{{advance_s, step.scaleMost, memory == Memory::trial ? 0.0 : 1.0, kick_s}, sameMotion, memory};
+  const Evaluation evaluation{{advance_s, step.scaleMost, memory == Memory::trial ? 0.0 : 1.0, 0.0, kick_s}, sameMotion, memory};
   using Blocks = std::span<const std::int32_t>;
   overBlocks(step, parallel, [&](Blocks blocks) {
     computeFrames(state.position, blocks, engine.frames);

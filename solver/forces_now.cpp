@@ -1,5 +1,6 @@
 #include "solver/forces_now.h"
 
+#include "solver/falling.h"
 #include "solver/inertia.h"
 #include "solver/island_step.h"
 #include "solver/rigid_contacts.h"
@@ -35,10 +36,13 @@ struct ManifoldNow {
     const AffineField carriedBy[2] = {affineField(carried, upper), affineField(carried, lower)};
     const ContactSide up{&frames[0], &motion[0], &carriedBy[0]};
     const ContactSide low{&frames[1], &motion[1], &carriedBy[1]};
-    const ContactLaw law = contactLaw(simulation);
+    ContactLaw law = contactLaw(simulation);
+    const std::vector<BlockClock>& clock = simulation.engine->clock;
+    if (clock[upper].falls || (stored.lower >= 0 && clock[lower].falls)) law.restingScale = fallingScale(simulation);
     const double behind = simulation.engine->clock[upper].lastDrift_s;
     const double kick = isLeapfrog(simulation.scene.settings.method) ? behind : 0.0;
-    manifoldForces(manifold, up, low, law, {behind, 1.0, 1.0, kick}, reducedMass(simulation.model, stored), &manifold, force);
+    manifoldForces(manifold, up, low, law, {behind, 1.0, 1.0, 0.0, kick}, reducedMass(simulation.model, stored), &manifold,
+                   force);
     points = pointForces(manifold, up, low, law);
     if (isRigid(simulation.scene.settings.method)) {
       manifold = stored;
@@ -74,6 +78,19 @@ void addContactForces(const Simulation& simulation, const Manifold& m, std::vect
                       Vec3(points.friction[i][0], points.friction[i][1], points.friction[i][2]), points.depth[i],
                       now.manifold.sliding[i] != 0.0});
   }
+}
+
+// What is left of the accelerations of a block's corners (m/s2, [component][corner]) where it keeps its shape.
+void keepShape(const Simulation& simulation, std::size_t b, CornerArray& acceleration) {
+  MotionState state;
+  state.resize(1);
+  for (std::size_t a = 0; a < 3; ++a) {
+    std::copy_n(simulation.state.position.values(a, b), kCorners, state.position.values(a, 0));
+    std::copy_n(acceleration.values(a, b), kCorners, state.velocity.values(a, 0));
+  }
+  const RigidMotion rigid = rigidMotion(state, 0);
+  for (std::size_t c = 0; c < kCorners; ++c)
+    acceleration.set(b, c, rigid.velocity + rigid.spin.cross(state.position.at(0, c) - rigid.centre));
 }
 
 }  // namespace
@@ -171,7 +188,10 @@ Energy energy(const Simulation& simulation) {
       }
     }
     energy.step_s.push_back(kick);
+    energy.keepsShape.push_back(simulation.engine->clock[b].falls && kick > 0.0 ? 1 : 0);
     energy.stepShare_j_s2.push_back(0.125 * model.mass[b] * massProduct(settings.inertia, change, change, b));
+    keepShape(simulation, b, change);
+    energy.shapeShare_j_s2.push_back(0.125 * model.mass[b] * massProduct(settings.inertia, change, change, b));
     energy.kinetic += 0.5 * model.mass[b] * massProduct(settings.inertia, state.velocity, coming, b);
   }
   return energy;
@@ -180,8 +200,10 @@ Energy energy(const Simulation& simulation) {
 double energyRise(const Energy& before, const Energy& after) {
   double rise = after.total() - before.total();
   for (std::size_t b = 0; b < before.step_s.size(); ++b) {
-    const double longer = before.step_s[b] * before.step_s[b] - after.step_s[b] * after.step_s[b];
-    rise -= longer * before.stepShare_j_s2[b];
+    const auto share = [&](const Energy& kind) {
+      return kind.keepsShape[b] != 0 ? before.shapeShare_j_s2[b] : before.stepShare_j_s2[b];
+    };
+    rise -= before.step_s[b] * before.step_s[b] * share(before) - after.step_s[b] * after.step_s[b] * share(after);
   }
   return rise;
 }

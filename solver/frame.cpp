@@ -1,4 +1,6 @@
 #include "core/error.h"
+#include "solver/fall_steps.h"
+#include "solver/falling.h"
 #include "solver/forces_now.h"
 #include "solver/frame_start.h"
 #include "solver/implicit.h"
@@ -113,7 +115,7 @@ int chooseSubsteps(IslandStep& step) {
   BlockClock& record = step.engine.clock[static_cast<std::size_t>(step.blocks.front())];
   const std::uint64_t signature = contactSignature(step.engine, step.pairs) ^ (step.blocks.size() << 1U);
   if (signature != record.contactSignature || record.spectralRadius == 0.0) {
-    record.spectralRadius = spectralBound(simulation, step.blocks, step.pairs);
+    record.spectralRadius = spectralBound(simulation, step.blocks, step.pairs, false);
     record.contactSignature = signature;
   }
   const double standing = record.spectralRadius;
@@ -177,30 +179,47 @@ IslandOutcome runIsland(IslandStep& step) {
   if (isRigid(settings.method)) return runRigidSteps(step);
   if (simulation.frame == 0 && settings.method != Method::report) startInEquilibrium(step);
   double begin_s = 0.0;
+  bool falling = false;
   if (isImplicit(settings.method)) {
+    falling = fallsOn(step);
+    setFalling(step, falling);
     outcome = runImplicitSteps(step, begin_s);
     if (!outcome.inside || begin_s >= settings.frame_s) return outcome;
+    if (!falling && fallsNow(step)) {
+      falling = true;
+      setFalling(step, true);
+    }
   }
   const int implicitSteps = outcome.substeps;
   const double rest_s = settings.frame_s - begin_s;
-  outcome.substeps = std::max(1, static_cast<int>(std::ceil(chooseSubsteps(step) * rest_s / settings.frame_s - 1e-9)));
+  const int steps = falling ? std::max(chooseFallSteps(step), beginFall(step)) : chooseSubsteps(step);
+  outcome.substeps = std::max(1, static_cast<int>(std::ceil(steps * rest_s / settings.frame_s - 1e-9)));
   step.drift_s = rest_s / outcome.substeps;
   BlockClock& record = step.engine.clock[static_cast<std::size_t>(step.blocks.front())];
   double last = record.lastDrift_s;
+  step.lists = true;
+  step.listedFor = 0;
   for (int substep = 0; substep < outcome.substeps; ++substep) {
     step.time_s = simulation.time_s + begin_s + substep * step.drift_s;
     step.gravity = simulation.scene.gravity.at(step.time_s);
     step.kick_s = 0.5 * (last + step.drift_s);
     step.advance_s = last;
-    stepIsland(settings.method, step);
+    if (falling) {
+      stepFall(step);
+    } else {
+      stepIsland(settings.method, step);
+    }
     last = step.drift_s;
     outcome.inside =
         settings.method == Method::report ? acceptReportStep(step) : updateContacts(step, renewalOfExplicitSteps(simulation));
     if (!outcome.inside) break;
   }
+  if (falling) endFall(step);
   for (const std::int32_t block : step.blocks) {
-    step.engine.clock[static_cast<std::size_t>(block)].lastDrift_s = last;
-    step.engine.clock[static_cast<std::size_t>(block)].history_s = 0.0;
+    BlockClock& clock = step.engine.clock[static_cast<std::size_t>(block)];
+    clock.lastDrift_s = last;
+    clock.explicitLast = true;
+    clock.history_s = 0.0;
   }
   outcome.substeps += implicitSteps;
   return outcome;
@@ -232,6 +251,8 @@ bool runIslands(Simulation& simulation) {
   prepareFrameStart(simulation);
   if (simulation.scene.settings.method == Method::report) prepareReportFrame(simulation);
   if (isImplicit(simulation.scene.settings.method) || simulation.frame == 0) engine.trial.resize(engine.pairs.size());
+  if (isImplicit(simulation.scene.settings.method) && (engine.regrouped || engine.pose.size() != engine.pairs.size()))
+    engine.pose.assign(engine.pairs.size(), RelativePose{});
   tbb::parallel_for(std::size_t{0}, islands, [&](std::size_t i) {
     const auto first = static_cast<std::size_t>(engine.pairStart[i]);
     IslandStep step{simulation,

@@ -16,6 +16,20 @@ constexpr int kForcedSteps = 2;
 // Angle by which a block may turn in an implicit step, rad: the two-step formula turns along chords.
 constexpr double kMostTurn = 0.01;
 
+// Farthest that a corner may go in a step, in block heights: the energy of what goes over, faster and faster, grows in longer
+// ones.
+constexpr double kMostWay = 0.04;
+
+// Steps of a frame in which no corner goes farther than that.
+int stepsForWay(const IslandStep& step) {
+  const Simulation& simulation = step.simulation;
+  double fastest = 0.0;
+  for (const std::int32_t block : step.blocks)
+    fastest = std::max(fastest, fastestCorner(simulation.state.velocity, static_cast<std::size_t>(block), Vec3::Zero()));
+  const double steps = std::ceil(fastest * simulation.scene.settings.frame_s / (kMostWay * simulation.lengths.blockHeight_m));
+  return static_cast<int>(std::clamp(steps, 1.0, static_cast<double>(kMostRingingSteps)));
+}
+
 // Whether the island does so little that one step tells it as well as many.
 bool isCalm(const IslandStep& step) {
   const Simulation& simulation = step.simulation;
@@ -23,7 +37,7 @@ bool isCalm(const IslandStep& step) {
   for (const std::int32_t block : step.blocks) {
     // What has just been let go of has no speed yet, and what explicit steps brought here may be at a bounce's turn.
     const auto b = static_cast<std::size_t>(block);
-    if (!(simulation.restTime_s[b] > 0.0) || step.engine.clock[b].lastDrift_s > 0.0) return false;
+    if (!(simulation.restTime_s[b] > 0.0) || step.engine.clock[b].explicitLast) return false;
     for (std::size_t a = 0; a < 3; ++a) {
       const double* v = simulation.state.velocity.values(a, b);
       for (std::size_t c = 0; c < kCorners; ++c) {
@@ -58,6 +72,7 @@ int implicitSteps(const IslandStep& step, bool forced, bool known) {
   int least = forced ? kForcedSteps : 1;
   if (!calm && leansOnSleepers(step)) least = kImplicitSteps;
   if (!calm && !known) least = kMostRingingSteps;
+  if (!calm && !forced) least = std::max(least, stepsForWay(step));
   const int steps = std::max(least, stepsForRinging(step, present));
   for (const std::int32_t block : step.blocks) step.engine.clock[static_cast<std::size_t>(block)].implicitSteps = steps;
   return steps;
@@ -99,6 +114,7 @@ void prepareImplicit(Simulation& simulation) {
   engine.carriedMotion.resize(count);
   engine.implicitIslands.resize(count);
   engine.nodeOf.assign(count, 0);
+  if (isImplicit(simulation.scene.settings.method)) engine.falling.resize(count);
   if (simulation.scene.settings.method == Method::implicitEigen) engine.sparseFactors.resize(count);
 }
 

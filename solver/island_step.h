@@ -23,7 +23,12 @@ struct IslandStep {
   double kick_s = 0.0;          ///< s; step of the velocities: mean of the last and this drift (leapfrog with changing steps)
   double advance_s = 0.0;       ///< s by which the contact memory is behind the positions
   double scaleMost = 1.0;       ///< most a contact that is born now may be stiffened
-  bool unforced = false;        ///< neither user forces nor the hand act: the equilibrium before the first frame
+  double bornMost_s2 = 0.0;     ///< 1/s2, the same per reduced mass, where the island falls
+  /// Pairs that touch or may use up their margin soon: all, but in steps so short that it is worth listing them.
+  std::span<const std::int32_t> watched = pairs;
+  bool lists = false;     ///< whether the steps are so short
+  int listedFor = 0;      ///< steps for which `watched` still holds
+  bool unforced = false;  ///< neither user forces nor the hand act: the equilibrium before the first frame
 };
 
 /// What becomes of the contact memory that a force evaluation has brought up to date: dropped, kept, or put into engine.trial,

@@ -57,6 +57,29 @@ Closing closingOf(const Simulation& simulation, const NearPair& pair) {
   return {gap, (gap - gapSoon) / soon};
 }
 
+// The same by what separates the blocks best, now and when their corners have moved on for a frame: a direction that stands still
+// closes as blocks turn that lie side by side and go over together.
+Closing closingOfShapes(const Simulation& simulation, const NearPair& pair) {
+  const auto a = static_cast<std::size_t>(pair.a);
+  const auto b = static_cast<std::size_t>(pair.b);
+  const CornerArray& x = simulation.state.position;
+  const double soon = simulation.scene.settings.frame_s;
+  double moved[2][3][kCorners];
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double* xa = x.values(axis, a);
+    const double* xb = x.values(axis, b);
+    const double* va = simulation.state.velocity.values(axis, a);
+    const double* vb = simulation.state.velocity.values(axis, b);
+    for (std::size_t c = 0; c < kCorners; ++c) {
+      moved[0][axis][c] = xa[c] + soon * va[c];
+      moved[1][axis][c] = xb[c] + soon * vb[c];
+    }
+  }
+  const double gap = findSeparation(cornersOf(x, a), cornersOf(x, b)).best();
+  const double gapSoon = findSeparation({moved[0][0], moved[0][1], moved[0][2]}, {moved[1][0], moved[1][1], moved[1][2]}).best();
+  return {gap, (gap - gapSoon) / soon};
+}
+
 // The longest way of a corner of a block in the step just found, m, or a little more; the floor and what sleeps go none.
 double wayOf(const IslandStep& step, std::int32_t block) {
   if (sleeps(step.simulation, block)) return 0.0;
@@ -77,7 +100,7 @@ double bearableClosing(const IslandStep& step, const NearPair& pair) {
   const double massA = mass[static_cast<std::size_t>(pair.a)];
   const double massB = pair.b < 0 ? 0.0 : mass[static_cast<std::size_t>(pair.b)];
   const double reduced = pair.b < 0 ? massA : massA * massB / (massA + massB);
-  const double stiffness = pair.b < 0 ? step.law.floorStiffness_n_m : step.law.stiffness_n_m;
+  const double stiffness = step.law.restingScale * (pair.b < 0 ? step.law.floorStiffness_n_m : step.law.stiffness_n_m);
   return 0.25 * step.law.impactPenetration_m * std::sqrt(stiffness / reduced) * step.drift_s;
 }
 
@@ -165,7 +188,7 @@ double slowestRate(const IslandStep& step, const Manifold& manifold) {
   const PointForces points =
       pointForces(manifold, {&upper, &still, &still}, {manifold.lower < 0 ? nullptr : &lower, &still, &still}, step.law);
   const bool any = anyPointTouches(manifold);
-  const bool rebounds = step.engine.clock[u].lastDrift_s > 0.0 || (manifold.lower >= 0 && step.engine.clock[l].lastDrift_s > 0.0);
+  const bool rebounds = step.engine.clock[u].explicitLast || (manifold.lower >= 0 && step.engine.clock[l].explicitLast);
   double slowest = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < static_cast<std::size_t>(manifold.count); ++i) {
     if (any && manifold.live[i] == 0.0) continue;
@@ -206,12 +229,14 @@ bool bounces(const IslandStep& step, double step_s) {
 bool meetsSoon(const IslandStep& step, double step_s) {
   const Simulation& simulation = step.simulation;
   const double frame_s = simulation.scene.settings.frame_s;
+  const auto soon = [&](const Closing& closing) {
+    const double reach = frame_s * (std::max(0.0, closing.speed) + 0.5 * frame_s * simulation.scene.gravity.magnitude);
+    return closing.gap < reach && closing.speed * step_s > kMostClosing * simulation.tolerance_m;
+  };
   return std::any_of(step.pairs.begin(), step.pairs.end(), [&](std::int32_t at) {
     const NearPair& pair = step.engine.pairs[static_cast<std::size_t>(at)];
     if (pair.manifold.touch != Touch::apart) return false;
-    const Closing closing = closingOf(simulation, pair);
-    const double reach = frame_s * (std::max(0.0, closing.speed) + 0.5 * frame_s * simulation.scene.gravity.magnitude);
-    return closing.gap < reach && closing.speed * step_s > kMostClosing * simulation.tolerance_m;
+    return soon(closingOf(simulation, pair)) && (pair.b < 0 || soon(closingOfShapes(simulation, pair)));
   });
 }
 

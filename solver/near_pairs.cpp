@@ -93,6 +93,7 @@ void listIslandPairs(Simulation& simulation) {
   }
   for (std::size_t i = 0; i < islands; ++i) engine.pairStart[i + 1] += engine.pairStart[i];
   engine.islandPairs.resize(static_cast<std::size_t>(engine.pairStart[islands]));
+  engine.watchedPairs.resize(engine.islandPairs.size());
   engine.cursor.assign(engine.pairStart.begin(), engine.pairStart.end());
   for (std::size_t p = 0; p < engine.pairs.size(); ++p) {
     const std::int32_t island = islandOf(engine, engine.pairs[p]);

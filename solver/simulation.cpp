@@ -118,6 +118,8 @@ Simulation::Simulation(const Scene& given) : scene(given), engine(std::make_uniq
   Engine& e = *engine;
   e.boxes.resize(count);
   e.reach.assign(count, 0.0);
+  e.path.assign(count, 0.0);
+  e.foreseenPath.assign(count, 0.0);
   e.travelAtSweep.assign(count, 0.0);
   e.force.resize(count);
   e.frames.resize(count);

@@ -171,6 +171,7 @@ void accept(IslandStep& step, ImplicitIsland& island) {
     BlockClock& clock = engine.clock[static_cast<std::size_t>(block)];
     clock.history_s = step.drift_s;
     clock.lastDrift_s = 0.0;
+    clock.explicitLast = false;
   }
   ++step.counters.implicitSteps;
 }
@@ -193,6 +194,7 @@ void reject(IslandStep& step) {
     BlockClock& clock = step.engine.clock[static_cast<std::size_t>(block)];
     clock.history_s = 0.0;
     clock.lastDrift_s = 0.0;
+    clock.explicitLast = false;
   }
   ++step.counters.handedOver;
 }

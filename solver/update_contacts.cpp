@@ -51,6 +51,10 @@ bool isInSweptBox(const IslandStep& step, std::size_t block) {
   return true;
 }
 
+// Steps for which a list of watched pairs is made, and by how much faster than in the last step a block may become meanwhile.
+constexpr int kListedSteps = 16;
+constexpr double kFaster = 1.5;
+
 // Adds up the path of each block's fastest corner; `inside` tells whether all are in their swept boxes. A block whose corners
 // move apart by half its least side in one step has diverged: free flight is as fast as it likes, but nothing sound deforms like
 // that. NaN fails every comparison, so what is sound is asked for. Returns the first block that has diverged, or -1.
@@ -64,6 +68,8 @@ std::int32_t addPaths(IslandStep& step, bool& inside) {
     if (!(deformed < static_cast<double>(kCorners) * most * most)) return block;
     BlockClock& clock = step.engine.clock[b];
     clock.travel += path;
+    step.engine.path[b] = path;
+    if (path > step.engine.foreseenPath[b]) step.listedFor = 0;
     if (clock.travel - step.engine.travelAtSweep[b] > step.engine.reach[b]) inside = inside && isInSweptBox(step, b);
   }
   return -1;
@@ -106,6 +112,64 @@ double renewalTravel(const Manifold& manifold, const RenewalTravel& travel) {
   return rolls(manifold) ? travel.rolling_m : travel.resting_m;
 }
 
+// Share of the path to a renewal by which blocks have stayed where they are to one another.
+constexpr double kStayed = 0.9;
+
+// How one block of a pair lies to the other: b's centre and sides along a's edges, or a's own where b is the floor, m.
+RelativePose poseOf(const IslandStep& step, const NearPair& pair) {
+  const auto a = static_cast<std::size_t>(pair.a);
+  const BlockFrame& frame = step.engine.frames[a];
+  RelativePose pose;
+  if (pair.b < 0) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      pose[k] = static_cast<float>(frame.place.centre[k]);
+      for (std::size_t i = 0; i < 3; ++i) pose[3 + 3 * i + k] = static_cast<float>(frame.place.side[i][k]);
+    }
+    return pose;
+  }
+  const AffineField& other = step.engine.frames[static_cast<std::size_t>(pair.b)].place;
+  const Vec3& lengths = step.simulation.model.dimensions[a];
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double length = lengths[static_cast<Eigen::Index>(k)];
+    const auto along = [&](double x, double y, double z) {
+      return static_cast<float>(length * (frame.dual[k][0] * x + frame.dual[k][1] * y + frame.dual[k][2] * z));
+    };
+    const std::array<double, 3>& from = frame.place.centre;
+    pose[k] = along(other.centre[0] - from[0], other.centre[1] - from[1], other.centre[2] - from[2]);
+    for (std::size_t i = 0; i < 3; ++i) pose[3 + 3 * i + k] = along(other.side[i][0], other.side[i][1], other.side[i][2]);
+  }
+  return pose;
+}
+
+// How far a point of one block can have moved against the other between two poses, m.
+double movedBetween(const RelativePose& before, const RelativePose& now) {
+  double moved = 0.0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    double squared = 0.0;
+    for (std::size_t k = 3 * i; k < 3 * i + 3; ++k) {
+      const double change = static_cast<double>(now[k]) - static_cast<double>(before[k]);
+      squared += change * change;
+    }
+    moved += (i == 0 ? 1.0 : 0.5) * std::sqrt(squared);
+  }
+  return moved;
+}
+
+// Whether the blocks of a pair lie to one another much as when their manifold was renewed: those that go over together travel
+// far.
+bool hasStayed(IslandStep& step, std::int32_t at, double travel, double most) {
+  NearPair& pair = step.engine.pairs[static_cast<std::size_t>(at)];
+  RelativePose& known = step.engine.pose[static_cast<std::size_t>(at)];
+  const RelativePose pose = poseOf(step, pair);
+  const double moved = movedBetween(known, pose);
+  if (moved < kStayed * most) {
+    pair.checkedTravel = travel - moved;
+    return true;
+  }
+  known = pose;
+  return false;
+}
+
 void updatePair(IslandStep& step, std::int32_t at, const RenewalTravel& renewal, Counters& counters, StageTimes& times) {
   NearPair& pair = step.engine.pairs[static_cast<std::size_t>(at)];
   const double travel = travelOf(step.engine, pair);
@@ -116,11 +180,36 @@ void updatePair(IslandStep& step, std::int32_t at, const RenewalTravel& renewal,
     keepPair(step.engine, static_cast<std::size_t>(at));
     pair.checkedTravel = travel;
     watchApart(step, pair, counters, times);
-  } else if (used > renewalTravel(pair.manifold, renewal)) {
+  } else if (const double most = renewalTravel(pair.manifold, renewal); used > most) {
     keepPair(step.engine, static_cast<std::size_t>(at));
+    if (step.law.longSteps && hasStayed(step, at, travel, most)) return;
     pair.checkedTravel = travel;
     renewManifold(step, pair, counters);
   }
+}
+
+// Lists the pairs that touch, and those that may use up their margin in the steps to come unless a block becomes faster than is
+// foreseen here.
+void listWatched(IslandStep& step) {
+  Engine& engine = step.engine;
+  const double falling_m = kListedSteps * step.simulation.scene.gravity.magnitude * step.drift_s * step.drift_s;
+  for (const std::int32_t block : step.blocks) {
+    const auto b = static_cast<std::size_t>(block);
+    engine.foreseenPath[b] = kFaster * (engine.path[b] + falling_m);
+  }
+  const auto pathOf = [&](std::int32_t block) {
+    return block < 0 || sleeps(step.simulation, block) ? 0.0 : engine.foreseenPath[static_cast<std::size_t>(block)];
+  };
+  const std::size_t first = static_cast<std::size_t>(step.pairs.data() - engine.islandPairs.data());
+  std::size_t count = 0;
+  for (const std::int32_t at : step.pairs) {
+    const NearPair& pair = engine.pairs[static_cast<std::size_t>(at)];
+    const double left = pair.margin - (travelOf(engine, pair) - pair.checkedTravel);
+    if (pair.manifold.touch == Touch::apart && left > kListedSteps * (pathOf(pair.a) + pathOf(pair.b))) continue;
+    engine.watchedPairs[first + count++] = at;
+  }
+  step.watched = std::span<const std::int32_t>(engine.watchedPairs).subspan(first, count);
+  step.listedFor = kListedSteps;
 }
 
 }  // namespace
@@ -138,16 +227,20 @@ bool updateContacts(IslandStep& step, const RenewalTravel& renewal) {
   double& candidates_s = step.times.seconds[static_cast<std::size_t>(Stage::candidates)];
   double& cubicTests_s = step.times.seconds[static_cast<std::size_t>(Stage::cubicTests)];
   const double cubicBefore_s = cubicTests_s;
+  if (step.listedFor > 0) --step.listedFor;
   const bool inside = addTravel(step);
+  const bool list = step.lists && step.listedFor == 0;
+  if (step.listedFor == 0) step.watched = step.pairs;
   if (step.blocks.size() < kParallelBlocks) {
-    for (const std::int32_t at : step.pairs) updatePair(step, at, renewal, step.counters, step.times);
+    for (const std::int32_t at : step.watched) updatePair(step, at, renewal, step.counters, step.times);
+    if (list) listWatched(step);
     clock.lap(Stage::candidates);
     candidates_s -= cubicTests_s - cubicBefore_s;  // they were timed inside
     return inside;
   }
 
   constexpr std::size_t kChunk = 256;
-  const std::size_t chunks = (step.pairs.size() + kChunk - 1) / kChunk;
+  const std::size_t chunks = (step.watched.size() + kChunk - 1) / kChunk;
   std::vector<Counters>& counted = step.engine.chunkCounters;
   std::vector<StageTimes>& timed = step.engine.chunkTimes;
   if (counted.size() < chunks) counted.resize(chunks);
@@ -156,9 +249,9 @@ bool updateContacts(IslandStep& step, const RenewalTravel& renewal) {
     counted[chunk] = Counters{};
     timed[chunk] = StageTimes{};
     StageClock all(timed[chunk]);
-    const std::size_t last = std::min(step.pairs.size(), (chunk + 1) * kChunk);
+    const std::size_t last = std::min(step.watched.size(), (chunk + 1) * kChunk);
     for (std::size_t i = chunk * kChunk; i < last; ++i) {
-      updatePair(step, step.pairs[i], renewal, counted[chunk], timed[chunk]);
+      updatePair(step, step.watched[i], renewal, counted[chunk], timed[chunk]);
     }
     all.lap(Stage::candidates);
   });
@@ -167,6 +260,7 @@ bool updateContacts(IslandStep& step, const RenewalTravel& renewal) {
     step.counters += counted[chunk];
     sum += timed[chunk];
   }
+  if (list) listWatched(step);
   // On many threads the cubic tests take their share of the time that passed.
   const double before_s = candidates_s;
   clock.lap(Stage::candidates);
