@@ -4,6 +4,7 @@
 #include "solver/evaluate_contacts.h"
 #include "solver/implicit_history.h"
 #include "solver/inertia.h"
+#include "solver/rigid_frame.h"
 #include "solver/stage_clock.h"
 
 #include <Eigen/LU>
@@ -139,21 +140,11 @@ void advanceFalling(IslandStep& step, std::span<const std::int32_t> blocks) {
   }
 }
 
-// Orthonormal axes from a block's mean edges (Gram & Schmidt), columns.
-Eigen::Matrix3d axesOf(const CornerArray& position, std::size_t block) {
-  Eigen::Matrix3d axes;
-  axes.col(0) = meanEdge(position, block, 0).normalized();
-  const Vec3 second = meanEdge(position, block, 1);
-  axes.col(1) = (second - second.dot(axes.col(0)) * axes.col(0)).normalized();
-  axes.col(2) = axes.col(0).cross(axes.col(1));
-  return axes;
-}
-
 void readBlock(IslandStep& step, std::size_t b) {
   const Simulation& simulation = step.simulation;
   FallingBlock& block = step.engine.falling[b];
   const RigidMotion motion = rigidMotion(simulation.state, b);
-  const Eigen::Matrix3d axes = axesOf(simulation.state.position, b);
+  const Eigen::Matrix3d axes = straightAxes(simulation.state.position, b);
   const double mass = simulation.model.mass[b];
   block.inverseMass = 1.0 / mass;
   Eigen::Matrix3d moment = Eigen::Matrix3d::Zero();
@@ -190,7 +181,8 @@ void readBlock(IslandStep& step, std::size_t b) {
   frameOf(block, step.engine.frames[b], step.engine.motion[b]);
 }
 
-// Contacts as stiff as `scale` wants them. What is stiffened pushes as before, from less far; what is softened from as far.
+// Makes the contacts of a pair `factor` times as stiff. What is stiffened pushes as before, from less far; what is softened less,
+// from as far.
 void changeStiffness(IslandStep& step, NearPair& pair, double factor) {
   Manifold& m = pair.manifold;
   std::array<double, kManifoldPoints> depth{};
@@ -262,8 +254,9 @@ void setFalling(IslandStep& step, bool falling) {
   const double scale = fallingScale(step.simulation);
   const bool fell = std::any_of(step.blocks.begin(), step.blocks.end(),
                                 [&](std::int32_t block) { return clock[static_cast<std::size_t>(block)].falls; });
-  if (fell && !falling) synchronise(step);
-  if (falling && !fell) {
+  if (!fell && !falling) return;
+  if (!falling) synchronise(step);
+  if (!fell) {
     step.gravity = step.simulation.scene.gravity.at(step.simulation.time_s);
     synchronise(step);
   }

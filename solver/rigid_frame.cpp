@@ -19,16 +19,6 @@ constexpr int kPivotingSubsteps = 4;
 // How often a step is taken again because of contacts found in it.
 constexpr int kMostRepeats = 4;
 
-// The turn of a block from its mean edges: x along the first, y in the plane of the first two.
-Eigen::Quaterniond turnOf(const CornerArray& position, std::size_t block) {
-  Eigen::Matrix3d axes;
-  axes.col(0) = meanEdge(position, block, 0).normalized();
-  const Vec3 second = meanEdge(position, block, 1);
-  axes.col(1) = (second - second.dot(axes.col(0)) * axes.col(0)).normalized();
-  axes.col(2) = axes.col(0).cross(axes.col(1));
-  return Eigen::Quaterniond(axes).normalized();
-}
-
 // Principal moments: of a cuboid m (b^2 + c^2) / 12; with the mass in eight corners three times as much.
 Vec3 momentOf(const Simulation& simulation, std::size_t block) {
   const Vec3 squares = simulation.model.dimensions[block].cwiseAbs2();
@@ -47,7 +37,7 @@ void readPoses(IslandStep& step) {
     body.place = motion.centre;
     body.velocity = motion.velocity;
     body.spin = motion.spin;
-    body.turn = turnOf(simulation.state.position, b);
+    body.turn = Eigen::Quaterniond(straightAxes(simulation.state.position, b)).normalized();
     body.moment = momentOf(simulation, b);
     body.inverseMass = 1.0 / simulation.model.mass[b];
     step.engine.nodeOf[b] = static_cast<std::int32_t>(i);
@@ -134,6 +124,15 @@ void stepOnce(IslandStep& step) {
 }
 
 }  // namespace
+
+Eigen::Matrix3d straightAxes(const CornerArray& position, std::size_t block) {
+  Eigen::Matrix3d axes;
+  axes.col(0) = meanEdge(position, block, 0).normalized();
+  const Vec3 second = meanEdge(position, block, 1);
+  axes.col(1) = (second - second.dot(axes.col(0)) * axes.col(0)).normalized();
+  axes.col(2) = axes.col(0).cross(axes.col(1));
+  return axes;
+}
 
 RigidIsland& rigidIslandOf(IslandStep& step) {
   return step.engine.rigidIslands[static_cast<std::size_t>(step.blocks.front())];
