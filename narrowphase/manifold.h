@@ -43,6 +43,7 @@ struct Manifold : PointMemory {
   std::int8_t incidentFace = 0;   ///< of upper; for an edge manifold its edge
   std::int8_t referenceFace = 0;  ///< of lower; for an edge manifold its edge
   Touch touch = Touch::apart;
+  bool rigid = false;  ///< whether rigid steps move its blocks: `relaxed` and `stretch` are forces then (N, friction on upper)
 };
 
 /// Whether any point of a manifold touches.

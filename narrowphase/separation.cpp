@@ -1,5 +1,7 @@
 #include "narrowphase/separation.h"
 
+#include "core/lanes.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -34,21 +36,27 @@ Frame frameOf(const CornerView& block) {
   return frame;
 }
 
-struct Interval {
-  double least;
-  double most;
-};
+// Where a block's corners lie along a direction, four and four.
+SPRINGTOWER_INLINE void project(const Vec3& normal, const CornerView& block, Lanes& first, Lanes& second) {
+  Lanes x, y, z;
+  load(block.x, x);
+  load(block.y, y);
+  load(block.z, z);
+  first = normal.x() * x + normal.y() * y + normal.z() * z;
+  load(block.x + 4, x);
+  load(block.y + 4, y);
+  load(block.z + 4, z);
+  second = normal.x() * x + normal.y() * y + normal.z() * z;
+}
 
-Interval project(const Vec3& normal, const CornerView& block) {
-  std::array<double, kCorners> value;
-  for (std::size_t c = 0; c < kCorners; ++c)
-    value[c] = normal.x() * block.x[c] + normal.y() * block.y[c] + normal.z() * block.z[c];
-  Interval interval{value[0], value[0]};
-  for (std::size_t c = 1; c < kCorners; ++c) {
-    interval.least = std::min(interval.least, value[c]);
-    interval.most = std::max(interval.most, value[c]);
-  }
-  return interval;
+SPRINGTOWER_INLINE double gapOf(const Vec3& normal, const CornerView& upper, const CornerView& lower) {
+  Lanes first, second;
+  project(normal, upper, first, second);
+  const Lanes least = first < second ? first : second;
+  project(normal, lower, first, second);
+  const Lanes most = first > second ? first : second;
+  return std::min(std::min(least[0], least[1]), std::min(least[2], least[3])) -
+         std::max(std::max(most[0], most[1]), std::max(most[2], most[3]));
 }
 
 // The edge of a block along an axis that lies farthest towards a direction.
@@ -62,10 +70,12 @@ int extremeEdge(const Frame& frame, std::size_t axis, const Vec3& towards) {
 
 }  // namespace
 
+SPRINGTOWER_KERNEL
 double gapAlong(const Vec3& normal, const CornerView& upper, const CornerView& lower) {
-  return project(normal, upper).least - project(normal, lower).most;
+  return gapOf(normal, upper, lower);
 }
 
+SPRINGTOWER_KERNEL
 Separation findSeparation(const CornerView& a, const CornerView& b) {
   constexpr double kNothing = -std::numeric_limits<double>::infinity();
   // Any direction that separates is a proof, so near parallel edges are asked too, as long as rounding leaves their common normal
@@ -81,7 +91,7 @@ Separation findSeparation(const CornerView& a, const CornerView& b) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const bool along = frameB.normal[axis].dot(between) >= 0.0;
     const Vec3 normal = along ? frameB.normal[axis] : Vec3(-frameB.normal[axis]);
-    const double gap = gapAlong(normal, a, b);
+    const double gap = gapOf(normal, a, b);
     if (gap > result.faceB) {
       result.faceB = gap;
       result.faceOfB = static_cast<int>(2 * axis) + (along ? 1 : 0);
@@ -91,7 +101,7 @@ Separation findSeparation(const CornerView& a, const CornerView& b) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const bool along = frameA.normal[axis].dot(between) >= 0.0;
     const Vec3 normal = along ? frameA.normal[axis] : Vec3(-frameA.normal[axis]);
-    const double gap = gapAlong(normal, a, b);
+    const double gap = gapOf(normal, a, b);
     if (gap > result.faceA) {
       result.faceA = gap;
       result.faceOfA = static_cast<int>(2 * axis) + (along ? 0 : 1);
@@ -104,7 +114,7 @@ Separation findSeparation(const CornerView& a, const CornerView& b) {
       const double length = normal.norm();
       if (length < kLeastCross) continue;
       normal /= normal.dot(between) >= 0.0 ? length : -length;
-      const double gap = gapAlong(normal, a, b);
+      const double gap = gapOf(normal, a, b);
       if (gap > result.edge) {
         result.edge = gap;
         result.normalEdge = normal;

@@ -154,6 +154,7 @@ void watchFloor(IslandStep& step, NearPair& pair, Counters& counters) {
   pair.manifold.upper = pair.a;
   pair.manifold.lower = -1;
   buildFloorManifold(now, limitsOf(step.simulation), pair.manifold);
+  pair.manifold.rigid = step.rigid;
 }
 
 }  // namespace
@@ -195,7 +196,6 @@ void watchApart(IslandStep& step, NearPair& pair, Counters& counters, StageTimes
   pair.margin = std::max(0.0, newGap);
   pair.witness = witness;
   if (before.best() > touching && newGap > touching) return;
-
   // Features that nothing has moved need not share a point where blocks touch: rounding may have put them inside by a bit.
   const bool laidTogether = step.simulation.frame == 0 && before.best() <= touching;
   bool meet = false;
@@ -216,6 +216,7 @@ void watchApart(IslandStep& step, NearPair& pair, Counters& counters, StageTimes
   pair.margin = 0.0;
   if (fresh.count == 0) return;
   ++counters.contactsBorn;
+  fresh.rigid = step.rigid;
   pair.manifold = fresh;
 }
 
@@ -251,6 +252,7 @@ void renewManifold(IslandStep& step, NearPair& pair, Counters& counters) {
       return;
     }
   }
+  fresh.rigid = pair.manifold.rigid;
   keepContactMemory(pair.manifold, position, step.law, radius, fresh);
   pair.manifold = fresh;
 }

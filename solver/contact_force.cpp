@@ -1,6 +1,7 @@
 #include "solver/contact_force.h"
 
 #include "core/lanes.h"
+#include "solver/manifold_geometry.h"
 #include "solver/point_lanes.h"
 
 #include <algorithm>
@@ -24,7 +25,6 @@ struct LawStep {
   double impactFactor;  // stiffness scale per squared approach speed
   double scaleKeep;     // what is left of a scale's excess after the step
   double relaxGain;     // how much of its lag the relaxing branch forgets in the step
-  double scaleMost;     // that a point born now may have
   double pointMass;     // kg that a point moves at least: all four of a face that is hit flat push and squash the block
 };
 
@@ -37,7 +37,6 @@ SPRINGTOWER_INLINE LawStep lawStep(const Manifold& m, const ContactLaw& law, con
           reducedMass / (stiffness * aim * aim),
           1.0 / (1.0 + step.advance_s / law.scaleTime_s),
           step.advance_s / (law.relaxingTime_s + step.advance_s),
-          std::max(law.longSteps ? law.restingScale : step.scaleMost, step.bornMost_s2 * reducedMass / stiffness),
           reducedMass / kFlatInverse};
 }
 
@@ -54,15 +53,15 @@ SPRINGTOWER_INLINE void pointLaw(const LawStep& s, const Lanes& depth, const Lan
   const ContactLaw& law = s.law;
   const Lanes closing = -(relative[0] * normal[0] + relative[1] * normal[1] + relative[2] * normal[2]);
 
-  // A point that is reached in this step starts with no force, so that it adds no energy: its offset is the depth it is found at
-  // (or, seen from a step's end, the surface), and shrinks as it lifts. It is stiffened to stop within the depth aimed at.
+  // A point that is reached in this step starts with no force: its offset is the depth it is found at (or, seen from a step's
+  // end, the surface), so it adds no energy. It is stiffened so that its impact stops within the depth aimed at. The offset
+  // shrinks as the point lifts, where it stores nothing.
   const LaneMask touching = (depth > zero) & (inUse > zero);
   const LaneMask known = touching & (p.live > zero);
   Lanes impact = s.impactFactor * closing * closing;
-  const Lanes resting = zero + law.restingScale;
-  impact = impact > resting ? impact : resting;
-  impact = impact < s.scaleMost ? impact : zero + s.scaleMost;
-  p.scale = known ? resting + (p.scale - resting) * s.scaleKeep : impact;
+  impact = impact > one ? impact : one;
+  impact = impact < s.step.scaleMost ? impact : zero + s.step.scaleMost;
+  p.scale = known ? 1.0 + (p.scale - 1.0) * s.scaleKeep : impact;
   const Lanes lower = p.offset < depth ? p.offset : depth;
   p.offset = known ? lower : depth * s.step.bornOffset;
 
@@ -74,21 +73,14 @@ SPRINGTOWER_INLINE void pointLaw(const LawStep& s, const Lanes& depth, const Lan
   const Lanes stiffness = s.stiffness * p.scale;
   Lanes push = stiffness * (elastic + law.relaxingRatio * (elastic - p.relaxed) + law.dampingTime_s * closing);
   push = touching & (push > zero) & (elastic > zero) ? push : zero;
-  if (s.step.kick_s > 0.0 && (law.longSteps || any(p.scale > one))) {
-    // A point that is thrown back within the step is given no more energy than it came with and its spring stores; where steps
-    // are as long as a fall allows, one that leaves in a step that it begins well below the surface.
+  if (s.step.kick_s > 0.0 && any(p.scale > one)) {
+    // A point that is thrown back within the step is given no more energy than it came with and its spring stores.
     const Lanes spring = stiffness * (elastic + law.relaxingRatio * (elastic - p.relaxed));
-    LaneMask bounded = p.scale > one;
-    Lanes stored = spring * (elastic - closing * s.step.kick_s);
-    if (law.longSteps) {
-      bounded = (push * s.step.kick_s / s.pointMass - closing) * s.step.kick_s > elastic;
-      stored = (spring > zero ? spring : zero) * elastic;
-    }
-    const Lanes given = closing * closing + stored / s.pointMass;
+    const Lanes given = closing * closing + spring * (elastic - closing * s.step.kick_s) / s.pointMass;
     Lanes back;
     squareRoot(given > zero ? given : zero, back);
     const Lanes most = (closing + back) * (s.pointMass / s.step.kick_s);
-    push = bounded & (push > most) ? (most > zero ? most : zero) : push;
+    push = (p.scale > one) & (push > most) ? (most > zero ? most : zero) : push;
   }
   p.live = touching ? (push > zero ? one : zero + kUnpressed) : zero;
   p.normalForce = push;
@@ -133,25 +125,6 @@ SPRINGTOWER_INLINE void pointLaw(const LawStep& s, const Lanes& depth, const Lan
     p.stretch[a] = touching ? stretch[a] * keep : zero;
     p.force[a] = push * normal[a] + friction[a] * keep;
   }
-}
-
-// A block's face as the lanes need it: centre and sides of its place and of its motions.
-struct FaceField {
-  double centre[3];
-  double sideU[3];
-  double sideV[3];
-};
-
-SPRINGTOWER_INLINE void faceOf(const AffineField& field, const FaceAxes& face, FaceField& result) {
-  for (std::size_t k = 0; k < 3; ++k) {
-    result.centre[k] = field.centre[k] + face.side * field.side[face.across][k];
-    result.sideU[k] = field.side[face.u][k];
-    result.sideV[k] = field.side[face.v][k];
-  }
-}
-
-SPRINGTOWER_INLINE void at(const FaceField& face, const Lanes& u, const Lanes& v, Lanes* result) {
-  for (int k = 0; k < 3; ++k) result[k] = face.centre[k] + u * face.sideU[k] + v * face.sideV[k];
 }
 
 // Sums of three lane vectors at once: [sum a, sum b, sum c, 0].
@@ -264,61 +237,24 @@ SPRINGTOWER_INLINE void faceForces(const Manifold& m, const ContactSide& upper, 
   }
 }
 
-// An edge of a block: its middle and its side, and its axes (see kEdgeCorners).
-struct EdgeAxes {
-  std::size_t along;
-  std::size_t first;
-  std::size_t second;
-  double sideFirst;
-  double sideSecond;
-};
-
-SPRINGTOWER_INLINE EdgeAxes edgeAxes(int edge) {
-  const auto along = static_cast<std::size_t>(edge / 4);
-  const std::size_t first = along == 0 ? 1 : 0;
-  const std::size_t second = along == 2 ? 1 : 2;
-  return {along, first, second, (edge & 1) != 0 ? 0.5 : -0.5, (edge & 2) != 0 ? 0.5 : -0.5};
-}
-
-SPRINGTOWER_INLINE double onEdge(const AffineField& field, const EdgeAxes& edge, double t, std::size_t k) {
-  return field.centre[k] + edge.sideFirst * field.side[edge.first][k] + edge.sideSecond * field.side[edge.second][k] +
-         t * field.side[edge.along][k];
-}
-
-SPRINGTOWER_INLINE double dot(const double* p, const double* q) {
-  return p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
-}
-
 // Edges that cross: one point, whose normal is the edges' common normal and whose places are where they come closest.
 SPRINGTOWER_INLINE void edgeForces(const Manifold& m, const ContactSide& upper, const ContactSide& lower, const LawStep& law,
                                    PointMemory* keep, PairForce& result, PointForces* report) {
   const EdgeAxes edgeUpper = edgeAxes(m.incidentFace);
   const EdgeAxes edgeLower = edgeAxes(m.referenceFace);
-  const double* d1 = upper.frame->place.side[edgeUpper.along].data();
-  const double* d2 = lower.frame->place.side[edgeLower.along].data();
-  double arm[3], towardsUpper[3];
-  for (std::size_t k = 0; k < 3; ++k) {
-    arm[k] = onEdge(upper.frame->place, edgeUpper, 0.0, k) - onEdge(lower.frame->place, edgeLower, 0.0, k);
-    towardsUpper[k] = upper.frame->place.centre[k] - lower.frame->place.centre[k];
-  }
-  const double cross[3] = {d1[1] * d2[2] - d1[2] * d2[1], d1[2] * d2[0] - d1[0] * d2[2], d1[0] * d2[1] - d1[1] * d2[0]};
-  const double squared = dot(cross, cross);
-  const double inverse = (dot(cross, towardsUpper) >= 0.0 ? 1.0 : -1.0) / __builtin_sqrt(squared);
-  const double normal[3] = {cross[0] * inverse, cross[1] * inverse, cross[2] * inverse};
-  const double b1 = dot(d1, arm);
-  const double b2 = dot(d2, arm);
-  const double t1 = std::clamp((dot(d1, d2) * b2 - dot(d2, d2) * b1) / squared, -0.5, 0.5);
-  const double t2 = std::clamp((dot(d1, d1) * b2 - dot(d1, d2) * b1) / squared, -0.5, 0.5);
+  Crossing crossing;
+  crossingOf(upper.frame->place, edgeUpper, lower.frame->place, edgeLower, crossing);
+  const double* normal = crossing.normal;
+  const double t1 = crossing.onUpper;
+  const double t2 = crossing.onLower;
+  const double depth = -crossing.gap;
 
   const Lanes zero = {0.0, 0.0, 0.0, 0.0};
   Lanes relative[3], carried[3];
-  double gap[3];
   for (std::size_t k = 0; k < 3; ++k) {
-    gap[k] = arm[k] + t1 * d1[k] - t2 * d2[k];
     relative[k] = zero + (onEdge(*upper.motion, edgeUpper, t1, k) - onEdge(*lower.motion, edgeLower, t2, k));
     carried[k] = zero + (onEdge(*upper.carried, edgeUpper, t1, k) - onEdge(*lower.carried, edgeLower, t2, k));
   }
-  const double depth = -dot(gap, normal);
   PointLanes points;
   loadPoints(m, 0, points);
   pointLaw(law, zero + depth, relative, carried, normal, Lanes{1.0, 0.0, 0.0, 0.0}, points);

@@ -21,8 +21,6 @@ struct ContactLaw {
   double kineticFriction = 0.0;      ///< and while it slides
   double impactPenetration_m = 1.0;  ///< depth aimed at in an impact; decides how much a new contact is stiffened
   double scaleTime_s = 1.0;          ///< s in which that stiffening fades
-  double restingScale = 1.0;         ///< to which it fades: less where an island falls
-  bool longSteps = false;            ///< whether explicit steps are so long that a point may leave from well below the surface
   double offsetPerSlip = 0.0;  ///< how much of the offset fades per length of slip; its work is paid by the slip's own friction
 };
 
@@ -33,8 +31,7 @@ struct ContactStep {
   /// Where a point that is reached now starts to push: at 1 from the depth it is found at, which adds no energy; at 0 from the
   /// surface, which an implicit step needs, as it looks at the step's end alone.
   double bornOffset = 1.0;
-  double bornMost_s2 = 0.0;  ///< 1/s2, the same per reduced mass, where an island falls
-  double kick_s = 0.0;       ///< s for which the force acts on the velocities of a leapfrog step; 0 in other steps
+  double kick_s = 0.0;  ///< s for which the force acts on the velocities of a leapfrog step; 0 in other steps
 };
 
 /// Forces of one manifold on its two blocks, as sums over their affine coordinates (solver/block_frames.h), N.

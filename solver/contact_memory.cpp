@@ -87,7 +87,7 @@ void keepContactMemory(const Manifold& old, const CornerArray& position, const C
   const std::array<double, kManifoldPoints> depth = depthsOf(fresh, a, b, oldUpper == freshUpper, law);
 
   double stored = 0.0;
-  double scale = law.restingScale;
+  double scale = 1.0;
   for (std::size_t i = 0; i < static_cast<std::size_t>(old.count); ++i) {
     stored += energyOf(old, i, elasticOf(old, i, depthBefore[i]), law);
     if (old.live[i] != 0.0) scale = std::max(scale, old.scale[i]);

@@ -104,7 +104,7 @@ PointStiffness pointStiffness(const IslandStep& step, const Manifold& manifold, 
   const double stiffness = manifold.lower < 0 ? law.floorStiffness_n_m : law.stiffness_n_m;
   const double damping = law.dampingTime_s / step_s;
   const double relaxing = law.relaxingRatio * law.relaxingTime_s / (law.relaxingTime_s + step.drift_s);
-  const double k = stiffness * std::max(law.restingScale, memory.scale[i]);
+  const double k = stiffness * std::max(1.0, memory.scale[i]);
   PointStiffness result;
   result.normal = k * (1.0 + relaxing + damping);
   result.tangential = k * (law.tangentialRatio * (1.0 + damping));

@@ -7,7 +7,6 @@
 #include "core/state.h"
 #include "narrowphase/manifold.h"
 #include "solver/contact_force.h"
-#include "solver/falling_block.h"
 #include "solver/implicit_island.h"
 #include "solver/report_state.h"
 #include "solver/rigid_island.h"
@@ -50,6 +49,7 @@ struct BlockClock {
   bool forced = false;              ///< whether a user's force or the hand acts on its island, as of the last frame begun
   bool explicitLast = false;        ///< whether explicit steps brought it where it is
   bool falls = false;               ///< whether its island fell in the last frame begun
+  bool hasFallen = false;           ///< whether it has ever
   double jerk = 0.0;            ///< kg m2/s6; mass by the square of its corners' change of acceleration, mean over some frames
   double motion = 0.0;          ///< kg m2/s2; mass by the square of its corners' velocity, alike
   double travel = 0.0;          ///< m; path length of the block's fastest corner, ever growing
@@ -120,16 +120,15 @@ struct Engine {
   CornerArray previousVelocity;    ///< m/s, at the start of the step; for implicit steps
   std::vector<ImplicitIsland> implicitIslands;  ///< by the island's smallest block; empty for other methods
   std::vector<SparseFactors> sparseFactors;     ///< by the island's smallest block; of `implicitEigen` alone
-  std::vector<RigidIsland> rigidIslands;        ///< by the island's smallest block; empty for other methods
-  std::vector<FallingBlock> falling;            ///< [blocks]; empty for other methods
-  std::vector<RelativePose> pose;         ///< by position in `pairs`: where a fall's blocks lay when their manifold was renewed
-  CornerArray history;                    ///< m, what past steps give of the position at an implicit step's end
-  CornerArray stepVelocity;               ///< m/s, mean over the implicit step
-  CornerArray target;                     ///< m, where the implicit step ends without forces
-  GripForce tetherNow;                    ///< the hand's, as last evaluated
-  std::vector<std::int32_t> nodeOf;       ///< the place of each block in its island, for implicit steps and rigid methods
-  std::vector<PairForce> pairForce;       ///< N, by position in `pairs`; for islands that run on many threads
-  std::vector<BlockClock> clock;          ///< [blocks]
+  std::vector<RigidIsland> rigidIslands;        ///< by the island's smallest block; of rigid methods, and of what falls
+  std::vector<RelativePose> pose;    ///< by position in `pairs`: where blocks of rigid steps lay when their manifold was renewed
+  CornerArray history;               ///< m, what past steps give of the position at an implicit step's end
+  CornerArray stepVelocity;          ///< m/s, mean over the implicit step
+  CornerArray target;                ///< m, where the implicit step ends without forces
+  GripForce tetherNow;               ///< the hand's, as last evaluated
+  std::vector<std::int32_t> nodeOf;  ///< the place of each block in its island, for implicit steps and rigid methods
+  std::vector<PairForce> pairForce;  ///< N, by position in `pairs`; for islands that run on many threads
+  std::vector<BlockClock> clock;     ///< [blocks]
   std::vector<std::int32_t> lostPartner;  ///< sleeping blocks whose awake neighbour went out of reach in this frame
   std::vector<std::int32_t> beginning;    ///< working space: pairs of each block that may begin to push in this frame
   std::vector<std::int32_t> toWake;       ///< working space

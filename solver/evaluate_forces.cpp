@@ -1,4 +1,3 @@
-#include "solver/evaluate_contacts.h"
 #include "solver/inertia.h"
 #include "solver/island_step.h"
 #include "solver/spring_force.h"
@@ -125,23 +124,13 @@ std::uint64_t pointsOf(const IslandStep& step) {
 
 }  // namespace
 
-void evaluateContacts(IslandStep& step, double advance_s, double kick_s) {
-  const Evaluation evaluation{{advance_s, step.scaleMost, 1.0, step.bornMost_s2, kick_s}, true, Memory::advance};
-  if (step.blocks.size() >= kParallelBlocks) {
-    contactsInParallel(step, evaluation);
-  } else {
-    contactsInOrder(step, evaluation);
-  }
-  step.counters.contactEvaluations += pointsOf(step);
-}
-
 void evaluateForces(IslandStep& step, const MotionState& state, const CornerArray& carried, double advance_s, Memory memory) {
   StageClock clock(step.times);
   Engine& engine = step.engine;
   const bool parallel = step.blocks.size() >= kParallelBlocks;
   const bool sameMotion = &carried == &state.velocity;
   const double kick_s = sameMotion && memory == Memory::advance ? step.kick_s : 0.0;
-  const Evaluation evaluation{{advance_s, step.scaleMost, memory == Memory::trial ? 0.0 : 1.0, 0.0, kick_s}, sameMotion, memory};
+  const Evaluation evaluation{{advance_s, step.scaleMost, memory == Memory::trial ? 0.0 : 1.0, kick_s}, sameMotion, memory};
   using Blocks = std::span<const std::int32_t>;
   overBlocks(step, parallel, [&](Blocks blocks) {
     computeFrames(state.position, blocks, engine.frames);

@@ -1,38 +1,26 @@
 #pragma once
 
+#include "solver/implicit.h"
 #include "solver/island_step.h"
 
 namespace springtower {
 
-// An island that falls. A tolerance is of what stands; what moves by millimetres in a frame asks for no hundredth of one.
-// Contacts are as soft there as a coarse tolerance has them, and in explicit steps blocks keep the shape they have: what limits
-// those steps is then an impact alone.
+// An island that falls: its blocks tumble and hit one another, and what a spring stores of that is lost in the next impact
+// anyway. Rigid steps with sequential impulses carry it, in the shape that its blocks have, until it is slow.
 
-/// Whether the island falls: its blocks move so fast on the mean, square by mass, that they could rise by an eighth of a block's
-/// height. Not while a hand or a user's force acts.
-bool fallsNow(const IslandStep& step);
+/// Whether the island falls: three blocks or more move so fast on the mean, square by mass, that they could rise by an eighth of
+/// a block's height; or they fell in the last frame and are not slow yet. Not while a hand or a user's force acts, nor where the
+/// island is so large that its steps run on many threads.
+bool falls(const IslandStep& step);
 
-/// Whether an island that fell in the last frame falls on: until it is half as fast.
-bool fallsOn(const IslandStep& step);
+/// Whether the island holds blocks that have fallen: rigid steps carry it where implicit ones do not do.
+bool isHeap(const IslandStep& step);
 
-/// Makes the island's contacts those of a fall, or of a stand, and notes it in its blocks' clocks. Forces stay as they are where
-/// contacts become stiff; where they become soft, depths do. Neither adds energy.
+/// Makes the points of the island's contacts remember what rigid steps do, or what springs do, and notes in its blocks' clocks
+/// whether they fall. Forces stay as they are, and so does the depth where they hold.
 void setFalling(IslandStep& step, bool falling);
 
-/// Reads the island's blocks from their particles. Returns the steps of a frame that they ask for as they fly and turn.
-int beginFall(IslandStep& step);
-
-/// One explicit step, semi-implicit Euler as leapfrog: contacts of the law in use, moments by the angular momentum.
-void stepFall(IslandStep& step);
-
-/// Writes the velocities of the particles.
-void endFall(IslandStep& step);
-
-/// After explicit steps of a fall: brings velocities and contact memory up to the positions, as long as the blocks keep their
-/// shape. Springs that were let go over a long step would throw them.
-void synchroniseFall(IslandStep& step);
-
-/// What a fall's contacts have of the stiffness of those at rest.
-double fallingScale(const Simulation& simulation);
+/// Carries an island that falls through the frame from `begin_s` on. As `runRigidSteps`.
+IslandOutcome runFall(IslandStep& step, double begin_s);
 
 }  // namespace springtower

@@ -1,6 +1,5 @@
 #include "solver/forces_now.h"
 
-#include "solver/falling.h"
 #include "solver/inertia.h"
 #include "solver/island_step.h"
 #include "solver/rigid_contacts.h"
@@ -36,15 +35,12 @@ struct ManifoldNow {
     const AffineField carriedBy[2] = {affineField(carried, upper), affineField(carried, lower)};
     const ContactSide up{&frames[0], &motion[0], &carriedBy[0]};
     const ContactSide low{&frames[1], &motion[1], &carriedBy[1]};
-    ContactLaw law = contactLaw(simulation);
-    const std::vector<BlockClock>& clock = simulation.engine->clock;
-    if (clock[upper].falls || (stored.lower >= 0 && clock[lower].falls)) law.restingScale = fallingScale(simulation);
+    const ContactLaw law = contactLaw(simulation);
     const double behind = simulation.engine->clock[upper].lastDrift_s;
     const double kick = isLeapfrog(simulation.scene.settings.method) ? behind : 0.0;
-    manifoldForces(manifold, up, low, law, {behind, 1.0, 1.0, 0.0, kick}, reducedMass(simulation.model, stored), &manifold,
-                   force);
+    manifoldForces(manifold, up, low, law, {behind, 1.0, 1.0, kick}, reducedMass(simulation.model, stored), &manifold, force);
     points = pointForces(manifold, up, low, law);
-    if (isRigid(simulation.scene.settings.method)) {
+    if (stored.rigid) {
       manifold = stored;
       readForces(stored, simulation.scene.settings.method, points);
     }
@@ -52,12 +48,17 @@ struct ManifoldNow {
 };
 
 // Stored in a manifold's springs, branches and anchors, J.
-double energyOf(const ManifoldNow& now, const ContactLaw& law) {
+double energyOf(const Simulation& simulation, const ManifoldNow& now, const ContactLaw& law) {
   const Manifold& m = now.manifold;
   const double stiffness = m.lower < 0 ? law.floorStiffness_n_m : law.stiffness_n_m;
   double energy = 0.0;
   for (std::size_t i = 0; i < static_cast<std::size_t>(m.count); ++i) {
     const double elastic = now.points.depth[i] - m.offset[i];
+    if (m.rigid) {
+      const double pressed = std::clamp(elastic, 0.0, pressedDepth(simulation, m, i));
+      energy += 0.5 * stiffness * pressed * pressed;
+      continue;
+    }
     if (m.live[i] == 0.0 || elastic <= 0.0) continue;
     const double lag = elastic - m.relaxed[i];
     const double stretch = Vec3(m.stretchX[i], m.stretchY[i], m.stretchZ[i]).squaredNorm();
@@ -78,19 +79,6 @@ void addContactForces(const Simulation& simulation, const Manifold& m, std::vect
                       Vec3(points.friction[i][0], points.friction[i][1], points.friction[i][2]), points.depth[i],
                       now.manifold.sliding[i] != 0.0});
   }
-}
-
-// What is left of the accelerations of a block's corners (m/s2, [component][corner]) where it keeps its shape.
-void keepShape(const Simulation& simulation, std::size_t b, CornerArray& acceleration) {
-  MotionState state;
-  state.resize(1);
-  for (std::size_t a = 0; a < 3; ++a) {
-    std::copy_n(simulation.state.position.values(a, b), kCorners, state.position.values(a, 0));
-    std::copy_n(acceleration.values(a, b), kCorners, state.velocity.values(a, 0));
-  }
-  const RigidMotion rigid = rigidMotion(state, 0);
-  for (std::size_t c = 0; c < kCorners; ++c)
-    acceleration.set(b, c, rigid.velocity + rigid.spin.cross(state.position.at(0, c) - rigid.centre));
 }
 
 }  // namespace
@@ -163,7 +151,7 @@ Energy energy(const Simulation& simulation) {
   for (const NearPair& pair : simulation.engine->pairs) {
     if (pair.manifold.touch == Touch::apart) continue;
     const ManifoldNow now(simulation, pair.manifold);
-    energy.contacts += energyOf(now, law);
+    energy.contacts += energyOf(simulation, now, law);
     addForce(now.force.upper, contactForce[static_cast<std::size_t>(pair.manifold.upper)]);
     if (pair.manifold.lower >= 0) addForce(now.force.lower, contactForce[static_cast<std::size_t>(pair.manifold.lower)]);
   }
@@ -188,10 +176,7 @@ Energy energy(const Simulation& simulation) {
       }
     }
     energy.step_s.push_back(kick);
-    energy.keepsShape.push_back(simulation.engine->clock[b].falls && kick > 0.0 ? 1 : 0);
     energy.stepShare_j_s2.push_back(0.125 * model.mass[b] * massProduct(settings.inertia, change, change, b));
-    keepShape(simulation, b, change);
-    energy.shapeShare_j_s2.push_back(0.125 * model.mass[b] * massProduct(settings.inertia, change, change, b));
     energy.kinetic += 0.5 * model.mass[b] * massProduct(settings.inertia, state.velocity, coming, b);
   }
   return energy;
@@ -200,10 +185,8 @@ Energy energy(const Simulation& simulation) {
 double energyRise(const Energy& before, const Energy& after) {
   double rise = after.total() - before.total();
   for (std::size_t b = 0; b < before.step_s.size(); ++b) {
-    const auto share = [&](const Energy& kind) {
-      return kind.keepsShape[b] != 0 ? before.shapeShare_j_s2[b] : before.stepShare_j_s2[b];
-    };
-    rise -= before.step_s[b] * before.step_s[b] * share(before) - after.step_s[b] * after.step_s[b] * share(after);
+    const double longer = before.step_s[b] * before.step_s[b] - after.step_s[b] * after.step_s[b];
+    rise -= longer * before.stepShare_j_s2[b];
   }
   return rise;
 }

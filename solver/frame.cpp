@@ -1,5 +1,4 @@
 #include "core/error.h"
-#include "solver/fall_steps.h"
 #include "solver/falling.h"
 #include "solver/forces_now.h"
 #include "solver/frame_start.h"
@@ -115,7 +114,7 @@ int chooseSubsteps(IslandStep& step) {
   BlockClock& record = step.engine.clock[static_cast<std::size_t>(step.blocks.front())];
   const std::uint64_t signature = contactSignature(step.engine, step.pairs) ^ (step.blocks.size() << 1U);
   if (signature != record.contactSignature || record.spectralRadius == 0.0) {
-    record.spectralRadius = spectralBound(simulation, step.blocks, step.pairs, false);
+    record.spectralRadius = spectralBound(simulation, step.blocks, step.pairs);
     record.contactSignature = signature;
   }
   const double standing = record.spectralRadius;
@@ -175,25 +174,30 @@ IslandOutcome runIsland(IslandStep& step) {
   Simulation& simulation = step.simulation;
   const Settings& settings = simulation.scene.settings;
   IslandOutcome outcome;
+  step.rigid = isRigid(settings.method);
   if (simulation.frame == 0 && settings.method != Method::report) findTouching(step);
-  if (isRigid(settings.method)) return runRigidSteps(step);
+  if (isRigid(settings.method)) return runRigidSteps(step, rigidSubsteps(settings), 0.0);
   if (simulation.frame == 0 && settings.method != Method::report) startInEquilibrium(step);
   double begin_s = 0.0;
-  bool falling = false;
   if (isImplicit(settings.method)) {
-    falling = fallsOn(step);
+    bool falling = falls(step);
     setFalling(step, falling);
-    outcome = runImplicitSteps(step, begin_s);
-    if (!outcome.inside || begin_s >= settings.frame_s) return outcome;
-    if (!falling && fallsNow(step)) {
-      falling = true;
-      setFalling(step, true);
+    if (!falling) {
+      outcome = runImplicitSteps(step, begin_s);
+      if (!outcome.inside || begin_s >= settings.frame_s) return outcome;
+      falling = isHeap(step);
+      if (falling) setFalling(step, true);
+    }
+    if (falling) {
+      const int before = outcome.substeps;
+      outcome = runFall(step, begin_s);
+      outcome.substeps += before;
+      return outcome;
     }
   }
   const int implicitSteps = outcome.substeps;
   const double rest_s = settings.frame_s - begin_s;
-  const int steps = falling ? std::max(chooseFallSteps(step), beginFall(step)) : chooseSubsteps(step);
-  outcome.substeps = std::max(1, static_cast<int>(std::ceil(steps * rest_s / settings.frame_s - 1e-9)));
+  outcome.substeps = std::max(1, static_cast<int>(std::ceil(chooseSubsteps(step) * rest_s / settings.frame_s - 1e-9)));
   step.drift_s = rest_s / outcome.substeps;
   BlockClock& record = step.engine.clock[static_cast<std::size_t>(step.blocks.front())];
   double last = record.lastDrift_s;
@@ -204,17 +208,12 @@ IslandOutcome runIsland(IslandStep& step) {
     step.gravity = simulation.scene.gravity.at(step.time_s);
     step.kick_s = 0.5 * (last + step.drift_s);
     step.advance_s = last;
-    if (falling) {
-      stepFall(step);
-    } else {
-      stepIsland(settings.method, step);
-    }
+    stepIsland(settings.method, step);
     last = step.drift_s;
     outcome.inside =
         settings.method == Method::report ? acceptReportStep(step) : updateContacts(step, renewalOfExplicitSteps(simulation));
     if (!outcome.inside) break;
   }
-  if (falling) endFall(step);
   for (const std::int32_t block : step.blocks) {
     BlockClock& clock = step.engine.clock[static_cast<std::size_t>(block)];
     clock.lastDrift_s = last;
@@ -251,7 +250,8 @@ bool runIslands(Simulation& simulation) {
   prepareFrameStart(simulation);
   if (simulation.scene.settings.method == Method::report) prepareReportFrame(simulation);
   if (isImplicit(simulation.scene.settings.method) || simulation.frame == 0) engine.trial.resize(engine.pairs.size());
-  if (isImplicit(simulation.scene.settings.method) && (engine.regrouped || engine.pose.size() != engine.pairs.size()))
+  if ((isImplicit(simulation.scene.settings.method) || isRigid(simulation.scene.settings.method)) &&
+      (engine.regrouped || engine.pose.size() != engine.pairs.size()))
     engine.pose.assign(engine.pairs.size(), RelativePose{});
   tbb::parallel_for(std::size_t{0}, islands, [&](std::size_t i) {
     const auto first = static_cast<std::size_t>(engine.pairStart[i]);

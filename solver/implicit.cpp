@@ -13,6 +13,8 @@ namespace {
 // Steps of a frame where the user names none: where fewer do not do, and where a hand or a force moves something, at least.
 constexpr int kImplicitSteps = 4;
 constexpr int kForcedSteps = 2;
+// Frames that rigid steps carry what has fallen before implicit ones are tried again.
+constexpr int kFallenFrames = 30;
 // Angle by which a block may turn in an implicit step, rad: the two-step formula turns along chords.
 constexpr double kMostTurn = 0.01;
 
@@ -114,7 +116,7 @@ void prepareImplicit(Simulation& simulation) {
   engine.carriedMotion.resize(count);
   engine.implicitIslands.resize(count);
   engine.nodeOf.assign(count, 0);
-  if (isImplicit(simulation.scene.settings.method)) engine.falling.resize(count);
+  if (isImplicit(simulation.scene.settings.method)) engine.rigidIslands.resize(count);
   if (simulation.scene.settings.method == Method::implicitEigen) engine.sparseFactors.resize(count);
 }
 
@@ -190,19 +192,23 @@ IslandOutcome runImplicitSteps(IslandStep& step, double& reached_s) {
     setJacobians(step, endShare(simulation.scene.settings.method) * step.drift_s);
   };
   takeSteps(steps);
+  // A heap that steps do not converge for lies well with rigid ones, as it did before.
+  const bool hasFallen = std::any_of(step.blocks.begin(), step.blocks.end(),
+                                     [&](std::int32_t block) { return engine.clock[static_cast<std::size_t>(block)].hasFallen; });
   step.scaleMost = 1.0;
   island.forcesKnown = known;
   while (steps > 0) {
     step.time_s = simulation.time_s + reached_s;
     step.gravity = simulation.scene.gravity.at(step.time_s + step.drift_s);  // forces are those of the step's end
     const int finer = finerSteps(1.0 - reached_s / frame_s, steps);
-    const bool finerFollow = finer > steps && simulation.scene.settings.substeps == 0;
-    if (!stepImplicit(step, finerFollow)) {
+    const bool finerFollow = finer > steps && simulation.scene.settings.substeps == 0 && !hasFallen;
+    if (!stepImplicit(step, finerFollow || hasFallen)) {
       if (finerFollow) {
         takeSteps(finer);
         continue;
       }
-      for (const std::int32_t block : step.blocks) engine.clock[static_cast<std::size_t>(block)].explicitFrames = kExplicitFrames;
+      for (const std::int32_t block : step.blocks)
+        engine.clock[static_cast<std::size_t>(block)].explicitFrames = hasFallen ? kFallenFrames : kExplicitFrames;
       return outcome;
     }
     ++outcome.substeps;

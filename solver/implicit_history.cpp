@@ -1,7 +1,6 @@
 #include "solver/implicit_history.h"
 
 #include "core/lanes.h"
-#include "solver/falling.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,18 +16,9 @@ constexpr double kThird = 1.0 / 3.0;
 void synchronise(IslandStep& step) {
   Engine& engine = step.engine;
   double behind_s = 0.0;
-  bool fell = false;
-  for (const std::int32_t block : step.blocks) {
-    const BlockClock& clock = engine.clock[static_cast<std::size_t>(block)];
-    behind_s = std::max(behind_s, clock.lastDrift_s);
-    fell = fell || clock.falls;
-  }
+  for (const std::int32_t block : step.blocks)
+    behind_s = std::max(behind_s, engine.clock[static_cast<std::size_t>(block)].lastDrift_s);
   if (behind_s == 0.0) return;
-  step.engine.implicitIslands[static_cast<std::size_t>(step.blocks.front())].forcesKnown = false;
-  if (fell) {
-    synchroniseFall(step);
-    return;
-  }
   CornerArray& velocity = step.simulation.state.velocity;
   step.kick_s = behind_s;
   evaluateForces(step, step.simulation.state, velocity, behind_s, Memory::advance);
@@ -43,6 +33,7 @@ void synchronise(IslandStep& step) {
     }
     engine.clock[b].lastDrift_s = 0.0;
   }
+  step.engine.implicitIslands[static_cast<std::size_t>(step.blocks.front())].forcesKnown = false;
 }
 
 SPRINGTOWER_KERNEL

@@ -24,11 +24,6 @@ constexpr double affineCornerInverseMass(Inertia inertia) {
   return 0.5 * inverseMass(inertia).own - inverseMass(inertia).shared;
 }
 
-/// The same for a block that keeps its shape: one, and two shares of at most three (of a cuboid) from its turning.
-constexpr double rigidCornerInverseMass(Inertia inertia) {
-  return 1.0 + 0.25 * inverseMass(inertia).own;
-}
-
 /// Mass that two blocks have towards each other, kg; that of the upper one on the floor.
 inline double reducedMass(const BlockModel& model, const Manifold& manifold) {
   const double upper = model.mass[static_cast<std::size_t>(manifold.upper)];

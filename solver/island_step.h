@@ -23,11 +23,11 @@ struct IslandStep {
   double kick_s = 0.0;          ///< s; step of the velocities: mean of the last and this drift (leapfrog with changing steps)
   double advance_s = 0.0;       ///< s by which the contact memory is behind the positions
   double scaleMost = 1.0;       ///< most a contact that is born now may be stiffened
-  double bornMost_s2 = 0.0;     ///< 1/s2, the same per reduced mass, where the island falls
   /// Pairs that touch or may use up their margin soon: all, but in steps so short that it is worth listing them.
   std::span<const std::int32_t> watched = pairs;
   bool lists = false;     ///< whether the steps are so short
   int listedFor = 0;      ///< steps for which `watched` still holds
+  bool rigid = false;     ///< whether rigid steps carry the island: its points remember forces
   bool unforced = false;  ///< neither user forces nor the hand act: the equilibrium before the first frame
 };
 
@@ -76,5 +76,10 @@ RenewalTravel renewalOfImplicitSteps(const Simulation& simulation);
 /// blocks have moved, and lets go of those that parted. Adds the step's path to each block's travel. Returns false when a block
 /// has left its swept box, so that the frame has to be run again with a wider one. Throws DivergenceError.
 bool updateContacts(IslandStep& step, const RenewalTravel& renewal);
+
+/// The same in two parts, for steps that are taken again with the contacts found in them: what has met, as often as the step is
+/// taken; then, once it stands, the manifolds whose blocks have moved.
+bool findContacts(IslandStep& step);
+void renewContacts(IslandStep& step, const RenewalTravel& renewal);
 
 }  // namespace springtower

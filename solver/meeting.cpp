@@ -100,7 +100,7 @@ double bearableClosing(const IslandStep& step, const NearPair& pair) {
   const double massA = mass[static_cast<std::size_t>(pair.a)];
   const double massB = pair.b < 0 ? 0.0 : mass[static_cast<std::size_t>(pair.b)];
   const double reduced = pair.b < 0 ? massA : massA * massB / (massA + massB);
-  const double stiffness = step.law.restingScale * (pair.b < 0 ? step.law.floorStiffness_n_m : step.law.stiffness_n_m);
+  const double stiffness = pair.b < 0 ? step.law.floorStiffness_n_m : step.law.stiffness_n_m;
   return 0.25 * step.law.impactPenetration_m * std::sqrt(stiffness / reduced) * step.drift_s;
 }
 

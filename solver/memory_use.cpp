@@ -74,9 +74,16 @@ MemoryUse memoryUse(const Simulation& simulation) {
                                        island.coupledMotion, island.coupledForce, island.correction, island.kinds, island.kindOf,
                                        island.order, island.height, island.edges);
   }
+  for (const RigidIsland& island : engine.rigidIslands) {
+    const PivotingSpace& pivoting = island.pivoting;
+    use.working += sizeof(RigidIsland) + sumOf(island.bodies, island.contacts, island.movers, island.points, pivoting.matrix,
+                                               pivoting.inverse, pivoting.impulse, pivoting.velocity, pivoting.least,
+                                               pivoting.most, pivoting.impulseChange, pivoting.velocityChange, pivoting.column,
+                                               pivoting.clamped, pivoting.placeOf);
+  }
   for (const SparseFactors& sparse : engine.sparseFactors) use.factor += bytesOf(sparse);
   use.working += sumOf(engine.trial, engine.previousVelocity, engine.history, engine.stepVelocity, engine.target, engine.nodeOf,
-                       engine.falling, engine.pose, engine.frameStartPrevious, engine.frameStartPreviousVelocity);
+                       engine.pose, engine.frameStartPrevious, engine.frameStartPreviousVelocity);
   return use;
 }
 

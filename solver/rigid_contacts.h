@@ -4,6 +4,7 @@
 #include "solver/island_step.h"
 #include "solver/rigid_island.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace springtower {
@@ -22,6 +23,15 @@ void keepForces(IslandStep& step, const RigidIsland& island);
 
 /// The forces that `keepForces` put into a manifold, for reports: normal and friction of each point.
 void readForces(const Manifold& manifold, Method method, PointForces& points);
+
+/// How deep the springs of a point would be pressed by the normal force that rigid steps remember, m: so deep they leave it where
+/// an island of another method falls, and what is pressed holds its energy. No deeper than the tolerance, as what stands; 0 of
+/// the rigid methods, which have no springs.
+inline double pressedDepth(const Simulation& simulation, const Manifold& manifold, std::size_t point) {
+  if (isRigid(simulation.scene.settings.method)) return 0.0;
+  const double stiffness = manifold.lower < 0 ? simulation.floorStiffness_n_m : simulation.contactStiffness_n_m;
+  return std::min(manifold.relaxed[point] / stiffness, simulation.tolerance_m);
+}
 
 /// Velocity of upper against lower at a contact, m/s.
 inline Vec3 relativeVelocity(const RigidIsland& island, const RigidContact& contact) {
@@ -79,8 +89,10 @@ inline Vec3 relativeMove(const RigidIsland& island, const RigidContact& contact)
   return moved;
 }
 
-/// The rigid methods: each advances the island's bodies by step.drift_s and leaves the impulses in its contacts.
-void stepRigidPgs(IslandStep& step, RigidIsland& island);
+/// The rigid methods: each advances the island's bodies by step.drift_s and leaves the impulses in its contacts. Sequential
+/// impulses do so in two parts: they move the bodies, and once the step stands settle their velocities.
+void moveRigidPgs(IslandStep& step, RigidIsland& island);
+void settleRigidPgs(IslandStep& step, RigidIsland& island);
 void stepRigidLcp(IslandStep& step, RigidIsland& island);
 void stepXpbd(IslandStep& step, RigidIsland& island);
 

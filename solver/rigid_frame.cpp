@@ -1,10 +1,12 @@
 #include "solver/rigid_frame.h"
 
+#include "core/lanes.h"
 #include "solver/block_frames.h"
 #include "solver/inertia.h"
 #include "solver/rigid_contacts.h"
 #include "solver/stage_clock.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
@@ -19,15 +21,19 @@ constexpr int kPivotingSubsteps = 4;
 // How often a step is taken again because of contacts found in it.
 constexpr int kMostRepeats = 4;
 
-// Principal moments: of a cuboid m (b^2 + c^2) / 12; with the mass in eight corners three times as much.
-Vec3 momentOf(const Simulation& simulation, std::size_t block) {
-  const Vec3 squares = simulation.model.dimensions[block].cwiseAbs2();
-  const double share = 2.0 / inverseMass(simulation.scene.settings.inertia).own;
-  return share * simulation.model.mass[block] * (Vec3::Constant(squares.sum()) - squares);
+// Of a cuboid m (b^2 + c^2) / 12; with the mass in eight corners three times as much.
+Eigen::Matrix3d momentOf(const Simulation& simulation, std::size_t block, const RigidBody& body) {
+  Eigen::Matrix3d moment = Eigen::Matrix3d::Zero();
+  for (std::size_t c = 0; c < kCorners; ++c) {
+    const Vec3 arm(body.corner[0][c], body.corner[1][c], body.corner[2][c]);
+    moment += arm.squaredNorm() * Eigen::Matrix3d::Identity() - arm * arm.transpose();
+  }
+  return simulation.model.mass[block] / inverseMass(simulation.scene.settings.inertia).own * moment;
 }
 
 void readPoses(IslandStep& step) {
   const Simulation& simulation = step.simulation;
+  const bool undeformed = isRigid(simulation.scene.settings.method);
   RigidIsland& island = rigidIslandOf(step);
   island.bodies.resize(step.blocks.size());
   for (std::size_t i = 0; i < step.blocks.size(); ++i) {
@@ -37,34 +43,44 @@ void readPoses(IslandStep& step) {
     body.place = motion.centre;
     body.velocity = motion.velocity;
     body.spin = motion.spin;
-    body.turn = Eigen::Quaterniond(straightAxes(simulation.state.position, b)).normalized();
-    body.moment = momentOf(simulation, b);
+    body.axes = straightAxes(simulation.state.position, b);
+    for (std::size_t c = 0; c < kCorners; ++c) {
+      const Vec3 arm = body.axes.transpose() * (simulation.state.position.at(b, c) - motion.centre);
+      for (std::size_t a = 0; a < 3; ++a) {
+        const auto axis = static_cast<Eigen::Index>(a);
+        body.corner[a][c] = undeformed ? 0.5 * cornerSide(c, a) * simulation.model.dimensions[b][axis] : arm[axis];
+      }
+    }
+    body.moment = momentOf(simulation, b, body);
+    body.inverseMoment = body.moment.inverse();
     body.inverseMass = 1.0 / simulation.model.mass[b];
     step.engine.nodeOf[b] = static_cast<std::int32_t>(i);
   }
 }
 
-Vec3 halfSides(const Simulation& simulation, std::size_t block, std::size_t corner) {
-  Vec3 arm;
-  for (std::size_t a = 0; a < 3; ++a) {
-    const auto axis = static_cast<Eigen::Index>(a);
-    arm[axis] = 0.5 * cornerSide(corner, a) * simulation.model.dimensions[block][axis];
+SPRINGTOWER_KERNEL
+void writePositions(const RigidIsland& island, std::span<const std::int32_t> blocks, CornerArray& position) {
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    const RigidBody& body = island.bodies[i];
+    for (std::size_t a = 0; a < 3; ++a) {
+      const auto row = static_cast<Eigen::Index>(a);
+      double* x = position.values(a, static_cast<std::size_t>(blocks[i]));
+      for (std::size_t c = 0; c < kCorners; ++c) {
+        x[c] = body.place[row] + (body.axes(row, 0) * body.corner[0][c] + body.axes(row, 1) * body.corner[1][c] +
+                                  body.axes(row, 2) * body.corner[2][c]);
+      }
+    }
   }
-  return arm;
 }
 
-void writeParticles(IslandStep& step) {
-  Simulation& simulation = step.simulation;
+void writeVelocities(IslandStep& step) {
   const RigidIsland& island = rigidIslandOf(step);
+  MotionState& state = step.simulation.state;
   for (std::size_t i = 0; i < step.blocks.size(); ++i) {
     const auto b = static_cast<std::size_t>(step.blocks[i]);
     const RigidBody& body = island.bodies[i];
-    const Eigen::Matrix3d axes = body.turn.toRotationMatrix();
-    for (std::size_t c = 0; c < kCorners; ++c) {
-      const Vec3 arm = axes * halfSides(simulation, b, c);
-      simulation.state.position.set(b, c, body.place + arm);
-      simulation.state.velocity.set(b, c, body.velocity + body.spin.cross(arm));
-    }
+    for (std::size_t c = 0; c < kCorners; ++c)
+      state.velocity.set(b, c, body.velocity + body.spin.cross(state.position.at(b, c) - body.place));
   }
 }
 
@@ -72,7 +88,7 @@ void rememberStart(IslandStep& step) {
   RigidIsland& island = rigidIslandOf(step);
   for (RigidBody& body : island.bodies) {
     body.placeBefore = body.place;
-    body.turnBefore = body.turn;
+    body.axesBefore = body.axes;
     body.velocityBefore = body.velocity;
     body.spinBefore = body.spin;
   }
@@ -87,12 +103,14 @@ void backToStart(IslandStep& step) {
   RigidIsland& island = rigidIslandOf(step);
   for (RigidBody& body : island.bodies) {
     body.place = body.placeBefore;
-    body.turn = body.turnBefore;
+    body.axes = body.axesBefore;
     body.velocity = body.velocityBefore;
     body.spin = body.spinBefore;
   }
+  if (step.listedFor > 0) --step.listedFor;
   for (const std::int32_t block : step.blocks) {
     const auto b = static_cast<std::size_t>(block);
+    step.engine.clock[b].travel += step.engine.path[b];  // the way back: margins were measured at the other end
     for (std::size_t a = 0; a < 3; ++a)
       std::copy_n(step.engine.previous.values(a, b), kCorners, step.simulation.state.position.values(a, b));
   }
@@ -107,20 +125,28 @@ void stepOnce(IslandStep& step) {
     body.turned.setZero();
   }
   computeFrames(step.simulation.state.position, step.blocks, step.engine.frames);
-  gatherContacts(step, island);
-  clock.lap(Stage::contacts);
   const Method method = step.simulation.scene.settings.method;
-  if (method == Method::rigidLcp) {
-    stepRigidLcp(step, island);
-  } else if (method == Method::xpbd) {
-    stepXpbd(step, island);
+  if (method == Method::rigidLcp || method == Method::xpbd) {
+    gatherContacts(step, island);
+    clock.lap(Stage::contacts);
+    if (method == Method::rigidLcp) {
+      stepRigidLcp(step, island);
+    } else {
+      stepXpbd(step, island);
+    }
+    keepForces(step, island);
   } else {
-    stepRigidPgs(step, island);
+    moveRigidPgs(step, island);
   }
-  keepForces(step, island);
   clock.lap(Stage::contacts);
-  writeParticles(step);
+  writePositions(island, step.blocks, step.simulation.state.position);
   clock.lap(Stage::integration);
+}
+
+// A vector turned by the rotation whose axis is that of `half` and the tangent of half whose angle is its length (Cayley).
+SPRINGTOWER_INLINE Vec3 turnedVector(const Vec3& half, const Vec3& v) {
+  const Vec3 once = half.cross(v);
+  return v + 2.0 / (1.0 + half.squaredNorm()) * (once + half.cross(once));
 }
 
 }  // namespace
@@ -149,13 +175,12 @@ int rigidSubsteps(const Settings& settings) {
   return settings.method == Method::rigidLcp ? kPivotingSubsteps : kRigidSubsteps;
 }
 
-void updateInertia(RigidBody& body) {
-  const Eigen::Matrix3d axes = body.turn.toRotationMatrix();
-  body.inverseInertia = axes * body.moment.cwiseInverse().asDiagonal() * axes.transpose();
+void turnAxes(const Vec3& angle, Eigen::Matrix3d& axes) {
+  for (Eigen::Index k = 0; k < 3; ++k) axes.col(k) = turnedVector(0.5 * angle, axes.col(k));
 }
 
-Eigen::Quaterniond turnedBy(const Vec3& angle, const Eigen::Quaterniond& turn) {
-  return (rotation(angle) * turn).normalized();
+void updateInertia(RigidBody& body) {
+  body.inverseInertia = body.axes * body.inverseMoment * body.axes.transpose();
 }
 
 // The steps are long for the hand's springs, so they give way as they would at the step's end.
@@ -195,43 +220,54 @@ void applyForces(IslandStep& step) {
     RigidBody& body = island.bodies[static_cast<std::size_t>(step.engine.nodeOf[b])];
     body.velocity += step.drift_s * body.inverseMass * user.force;
     if (user.corner < 0) continue;
-    const Vec3 arm = body.turn * halfSides(step.simulation, b, static_cast<std::size_t>(user.corner));
+    const auto c = static_cast<std::size_t>(user.corner);
+    const Vec3 arm = body.axes * Vec3(body.corner[0][c], body.corner[1][c], body.corner[2][c]);
     body.spin += step.drift_s * (body.inverseInertia * arm.cross(user.force));
   }
 }
 
 void moveFreely(RigidBody& body, double step_s) {
   body.place += step_s * body.velocity;
-  const auto spinAt = [&](const Eigen::Quaterniond& turn, const Vec3& momentum) {
-    return Vec3(turn * body.moment.cwiseInverse().cwiseProduct(turn.conjugate() * momentum));
+  const auto spinOf = [&](const Vec3& momentum) {
+    return Vec3(body.axes * (body.inverseMoment * (body.axes.transpose() * momentum)));
   };
-  const Vec3 momentum = body.turn * body.moment.cwiseProduct(body.turn.conjugate() * body.spin);
-  const Vec3 middle = spinAt(rotation(0.5 * step_s * body.spin) * body.turn, momentum);
-  body.turn = turnedBy(step_s * middle, body.turn);
-  body.spin = spinAt(body.turn, momentum);
+  const Vec3 momentum = body.axes * (body.moment * (body.axes.transpose() * body.spin));
+  const Vec3 quarter = 0.25 * step_s * body.spin;
+  const Vec3 middle = turnedVector(quarter, spinOf(turnedVector(-quarter, momentum)));
+  turnAxes(step_s * middle, body.axes);
+  body.spin = spinOf(momentum);
   body.moved += step_s * body.velocity;
   body.turned += step_s * middle;
 }
 
-IslandOutcome runRigidSteps(IslandStep& step) {
+IslandOutcome runRigidSteps(IslandStep& step, int steps, double begin_s) {
   Simulation& simulation = step.simulation;
+  const double frame_s = simulation.scene.settings.frame_s;
   IslandOutcome outcome;
-  outcome.substeps = rigidSubsteps(simulation.scene.settings);
-  step.drift_s = simulation.scene.settings.frame_s / outcome.substeps;
+  outcome.substeps = std::max(1, static_cast<int>(std::ceil(steps * (frame_s - begin_s) / frame_s - 1e-9)));
+  step.drift_s = (frame_s - begin_s) / outcome.substeps;
   step.kick_s = step.advance_s = step.drift_s;
+  step.rigid = true;
+  const Method method = simulation.scene.settings.method;
+  const bool sequential = method != Method::rigidLcp && method != Method::xpbd;
   readPoses(step);
+  step.lists = true;
+  step.listedFor = 0;
   for (int substep = 0; substep < outcome.substeps && outcome.inside; ++substep) {
-    step.time_s = simulation.time_s + substep * step.drift_s;
+    step.time_s = simulation.time_s + begin_s + substep * step.drift_s;
     step.gravity = simulation.scene.gravity.at(step.time_s);
     rememberStart(step);
     for (int repeat = 0;; ++repeat) {
       const std::uint64_t born = step.counters.contactsBorn;
       stepOnce(step);
-      outcome.inside = updateContacts(step, renewalOfExplicitSteps(simulation));
+      outcome.inside = findContacts(step);
       if (!outcome.inside || born == step.counters.contactsBorn || repeat == kMostRepeats) break;
       backToStart(step);
     }
+    if (sequential) settleRigidPgs(step, rigidIslandOf(step));
+    if (outcome.inside) renewContacts(step, renewalOfExplicitSteps(simulation));
   }
+  writeVelocities(step);
   for (const std::int32_t block : step.blocks) {
     step.engine.clock[static_cast<std::size_t>(block)].lastDrift_s = step.drift_s;
     step.engine.clock[static_cast<std::size_t>(block)].history_s = 0.0;

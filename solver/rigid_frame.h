@@ -17,10 +17,11 @@ Eigen::Matrix3d straightAxes(const CornerArray& position, std::size_t block);
 /// Steps of a frame: as the settings say, or the default.
 int rigidSubsteps(const Settings& settings);
 
-/// Steps an island through the whole frame: poses from the particles, then for each step the method's own solution and the
-/// contacts. A step in which blocks meet is taken again with the contacts it has found, so that they stop at the surface.
-/// Returns false in `inside` when a block has left its swept box. Throws DivergenceError.
-IslandOutcome runRigidSteps(IslandStep& step);
+/// Steps an island through the frame from `begin_s` on, as many steps as a whole frame would take `steps`: poses from the
+/// particles, then for each step the method's own solution (sequential impulses for an island of another method that falls) and
+/// the contacts. A step in which blocks meet is taken again with the contacts it has found, so that they stop at the surface.
+/// Blocks keep the shape they have. Returns false in `inside` when a block has left its swept box. Throws DivergenceError.
+IslandOutcome runRigidSteps(IslandStep& step, int steps, double begin_s);
 
 /// The island's working data.
 RigidIsland& rigidIslandOf(IslandStep& step);
@@ -32,8 +33,8 @@ void applyForces(IslandStep& step);
 /// step (second order).
 void moveFreely(RigidBody& body, double step_s);
 
-/// A turn followed by a rotation vector (rad, world axes).
-Eigen::Quaterniond turnedBy(const Vec3& angle, const Eigen::Quaterniond& turn);
+/// Turns orthonormal axes by a small angle (rad, world axes), to second order; they stay orthonormal.
+void turnAxes(const Vec3& angle, Eigen::Matrix3d& axes);
 
 /// Moment of inertia in the world's axes, inverted, for the body's turn now.
 void updateInertia(RigidBody& body);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "core/block.h"
+#include "core/lanes.h"
 #include "core/vector.h"
 
 #include <array>
@@ -12,19 +14,22 @@ namespace springtower {
 /// A block as the rigid methods see it, while its island is stepped through a frame. Between frames the particles are the state:
 /// poses are read from them when a frame begins and written back after every step, so that all else works unchanged.
 struct RigidBody {
+  std::array<std::array<double, kCorners>, 3> corner{};      ///< m, of its corners from its centre along its own axes
   Vec3 place = Vec3::Zero();                                 ///< m, of its centre
-  Eigen::Quaterniond turn = Eigen::Quaterniond::Identity();  ///< from its own axes to the world's; unit
+  Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();        ///< its own axes in the world's, as columns; orthonormal
   Vec3 velocity = Vec3::Zero();                              ///< m/s
   Vec3 spin = Vec3::Zero();                                  ///< rad/s, world axes
-  Vec3 moment = Vec3::Zero();                                ///< kg m2, principal moments of inertia
+  Eigen::Matrix3d moment = Eigen::Matrix3d::Zero();          ///< kg m2, of inertia, own axes
+  Eigen::Matrix3d inverseMoment = Eigen::Matrix3d::Zero();   ///< 1/(kg m2)
   double inverseMass = 0.0;                                  ///< 1/kg
   Eigen::Matrix3d inverseInertia = Eigen::Matrix3d::Zero();  ///< 1/(kg m2), world axes
   Vec3 placeBefore = Vec3::Zero();                           ///< the same four when the step began
-  Eigen::Quaterniond turnBefore = Eigen::Quaterniond::Identity();
+  Eigen::Matrix3d axesBefore = Eigen::Matrix3d::Identity();
   Vec3 velocityBefore = Vec3::Zero();
   Vec3 spinBefore = Vec3::Zero();
   Vec3 moved = Vec3::Zero();   ///< m, by which the step has moved it so far
   Vec3 turned = Vec3::Zero();  ///< rad, by which the step has turned it, to first order
+  bool pushed = false;         ///< whether a contact pushes it in this step
 };
 
 /// One point of a manifold as a constraint: along its normal the blocks may part, across it they stick or slide.
@@ -46,6 +51,37 @@ struct RigidContact {
   bool sliding = false;             ///< whether friction is at its bound
 };
 
+/// A body as the passes over the contacts see it. Vectors fill three of four lanes.
+struct alignas(32) ImpulseBody {
+  Lanes velocity;           ///< m/s
+  Lanes spin;               ///< rad/s
+  Lanes inverseInertia[3];  ///< 1/(kg m2), columns, world axes
+  double inverseMass;       ///< 1/kg; 0 of what does not move
+};
+
+/// One point of a manifold as sequential impulses see it. Vectors fill three of four lanes.
+struct alignas(32) ImpulsePoint {
+  Lanes normal;        ///< unit, from lower to upper
+  Lanes armUpper;      ///< m, from the body's centre to the point
+  Lanes armLower;      ///< m
+  Lanes leverUpper;    ///< m, arm x normal
+  Lanes leverLower;    ///< m
+  Lanes turnUpper;     ///< rad/s that the body gains by an impulse of 1 N s along the normal
+  Lanes turnLower;     ///< likewise, with the other sign
+  Lanes friction;      ///< N s, on upper, across the normal
+  double push;         ///< N s along the normal
+  double normalMass;   ///< kg, effective along the normal
+  double acrossMass;   ///< kg, effective across it, at least
+  double gap;          ///< m when the step began; negative where the blocks overlap by more than is left as it is
+  double coefficient;  ///< of friction, static or kinetic as the point did last
+  std::int32_t upper;  ///< place of its body among the island's; the last one is what does not move
+  std::int32_t lower;
+  std::int32_t pair;   ///< position in engine.pairs
+  std::int32_t point;  ///< of its manifold
+  bool sliding;        ///< whether friction is at its bound
+  bool idle;           ///< whether it pushes and rubs not at all so far
+};
+
 /// Working space of the pivoting method: rows are the contacts' normals, then their tangents.
 struct PivotingSpace {
   std::vector<double> matrix;    ///< 1/kg, how an impulse along one row changes the velocity along another, [rows][rows]
@@ -65,6 +101,10 @@ struct PivotingSpace {
 struct RigidIsland {
   std::vector<RigidBody> bodies;  ///< [blocks of the island]
   std::vector<RigidContact> contacts;
+  std::vector<ImpulseBody> movers;   ///< those of `bodies`, and what does not move
+  std::vector<ImpulsePoint> points;  ///< of the method of sequential impulses, in place of `contacts`
+  double energyBefore_j = 0.0;       ///< kinetic energy before the step, and what gravity has added in it
+  bool touches = false;              ///< whether any contact pushes in the step
   PivotingSpace pivoting;
 };
 

@@ -67,9 +67,7 @@ struct Energy {
   double springs = 0.0;
   double contacts = 0.0;       ///< stored in contact springs: normal, relaxing branch, friction anchors
   std::vector<double> step_s;  ///< of each block: the step of that kick; 0 where its velocity is that of its position's time
-  std::vector<double> stepShare_j_s2;    ///< of each block: what the kinetic energy lacks for it, over the square of the step
-  std::vector<double> shapeShare_j_s2;   ///< J/s2, the same where the block keeps its shape
-  std::vector<std::uint8_t> keepsShape;  ///< 1 where it did in its last step
+  std::vector<double> stepShare_j_s2;  ///< of each block: what the kinetic energy lacks for it, over the square of the step
   [[nodiscard]] double total() const { return kinetic + gravity + springs + contacts; }
 };
 Energy energy(const Simulation& simulation);

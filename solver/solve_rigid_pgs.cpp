@@ -1,7 +1,9 @@
+#include "solver/impulse_points.h"
 #include "solver/rigid_contacts.h"
 #include "solver/rigid_frame.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 
 namespace springtower {
@@ -12,6 +14,9 @@ namespace {
 // yet settled is forgotten little by little rather than kept as jitter.
 constexpr double kContactRate = 0.125;  // in steps
 constexpr double kDampingRatio = 10.0;  // of the critical
+// Share of their overlap by which blocks that fall are pushed apart in a step: the weight of what lies on one another sinks into
+// no softness, to come up again.
+constexpr double kFallPush = 0.05;
 // Speed that blocks are pushed apart with at most, in sqrt(g h).
 constexpr double kPushSpeed = 0.86;
 
@@ -30,30 +35,157 @@ Softness softness(double step_s) {
   return {omega / a, b / (1.0 + b), 1.0 / (1.0 + b)};
 }
 
-// Gap of a contact as the step stands, m.
-double gapNow(const RigidIsland& island, const RigidContact& contact) {
-  return contact.gap + contact.direction[0].dot(relativeMove(island, contact));
+// What the passes ask of all points of a step.
+struct Pass {
+  double step_s;
+  double kinetic;  // coefficient of friction
+  double most;     // m/s, at which blocks are pushed apart
+  Softness soft;   // of those that overlap
+  bool push;       // whether these are pushed apart, or that is taken out of the velocities again
+};
+
+// One point: friction first, bounded by the cone of the push so far, then the push, so that along the normal the blocks do not
+// come closer than their gap.
+SPRINGTOWER_INLINE void solvePoint(const Pass& pass, std::vector<ImpulseBody>& bodies, ImpulsePoint& p) {
+  ImpulseBody& upper = bodies[static_cast<std::size_t>(p.upper)];
+  ImpulseBody& lower = bodies[static_cast<std::size_t>(p.lower)];
+  Lanes turningUpper, turningLower;
+  crossLanes(upper.spin, p.armUpper, turningUpper);
+  crossLanes(lower.spin, p.armLower, turningLower);
+  const Lanes relative = (upper.velocity + turningUpper) - (lower.velocity + turningLower);
+  const double opening = sum(p.normal * relative);
+  double least = 0.0;
+  double share = 1.0;
+  double forgotten = 0.0;
+  if (p.gap > 0.0) {
+    least = -p.gap / pass.step_s;
+  } else if (pass.push) {
+    least = std::min(-pass.soft.rate * p.gap, pass.most);
+    share = pass.soft.mass;
+    forgotten = pass.soft.impulse;
+  }
+  if (p.idle && opening >= least) return;
+
+  const Lanes slip = relative - opening * p.normal;
+
+  Lanes friction = p.friction - p.acrossMass * slip;
+  const double squared = sum(friction * friction);
+  const double most = p.coefficient * p.push;
+  p.sliding = squared > most * most;
+  if (p.sliding) friction *= std::min(p.coefficient, pass.kinetic) * p.push / __builtin_sqrt(squared);
+  const Lanes change = friction - p.friction;
+  p.friction = friction;
+  Lanes momentUpper, momentLower;
+  crossLanes(p.armUpper, change, momentUpper);
+  crossLanes(p.armLower, change, momentLower);
+
+  const double now = opening + sum(p.turnUpper * momentUpper + p.turnLower * momentLower);
+  const double push = std::max(0.0, p.push + p.normalMass * share * (least - now) - forgotten * p.push);
+  const double more = push - p.push;
+  p.push = push;
+  p.idle = push == 0.0 && most == 0.0;
+
+  Lanes turnUpper, turnLower;
+  timesLanes(upper.inverseInertia, momentUpper, turnUpper);
+  timesLanes(lower.inverseInertia, momentLower, turnLower);
+  const Lanes impulse = change + more * p.normal;
+  upper.velocity += upper.inverseMass * impulse;
+  upper.spin += turnUpper + more * p.turnUpper;
+  lower.velocity -= lower.inverseMass * impulse;
+  lower.spin -= turnLower + more * p.turnLower;
 }
 
-void solveFriction(RigidIsland& island, RigidContact& contact, double kinetic) {
-  const Vec3 relative = relativeVelocity(island, contact);
-  double first = contact.impulse[1] - contact.mass[1] * relative.dot(contact.direction[1]);
-  double second = contact.impulse[2] - contact.mass[2] * relative.dot(contact.direction[2]);
-  contact.sliding = boundFriction(first, second, contact.coefficient * contact.impulse[0]);
-  if (contact.sliding && contact.coefficient != kinetic) boundFriction(first, second, kinetic * contact.impulse[0]);
-  const Vec3 change = (first - contact.impulse[1]) * contact.direction[1] + (second - contact.impulse[2]) * contact.direction[2];
-  contact.impulse[1] = first;
-  contact.impulse[2] = second;
-  applyImpulse(island, contact, change);
+SPRINGTOWER_KERNEL
+void solvePoints(const Pass& pass, std::vector<ImpulseBody>& bodies, std::vector<ImpulsePoint>& points) {
+  for (ImpulsePoint& point : points) solvePoint(pass, bodies, point);
 }
 
-// `least` is the relative velocity that the contact is to have along its normal at least, m/s.
-void solveNormal(RigidIsland& island, RigidContact& contact, double least, const Softness& soft) {
-  const double missing = least - relativeVelocity(island, contact).dot(contact.direction[0]);
-  const double change = contact.mass[0] * soft.mass * missing - soft.impulse * contact.impulse[0];
-  const double impulse = std::max(0.0, contact.impulse[0] + change);
-  applyImpulse(island, contact, (impulse - contact.impulse[0]) * contact.direction[0]);
-  contact.impulse[0] = impulse;
+// The impulses of the step before, to start from.
+SPRINGTOWER_KERNEL
+void applyKnown(std::vector<ImpulseBody>& bodies, const std::vector<ImpulsePoint>& points) {
+  for (const ImpulsePoint& p : points) {
+    if (p.idle) continue;
+    ImpulseBody& upper = bodies[static_cast<std::size_t>(p.upper)];
+    ImpulseBody& lower = bodies[static_cast<std::size_t>(p.lower)];
+    const Lanes impulse = p.friction + p.push * p.normal;
+    Lanes moment, turn;
+    crossLanes(p.armUpper, impulse, moment);
+    timesLanes(upper.inverseInertia, moment, turn);
+    upper.velocity += upper.inverseMass * impulse;
+    upper.spin += turn;
+    crossLanes(p.armLower, impulse, moment);
+    timesLanes(lower.inverseInertia, moment, turn);
+    lower.velocity -= lower.inverseMass * impulse;
+    lower.spin -= turn;
+  }
+}
+
+// Brings the gaps to the step's end, to first order in the turns.
+SPRINGTOWER_KERNEL
+void moveGaps(const std::vector<RigidBody>& bodies, std::vector<ImpulsePoint>& points) {
+  const auto read = [&](std::int32_t at, Lanes& moved, Lanes& turned) {
+    moved = turned = Lanes{0.0, 0.0, 0.0, 0.0};
+    if (static_cast<std::size_t>(at) == bodies.size()) return;
+    const RigidBody& body = bodies[static_cast<std::size_t>(at)];
+    moved = Lanes{body.moved[0], body.moved[1], body.moved[2], 0.0};
+    turned = Lanes{body.turned[0], body.turned[1], body.turned[2], 0.0};
+  };
+  for (ImpulsePoint& p : points) {
+    Lanes movedUpper, turnedUpper, movedLower, turnedLower;
+    read(p.upper, movedUpper, turnedUpper);
+    read(p.lower, movedLower, turnedLower);
+    p.gap += sum(p.normal * (movedUpper - movedLower) + (p.leverUpper * turnedUpper - p.leverLower * turnedLower));
+  }
+}
+
+// Notes which bodies have a contact that pushes. Returns whether any has.
+bool notePushed(RigidIsland& island) {
+  for (RigidBody& body : island.bodies) body.pushed = false;
+  for (const ImpulsePoint& p : island.points) {
+    for (const std::int32_t at : {p.upper, p.lower}) {
+      if (p.push > 0.0 && static_cast<std::size_t>(at) < island.bodies.size())
+        island.bodies[static_cast<std::size_t>(at)].pushed = true;
+    }
+  }
+  return std::any_of(island.bodies.begin(), island.bodies.end(), [](const RigidBody& body) { return body.pushed; });
+}
+
+double kineticEnergy(const std::vector<RigidBody>& bodies) {
+  double energy = 0.0;
+  for (const RigidBody& body : bodies) {
+    const Vec3 spin = body.axes.transpose() * body.spin;
+    energy += 0.5 * (body.velocity.squaredNorm() / body.inverseMass + spin.dot(body.moment * spin));
+  }
+  return energy;
+}
+
+// Takes what a step has added to the energy out of the speeds, little of the motion: pushes that part blocks lift what lies on
+// them, and passes that have not settled the contacts leave too much.
+void takeBack(std::vector<RigidBody>& bodies, double added) {
+  constexpr double kMostShare = 0.01;
+  if (added <= 0.0) return;
+  const double kinetic = kineticEnergy(bodies);
+  const double left = std::sqrt(1.0 - std::min(kMostShare, added / kinetic));
+  for (RigidBody& body : bodies) {
+    body.velocity *= left;
+    body.spin *= left;
+  }
+}
+
+// Passes over all points, from the bodies' velocities to the bodies' velocities.
+void runPasses(IslandStep& step, RigidIsland& island, bool push) {
+  const Scene& scene = step.simulation.scene;
+  Pass pass;
+  pass.step_s = step.drift_s;
+  pass.kinetic = scene.kineticFriction;
+  pass.most = kPushSpeed * step.simulation.lengths.blockHeight_m / step.simulation.lengths.fallTime_s;
+  pass.soft = isRigid(scene.settings.method) ? softness(step.drift_s) : Softness{kFallPush / step.drift_s};
+  pass.push = push;
+  readMovers(island);
+  if (push) applyKnown(island.movers, island.points);
+  for (int i = 0; i < scene.settings.iterations; ++i) solvePoints(pass, island.movers, island.points);
+  step.counters.contactEvaluations += static_cast<std::uint64_t>(scene.settings.iterations) * island.points.size();
+  writeMovers(island);
 }
 
 }  // namespace
@@ -61,37 +193,31 @@ void solveNormal(RigidIsland& island, RigidContact& contact, double least, const
 // Sequential impulses (projected Gauss-Seidel on velocities; Catto 2005) with warm starting. Blocks that are apart may come as
 // near as the gap in one step; those that overlap are pushed out softly, and a second set of passes takes the push out of the
 // velocities again (soft contacts with relaxing, as in Catto's Solver2D, 2024).
-void stepRigidPgs(IslandStep& step, RigidIsland& island) {
-  const Scene& scene = step.simulation.scene;
-  const double step_s = step.drift_s;
-  const double most = kPushSpeed * step.simulation.lengths.blockHeight_m / step.simulation.lengths.fallTime_s;
+void moveRigidPgs(IslandStep& step, RigidIsland& island) {
+  const bool falls = !isRigid(step.simulation.scene.settings.method);
+  island.energyBefore_j = kineticEnergy(island.bodies);
   applyForces(step);
-  for (const RigidContact& contact : island.contacts) {
-    applyImpulse(island, contact,
-                 contact.impulse[0] * contact.direction[0] + contact.impulse[1] * contact.direction[1] +
-                     contact.impulse[2] * contact.direction[2]);
-  }
-  const Softness soft = softness(step_s);
-  const Softness rigid;
-  const auto passes = [&](bool push) {
-    for (int pass = 0; pass < scene.settings.iterations; ++pass) {
-      for (RigidContact& contact : island.contacts) {
-        const double gap = push ? contact.gap : gapNow(island, contact);
-        solveFriction(island, contact, scene.kineticFriction);
-        if (gap > 0.0) {
-          solveNormal(island, contact, -gap / step_s, rigid);
-        } else if (push) {
-          solveNormal(island, contact, std::min(-soft.rate * gap, most), soft);
-        } else {
-          solveNormal(island, contact, 0.0, rigid);
-        }
-      }
-      step.counters.contactEvaluations += island.contacts.size();
+  gatherPoints(step, island);
+  runPasses(step, island, true);
+  island.touches = notePushed(island);
+  for (RigidBody& body : island.bodies) {
+    moveFreely(body, step.drift_s);
+    if (falls && !body.pushed) {  // it flies: with its mean velocity, not that of the step's end
+      const Vec3 lag = 0.5 * step.drift_s * step.drift_s * step.gravity;
+      body.place -= lag;
+      body.moved -= lag;
     }
-  };
-  passes(true);
-  for (RigidBody& body : island.bodies) moveFreely(body, step_s);
-  passes(false);
+    island.energyBefore_j += body.moved.dot(step.gravity) / body.inverseMass;
+  }
+}
+
+void settleRigidPgs(IslandStep& step, RigidIsland& island) {
+  moveGaps(island.bodies, island.points);
+  runPasses(step, island, false);
+  // Blocks that stand are moved by such pushes alone, slowly, and would be kept from it.
+  if (!isRigid(step.simulation.scene.settings.method) && island.touches)
+    takeBack(island.bodies, kineticEnergy(island.bodies) - island.energyBefore_j);
+  keepPoints(step, island);
 }
 
 }  // namespace springtower

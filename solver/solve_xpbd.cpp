@@ -93,7 +93,8 @@ void stepXpbd(IslandStep& step, RigidIsland& island) {
   }
   for (RigidBody& body : island.bodies) {
     body.place = body.placeBefore + body.moved;
-    body.turn = turnedBy(body.turned, body.turnBefore);
+    body.axes = body.axesBefore;
+    turnAxes(body.turned, body.axes);
   }
   for (RigidContact& contact : island.contacts) {
     dragAnchor(island, scene.kineticFriction, contact);

@@ -70,8 +70,7 @@ void addManifold(Simulation& simulation, const Manifold& m) {
 
 }  // namespace
 
-double spectralBound(Simulation& simulation, std::span<const std::int32_t> blocks, std::span<const std::int32_t> pairs,
-                     bool rigid) {
+double spectralBound(Simulation& simulation, std::span<const std::int32_t> blocks, std::span<const std::int32_t> pairs) {
   Engine& engine = *simulation.engine;
   computeFrames(simulation.state.position, blocks, engine.frames);
   for (const std::int32_t block : blocks) engine.contactMetric[static_cast<std::size_t>(block)].setZero();
@@ -83,7 +82,7 @@ double spectralBound(Simulation& simulation, std::span<const std::int32_t> block
   double contacts = 0.0;
   for (const std::int32_t block : blocks) {
     const auto b = static_cast<std::size_t>(block);
-    if (!rigid) springs = std::max(springs, engine.springRadius[b]);
+    springs = std::max(springs, engine.springRadius[b]);
     // The trace is a bound as well and often settles that a block is not the largest.
     if (engine.contactMetric[b].trace() <= contacts) continue;
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> solver(engine.contactMetric[b], Eigen::EigenvaluesOnly);

@@ -14,9 +14,8 @@ double blockSpectralRadius(const BlockModel& model, Inertia inertia, std::size_t
 /// radius of any one block against its contacts with its neighbours held: K of a contact is k (p - q)(p - q)^T <= 2 k (p p^T + q
 /// q^T) for the weights p and q of its two blocks. The second needs the affine part alone, so it is a 4 x 4 problem a block. In a
 /// tower the bound is within 8 % of the true value (the mode that presses every other block flat attains the factor two), without
-/// iterations and without a state of its own. `rigid`: the blocks keep their shape, so that there are no springs.
-double spectralBound(Simulation& simulation, std::span<const std::int32_t> blocks, std::span<const std::int32_t> pairs,
-                     bool rigid);
+/// iterations and without a state of its own.
+double spectralBound(Simulation& simulation, std::span<const std::int32_t> blocks, std::span<const std::int32_t> pairs);
 
 /// A number that changes when an island's set of contacts or their stiffness does: what the last bound was computed for.
 std::uint64_t contactSignature(const Engine& engine, std::span<const std::int32_t> pairs);

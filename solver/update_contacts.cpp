@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <limits>
 #include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/parallel_for.h>
 
@@ -182,7 +183,7 @@ void updatePair(IslandStep& step, std::int32_t at, const RenewalTravel& renewal,
     watchApart(step, pair, counters, times);
   } else if (const double most = renewalTravel(pair.manifold, renewal); used > most) {
     keepPair(step.engine, static_cast<std::size_t>(at));
-    if (step.law.longSteps && hasStayed(step, at, travel, most)) return;
+    if (step.rigid && hasStayed(step, at, travel, most)) return;
     pair.checkedTravel = travel;
     renewManifold(step, pair, counters);
   }
@@ -220,6 +221,20 @@ void findTouching(IslandStep& step) {
     keepPair(step.engine, static_cast<std::size_t>(at));
     if (pair.manifold.touch == Touch::apart) watchApart(step, pair, step.counters, step.times);
   }
+}
+
+bool findContacts(IslandStep& step) {
+  constexpr double kNever = std::numeric_limits<double>::infinity();
+  return updateContacts(step, {kNever, kNever, kNever});
+}
+
+void renewContacts(IslandStep& step, const RenewalTravel& renewal) {
+  StageClock clock(step.times);
+  for (const std::int32_t at : step.watched) {
+    if (step.engine.pairs[static_cast<std::size_t>(at)].manifold.touch != Touch::apart)
+      updatePair(step, at, renewal, step.counters, step.times);
+  }
+  clock.lap(Stage::candidates);
 }
 
 bool updateContacts(IslandStep& step, const RenewalTravel& renewal) {
