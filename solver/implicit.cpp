@@ -1,5 +1,6 @@
 #include "solver/implicit.h"
 
+#include "solver/falling.h"
 #include "solver/meeting.h"
 #include "solver/ringing.h"
 
@@ -193,22 +194,21 @@ IslandOutcome runImplicitSteps(IslandStep& step, double& reached_s) {
   };
   takeSteps(steps);
   // A heap that steps do not converge for lies well with rigid ones, as it did before.
-  const bool hasFallen = std::any_of(step.blocks.begin(), step.blocks.end(),
-                                     [&](std::int32_t block) { return engine.clock[static_cast<std::size_t>(block)].hasFallen; });
+  const bool heap = isHeap(step);
   step.scaleMost = 1.0;
   island.forcesKnown = known;
   while (steps > 0) {
     step.time_s = simulation.time_s + reached_s;
     step.gravity = simulation.scene.gravity.at(step.time_s + step.drift_s);  // forces are those of the step's end
     const int finer = finerSteps(1.0 - reached_s / frame_s, steps);
-    const bool finerFollow = finer > steps && simulation.scene.settings.substeps == 0 && !hasFallen;
-    if (!stepImplicit(step, finerFollow || hasFallen)) {
+    const bool finerFollow = finer > steps && simulation.scene.settings.substeps == 0 && !heap;
+    if (!stepImplicit(step, finerFollow || heap)) {
       if (finerFollow) {
         takeSteps(finer);
         continue;
       }
       for (const std::int32_t block : step.blocks)
-        engine.clock[static_cast<std::size_t>(block)].explicitFrames = hasFallen ? kFallenFrames : kExplicitFrames;
+        engine.clock[static_cast<std::size_t>(block)].explicitFrames = heap ? kFallenFrames : kExplicitFrames;
       return outcome;
     }
     ++outcome.substeps;
