@@ -49,7 +49,7 @@ struct BlockClock {
   bool forced = false;              ///< whether a user's force or the hand acts on its island, as of the last frame begun
   bool explicitLast = false;        ///< whether explicit steps brought it where it is
   bool falls = false;               ///< whether its island fell in the last frame begun
-  bool hasFallen = false;           ///< whether it has ever
+  bool hasFallen = false;           ///< whether it has since it slept last
   double jerk = 0.0;            ///< kg m2/s6; mass by the square of its corners' change of acceleration, mean over some frames
   double motion = 0.0;          ///< kg m2/s2; mass by the square of its corners' velocity, alike
   double travel = 0.0;          ///< m; path length of the block's fastest corner, ever growing

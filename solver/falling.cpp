@@ -96,7 +96,10 @@ bool falls(const IslandStep& step) {
 }
 
 bool isHeap(const IslandStep& step) {
-  return mayFall(step) && hasAny(step, &BlockClock::hasFallen);
+  const auto fallen = std::count_if(step.blocks.begin(), step.blocks.end(), [&](std::int32_t block) {
+    return step.engine.clock[static_cast<std::size_t>(block)].hasFallen;
+  });
+  return mayFall(step) && 2 * static_cast<std::size_t>(fallen) > step.blocks.size();
 }
 
 void setFalling(IslandStep& step, bool falling) {
@@ -111,7 +114,10 @@ void setFalling(IslandStep& step, bool falling) {
   };
   const bool all = std::all_of(step.blocks.begin(), step.blocks.end(),
                                [&](std::int32_t block) { return clock[static_cast<std::size_t>(block)].falls; });
-  if (falling && all) return;
+  if (falling && all) {
+    forEachManifold(false, rememberForces);  // of blocks that slept while a neighbour went back to springs
+    return;
+  }
   forEachManifold(true, rememberSprings);
   for (const std::int32_t block : step.blocks) clock[static_cast<std::size_t>(block)].falls = falling;
   if (!falling) return;

@@ -8,12 +8,12 @@ namespace springtower {
 // An island that falls: its blocks tumble and hit one another, and what a spring stores of that is lost in the next impact
 // anyway. Rigid steps with sequential impulses carry it, in the shape that its blocks have, until it is slow.
 
-/// Whether the island falls: three blocks or more move so fast on the mean, square by mass, that they could rise by an eighth of
+/// Whether the island falls: three blocks or more move so fast on the mean, square by mass, that they could rise by a tenth of
 /// a block's height; or they fell in the last frame and are not slow yet. Not while a hand or a user's force acts, nor where the
 /// island is so large that its steps run on many threads.
 bool falls(const IslandStep& step);
 
-/// Whether the island holds blocks that have fallen: rigid steps carry it where implicit ones do not do.
+/// Whether most of the island's blocks have fallen since they slept last: rigid steps carry it where implicit ones do not do.
 bool isHeap(const IslandStep& step);
 
 /// Makes the points of the island's contacts remember what rigid steps do, or what springs do, and notes in its blocks' clocks

@@ -49,6 +49,7 @@ void rewindBlock(Simulation& simulation, std::size_t b) {
 void rewindPair(Engine& engine, std::size_t at) {
   NearPair& pair = engine.pairs[at];
   if (engine.pairKept[at] != 0) pair = engine.pairsBefore[at];
+  if (at < engine.pose.size()) engine.pose[at] = RelativePose{};
   if (pair.manifold.touch == Touch::apart || pair.manifold.count > kFew) return;
   restorePoints(engine.frameStartPoints[at], pair.manifold);
 }

@@ -85,6 +85,9 @@ double restNeeded(const Simulation& simulation) {
 void fallAsleep(Simulation& simulation, std::size_t b) {
   Engine& engine = *simulation.engine;
   simulation.asleep[b] = 1;
+  BlockClock& clock = engine.clock[b];
+  clock.falls = clock.hasFallen = false;
+  clock.explicitFrames = 0;
   --engine.awakeCount;
   for (std::size_t a = 0; a < 3; ++a) std::fill_n(simulation.state.velocity.values(a, b), kCorners, 0.0);
   engine.frames[b] = blockFrame(simulation.state.position, b);

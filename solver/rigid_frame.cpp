@@ -124,7 +124,6 @@ void stepOnce(IslandStep& step) {
     body.moved.setZero();
     body.turned.setZero();
   }
-  computeFrames(step.simulation.state.position, step.blocks, step.engine.frames);
   const Method method = step.simulation.scene.settings.method;
   if (method == Method::rigidLcp || method == Method::xpbd) {
     gatherContacts(step, island);
@@ -251,6 +250,7 @@ IslandOutcome runRigidSteps(IslandStep& step, int steps, double begin_s) {
   const Method method = simulation.scene.settings.method;
   const bool sequential = method != Method::rigidLcp && method != Method::xpbd;
   readPoses(step);
+  computeFrames(simulation.state.position, step.blocks, step.engine.frames);
   step.lists = true;
   step.listedFor = 0;
   for (int substep = 0; substep < outcome.substeps && outcome.inside; ++substep) {
@@ -265,6 +265,7 @@ IslandOutcome runRigidSteps(IslandStep& step, int steps, double begin_s) {
       backToStart(step);
     }
     if (sequential) settleRigidPgs(step, rigidIslandOf(step));
+    computeFrames(simulation.state.position, step.blocks, step.engine.frames);
     if (outcome.inside) renewContacts(step, renewalOfExplicitSteps(simulation));
   }
   writeVelocities(step);

@@ -171,6 +171,11 @@ bool hasStayed(IslandStep& step, std::int32_t at, double travel, double most) {
   return false;
 }
 
+// A manifold that is made otherwise than by a renewal in rigid steps is renewed by the next of these that looks at it.
+void forgetPose(Engine& engine, std::int32_t at) {
+  if (static_cast<std::size_t>(at) < engine.pose.size()) engine.pose[static_cast<std::size_t>(at)] = RelativePose{};
+}
+
 void updatePair(IslandStep& step, std::int32_t at, const RenewalTravel& renewal, Counters& counters, StageTimes& times) {
   NearPair& pair = step.engine.pairs[static_cast<std::size_t>(at)];
   const double travel = travelOf(step.engine, pair);
@@ -181,9 +186,11 @@ void updatePair(IslandStep& step, std::int32_t at, const RenewalTravel& renewal,
     keepPair(step.engine, static_cast<std::size_t>(at));
     pair.checkedTravel = travel;
     watchApart(step, pair, counters, times);
+    forgetPose(step.engine, at);
   } else if (const double most = renewalTravel(pair.manifold, renewal); used > most) {
     keepPair(step.engine, static_cast<std::size_t>(at));
     if (step.rigid && hasStayed(step, at, travel, most)) return;
+    if (!step.rigid) forgetPose(step.engine, at);
     pair.checkedTravel = travel;
     renewManifold(step, pair, counters);
   }
