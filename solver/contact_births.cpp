@@ -1,6 +1,6 @@
 #include "solver/contact_births.h"
 
-#include "narrowphase/crossing.h"
+#include "narrowphase/turning_face.h"
 #include "solver/contact_memory.h"
 #include "solver/lengths.h"
 #include "solver/stage_clock.h"
@@ -157,6 +157,15 @@ void watchFloor(IslandStep& step, NearPair& pair, Counters& counters) {
   pair.manifold.rigid = step.rigid;
 }
 
+// Whether the face nearest to a direction separates the blocks all through a step, turning with one of them; renews the margin.
+bool turnsApart(const Vec3& normal, const MovingBlock& a, const MovingBlock& b, double touching, NearPair& pair) {
+  const TurningGap turning = gapAlongTurningFace(normal, a, b);
+  if (!(turning.least > touching)) return false;
+  pair.witness = turning.normalAtEnd;
+  pair.margin = std::max(0.0, gapAlong(pair.witness, a.end, b.end));
+  return true;
+}
+
 }  // namespace
 
 double refreshTravel(const Simulation& simulation) {
@@ -190,12 +199,15 @@ void watchApart(IslandStep& step, NearPair& pair, Counters& counters, StageTimes
     pair.margin = gap;
     return;
   }
+  if (turnsApart(pair.witness, movingA, movingB, touching, pair)) return;
   const Separation before = findSeparation(movingA.start, movingB.start);
   const Vec3& witness = before.bestNormal();
   const double newGap = gapAlong(witness, movingA.end, movingB.end);
   pair.margin = std::max(0.0, newGap);
   pair.witness = witness;
   if (before.best() > touching && newGap > touching) return;
+  const Vec3& face = before.faceA > before.faceB ? before.normalFaceA : before.normalFaceB;
+  if (turnsApart(face, movingA, movingB, touching, pair)) return;
   // Features that nothing has moved need not share a point where blocks touch: rounding may have put them inside by a bit.
   const bool laidTogether = step.simulation.frame == 0 && before.best() <= touching;
   bool meet = false;
@@ -218,6 +230,12 @@ void watchApart(IslandStep& step, NearPair& pair, Counters& counters, StageTimes
   ++counters.contactsBorn;
   fresh.rigid = step.rigid;
   pair.manifold = fresh;
+}
+
+double marginNow(const Simulation& simulation, const NearPair& pair) {
+  const CornerView a = cornersOf(simulation.state.position, static_cast<std::size_t>(pair.a));
+  if (pair.b < 0) return std::max(0.0, lowestCorner(a));
+  return std::max(0.0, gapAlong(pair.witness, a, cornersOf(simulation.state.position, static_cast<std::size_t>(pair.b))));
 }
 
 void renewManifold(IslandStep& step, NearPair& pair, Counters& counters) {

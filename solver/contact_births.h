@@ -9,6 +9,10 @@ namespace springtower {
 /// tests is added to `times`.
 void watchApart(IslandStep& step, NearPair& pair, Counters& counters, StageTimes& times);
 
+/// Gap (m) of a pair that is apart along the direction that separated its blocks when they were looked at last: its margin here.
+/// Not negative.
+double marginNow(const Simulation& simulation, const NearPair& pair);
+
 /// Renews the manifold of a touching pair from the positions now, keeping its memory; lets the pair go when it has parted.
 void renewManifold(IslandStep& step, NearPair& pair, Counters& counters);
 

@@ -154,7 +154,7 @@ struct Engine {
   std::vector<int> islandOutcome;  ///< steps of each island, -1 where a block left its swept box
 };
 
-/// How far both blocks of a pair have travelled, m; it only ever grows.
+/// How far both blocks of a pair have travelled, m; it only ever grows but where a step or a frame is taken again.
 inline double travelOf(const Engine& engine, const NearPair& pair) {
   const double first = engine.clock[static_cast<std::size_t>(pair.a)].travel;
   return pair.b < 0 ? first : first + engine.clock[static_cast<std::size_t>(pair.b)].travel;

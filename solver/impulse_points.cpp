@@ -64,6 +64,15 @@ SPRINGTOWER_INLINE void shareOf(const ImpulseBody& body, const Lanes& normal, Sh
   share.all = 3.0 * body.inverseMass + trace * sum(share.arm * share.arm) - sum(share.arm * twice);
 }
 
+// What the point did in the step before, to start from.
+SPRINGTOWER_INLINE void recallImpulse(const Manifold& m, std::size_t i, double step_s, ImpulsePoint& p) {
+  p.push = step_s * m.relaxed[i];
+  const Lanes friction = {m.stretchX[i], m.stretchY[i], m.stretchZ[i], 0.0};
+  p.idle = !(p.push > 0.0);
+  p.friction = (p.idle ? 0.0 : step_s) * (friction - sum(friction * p.normal) * p.normal);
+  p.sliding = false;
+}
+
 struct Mover {
   std::int32_t at;
   const ImpulseBody& body;
@@ -102,17 +111,13 @@ SPRINGTOWER_INLINE void addPoints(const Manifold& m, const Mover& upper, const M
       p.normalMass = 1.0 / normal;
       // Across the normal both directions together ask for the rest, and each for no less than the masses alone.
       p.acrossMass = 1.0 / (up.all + low.all - normal - (upper.body.inverseMass + lower.body.inverseMass));
-      p.push = step_s * m.relaxed[i];
-      const Lanes friction = {m.stretchX[i], m.stretchY[i], m.stretchZ[i], 0.0};
-      p.idle = !(p.push > 0.0);
-      p.friction = (p.idle ? 0.0 : step_s) * (friction - sum(friction * p.normal) * p.normal);
+      recallImpulse(m, i, step_s, p);
       p.gap = m.offset[i] + pressedDepth(simulation, m, i) - places.depth[lane];
       p.coefficient = m.sliding[i] != 0.0 ? simulation.scene.kineticFriction : simulation.scene.staticFriction;
       p.upper = upper.at;
       p.lower = lower.at;
       p.pair = pair;
       p.point = static_cast<std::int32_t>(i);
-      p.sliding = false;
     }
   }
 }
@@ -120,9 +125,12 @@ SPRINGTOWER_INLINE void addPoints(const Manifold& m, const Mover& upper, const M
 }  // namespace
 
 SPRINGTOWER_KERNEL
-void gatherPoints(IslandStep& step, RigidIsland& island) {
+void gatherPoints(IslandStep& step, RigidIsland& island, bool again) {
   const Engine& engine = step.engine;
+  island.known.clear();
+  if (again) std::swap(island.known, island.points);
   island.points.clear();
+  auto known = island.known.begin();
   readMovers(island);
   const auto unmoved = static_cast<std::int32_t>(island.bodies.size());
   const auto mover = [&](std::int32_t block) {
@@ -138,6 +146,13 @@ void gatherPoints(IslandStep& step, RigidIsland& island) {
   for (const std::int32_t at : step.watched) {
     const Manifold& m = engine.pairs[static_cast<std::size_t>(at)].manifold;
     if (m.touch == Touch::apart) continue;
+    if (known != island.known.end() && known->pair == at) {
+      for (; known != island.known.end() && known->pair == at; ++known) {
+        island.points.push_back(*known);
+        recallImpulse(m, static_cast<std::size_t>(known->point), step.drift_s, island.points.back());
+      }
+      continue;
+    }
     const BlockFrame& upper = engine.frames[static_cast<std::size_t>(m.upper)];
     const BlockFrame* lower = m.lower < 0 ? nullptr : &engine.frames[static_cast<std::size_t>(m.lower)];
     addPoints(m, mover(m.upper), mover(m.lower), upper, lower, step.simulation, step.drift_s, at, island.points);

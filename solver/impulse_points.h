@@ -8,7 +8,8 @@ namespace springtower {
 // The manifolds of narrowphase/ as sequential impulses see them. Their memory as in solver/rigid_contacts.h.
 
 /// Lists all points of an island's touching manifolds at the places of engine.frames, with the impulses of the step before.
-void gatherPoints(IslandStep& step, RigidIsland& island);
+/// `again`: in a step taken again from the same places, where only the contacts found in it are new. Reads the movers.
+void gatherPoints(IslandStep& step, RigidIsland& island, bool again);
 
 /// Puts the impulses of a step back into the manifolds, as forces.
 void keepPoints(IslandStep& step, const RigidIsland& island);

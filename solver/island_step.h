@@ -80,6 +80,11 @@ bool updateContacts(IslandStep& step, const RenewalTravel& renewal);
 /// The same in two parts, for steps that are taken again with the contacts found in them: what has met, as often as the step is
 /// taken; then, once it stands, the manifolds whose blocks have moved.
 bool findContacts(IslandStep& step);
+
+/// Between two such attempts, when blocks and their travel are back where the step began: margins that the attempt has measured,
+/// at its end, are measured again, and manifolds that it has begun, of blocks that had passed each other, are renewed where the
+/// step ends.
+void measureAgain(IslandStep& step);
 void renewContacts(IslandStep& step, const RenewalTravel& renewal);
 
 }  // namespace springtower

@@ -76,10 +76,10 @@ MemoryUse memoryUse(const Simulation& simulation) {
   }
   for (const RigidIsland& island : engine.rigidIslands) {
     const PivotingSpace& pivoting = island.pivoting;
-    use.working += sizeof(RigidIsland) + sumOf(island.bodies, island.contacts, island.movers, island.points, pivoting.matrix,
-                                               pivoting.inverse, pivoting.impulse, pivoting.velocity, pivoting.least,
-                                               pivoting.most, pivoting.impulseChange, pivoting.velocityChange, pivoting.column,
-                                               pivoting.clamped, pivoting.placeOf);
+    use.working += sizeof(RigidIsland) + sumOf(island.bodies, island.contacts, island.movers, island.points, island.known,
+                                               pivoting.matrix, pivoting.inverse, pivoting.impulse, pivoting.velocity,
+                                               pivoting.least, pivoting.most, pivoting.impulseChange, pivoting.velocityChange,
+                                               pivoting.column, pivoting.clamped, pivoting.placeOf);
   }
   for (const SparseFactors& sparse : engine.sparseFactors) use.factor += bytesOf(sparse);
   use.working += sumOf(engine.trial, engine.previousVelocity, engine.history, engine.stepVelocity, engine.target, engine.nodeOf,

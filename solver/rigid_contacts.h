@@ -90,8 +90,9 @@ inline Vec3 relativeMove(const RigidIsland& island, const RigidContact& contact)
 }
 
 /// The rigid methods: each advances the island's bodies by step.drift_s and leaves the impulses in its contacts. Sequential
-/// impulses do so in two parts: they move the bodies, and once the step stands settle their velocities.
-void moveRigidPgs(IslandStep& step, RigidIsland& island);
+/// impulses do so in two parts: they move the bodies, and once the step stands settle their velocities. `again`: the step is
+/// taken again from the same places, with the contacts found in it.
+void moveRigidPgs(IslandStep& step, RigidIsland& island, bool again);
 void settleRigidPgs(IslandStep& step, RigidIsland& island);
 void stepRigidLcp(IslandStep& step, RigidIsland& island);
 void stepXpbd(IslandStep& step, RigidIsland& island);

@@ -92,8 +92,9 @@ void rememberStart(IslandStep& step) {
     body.velocityBefore = body.velocity;
     body.spinBefore = body.spin;
   }
-  for (const std::int32_t block : step.blocks) {
-    const auto b = static_cast<std::size_t>(block);
+  for (std::size_t i = 0; i < step.blocks.size(); ++i) {
+    const auto b = static_cast<std::size_t>(step.blocks[i]);
+    island.bodies[i].travelBefore_m = step.engine.clock[b].travel;
     for (std::size_t a = 0; a < 3; ++a)
       std::copy_n(step.simulation.state.position.values(a, b), kCorners, step.engine.previous.values(a, b));
   }
@@ -101,26 +102,27 @@ void rememberStart(IslandStep& step) {
 
 void backToStart(IslandStep& step) {
   RigidIsland& island = rigidIslandOf(step);
+  Engine& engine = step.engine;
   for (RigidBody& body : island.bodies) {
     body.place = body.placeBefore;
     body.axes = body.axesBefore;
     body.velocity = body.velocityBefore;
     body.spin = body.spinBefore;
   }
-  if (step.listedFor > 0) --step.listedFor;
-  for (const std::int32_t block : step.blocks) {
-    const auto b = static_cast<std::size_t>(block);
-    step.engine.clock[b].travel += step.engine.path[b];  // the way back: margins were measured at the other end
+  for (std::size_t i = 0; i < step.blocks.size(); ++i) {
+    const auto b = static_cast<std::size_t>(step.blocks[i]);
+    engine.clock[b].travel = island.bodies[i].travelBefore_m;
     for (std::size_t a = 0; a < 3; ++a)
-      std::copy_n(step.engine.previous.values(a, b), kCorners, step.simulation.state.position.values(a, b));
+      std::copy_n(engine.previous.values(a, b), kCorners, step.simulation.state.position.values(a, b));
   }
+  measureAgain(step);
 }
 
-void stepOnce(IslandStep& step) {
+void stepOnce(IslandStep& step, bool again) {
   StageClock clock(step.times);
   RigidIsland& island = rigidIslandOf(step);
   for (RigidBody& body : island.bodies) {
-    updateInertia(body);
+    if (!again) updateInertia(body);
     body.moved.setZero();
     body.turned.setZero();
   }
@@ -135,7 +137,7 @@ void stepOnce(IslandStep& step) {
     }
     keepForces(step, island);
   } else {
-    moveRigidPgs(step, island);
+    moveRigidPgs(step, island, again);
   }
   clock.lap(Stage::contacts);
   writePositions(island, step.blocks, step.simulation.state.position);
@@ -259,7 +261,7 @@ IslandOutcome runRigidSteps(IslandStep& step, int steps, double begin_s) {
     rememberStart(step);
     for (int repeat = 0;; ++repeat) {
       const std::uint64_t born = step.counters.contactsBorn;
-      stepOnce(step);
+      stepOnce(step, repeat > 0);
       outcome.inside = findContacts(step);
       if (!outcome.inside || born == step.counters.contactsBorn || repeat == kMostRepeats) break;
       backToStart(step);

@@ -12,7 +12,7 @@
 namespace springtower {
 
 /// A block as the rigid methods see it, while its island is stepped through a frame. Between frames the particles are the state:
-/// poses are read from them when a frame begins and written back after every step, so that all else works unchanged.
+/// poses are read from them when a frame begins, and positions written back after every step, velocities when it ends.
 struct RigidBody {
   std::array<std::array<double, kCorners>, 3> corner{};      ///< m, of its corners from its centre along its own axes
   Vec3 place = Vec3::Zero();                                 ///< m, of its centre
@@ -27,9 +27,10 @@ struct RigidBody {
   Eigen::Matrix3d axesBefore = Eigen::Matrix3d::Identity();
   Vec3 velocityBefore = Vec3::Zero();
   Vec3 spinBefore = Vec3::Zero();
-  Vec3 moved = Vec3::Zero();   ///< m, by which the step has moved it so far
-  Vec3 turned = Vec3::Zero();  ///< rad, by which the step has turned it, to first order
-  bool pushed = false;         ///< whether a contact pushes it in this step
+  double travelBefore_m = 0.0;  ///< of its clock, likewise
+  Vec3 moved = Vec3::Zero();    ///< m, by which the step has moved it so far
+  Vec3 turned = Vec3::Zero();   ///< rad, by which the step has turned it, to first order
+  bool pushed = false;          ///< whether a contact pushes it in this step
 };
 
 /// One point of a manifold as a constraint: along its normal the blocks may part, across it they stick or slide.
@@ -103,6 +104,7 @@ struct RigidIsland {
   std::vector<RigidContact> contacts;
   std::vector<ImpulseBody> movers;   ///< those of `bodies`, and what does not move
   std::vector<ImpulsePoint> points;  ///< of the method of sequential impulses, in place of `contacts`
+  std::vector<ImpulsePoint> known;   ///< those of the attempt before, in steps taken again
   double energyBefore_j = 0.0;       ///< kinetic energy before the step, and what gravity has added in it
   bool touches = false;              ///< whether any contact pushes in the step
   PivotingSpace pivoting;

@@ -181,7 +181,6 @@ void runPasses(IslandStep& step, RigidIsland& island, bool push) {
   pass.most = kPushSpeed * step.simulation.lengths.blockHeight_m / step.simulation.lengths.fallTime_s;
   pass.soft = isRigid(scene.settings.method) ? softness(step.drift_s) : Softness{kFallPush / step.drift_s};
   pass.push = push;
-  readMovers(island);
   if (push) applyKnown(island.movers, island.points);
   for (int i = 0; i < scene.settings.iterations; ++i) solvePoints(pass, island.movers, island.points);
   step.counters.contactEvaluations += static_cast<std::uint64_t>(scene.settings.iterations) * island.points.size();
@@ -193,11 +192,11 @@ void runPasses(IslandStep& step, RigidIsland& island, bool push) {
 // Sequential impulses (projected Gauss-Seidel on velocities; Catto 2005) with warm starting. Blocks that are apart may come as
 // near as the gap in one step; those that overlap are pushed out softly, and a second set of passes takes the push out of the
 // velocities again (soft contacts with relaxing, as in Catto's Solver2D, 2024).
-void moveRigidPgs(IslandStep& step, RigidIsland& island) {
+void moveRigidPgs(IslandStep& step, RigidIsland& island, bool again) {
   const bool falls = !isRigid(step.simulation.scene.settings.method);
   island.energyBefore_j = kineticEnergy(island.bodies);
   applyForces(step);
-  gatherPoints(step, island);
+  gatherPoints(step, island, again);
   runPasses(step, island, true);
   island.touches = notePushed(island);
   for (RigidBody& body : island.bodies) {
@@ -213,6 +212,7 @@ void moveRigidPgs(IslandStep& step, RigidIsland& island) {
 
 void settleRigidPgs(IslandStep& step, RigidIsland& island) {
   moveGaps(island.bodies, island.points);
+  readMovers(island);
   runPasses(step, island, false);
   // Blocks that stand are moved by such pushes alone, slowly, and would be kept from it.
   if (!isRigid(step.simulation.scene.settings.method) && island.touches)

@@ -113,6 +113,8 @@ double renewalTravel(const Manifold& manifold, const RenewalTravel& travel) {
   return rolls(manifold) ? travel.rolling_m : travel.resting_m;
 }
 
+constexpr double kNever = std::numeric_limits<double>::infinity();
+
 // Share of the path to a renewal by which blocks have stayed where they are to one another.
 constexpr double kStayed = 0.9;
 
@@ -231,8 +233,20 @@ void findTouching(IslandStep& step) {
 }
 
 bool findContacts(IslandStep& step) {
-  constexpr double kNever = std::numeric_limits<double>::infinity();
   return updateContacts(step, {kNever, kNever, kNever});
+}
+
+void measureAgain(IslandStep& step) {
+  const bool listed = step.listedFor == kListedSteps;
+  for (const std::int32_t at : listed ? step.pairs : step.watched) {
+    NearPair& pair = step.engine.pairs[static_cast<std::size_t>(at)];
+    const double travel = travelOf(step.engine, pair);
+    if (pair.checkedTravel <= travel) continue;
+    const bool apart = pair.manifold.touch == Touch::apart;
+    pair.checkedTravel = apart ? travel : -kNever;
+    if (apart) pair.margin = marginNow(step.simulation, pair);
+  }
+  if (step.listedFor > 0) --step.listedFor;  // from where the step began it is farther to where the list was made for
 }
 
 void renewContacts(IslandStep& step, const RenewalTravel& renewal) {
