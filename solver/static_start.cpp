@@ -19,7 +19,11 @@ constexpr double kFirstStep = 0.012;
 constexpr double kLastStep = 4.6;
 constexpr double kGrowth = 2.0;
 constexpr int kMostSteps = 60;
+// How often in a row a step is tried again, shorter.
 constexpr int kMostRetries = 6;
+// Dashpots of contacts in these steps, in sqrt(h / g): they only hold up what comes to rest, and ones that last as long as a step
+// keep it from converging.
+constexpr double kMostDamping = 1e-3;
 // Farthest that a corner may go in one of these steps, in tolerances; what goes farther is falling.
 constexpr double kFarthest = 20.0;
 // Farthest that a corner still goes in the last one, in tolerances.
@@ -75,6 +79,7 @@ bool settle(IslandStep& step) {
       effective_s /= kGrowth * kGrowth;
       continue;
     }
+    retries = 0;
     const double farthest = stop(step);
     if (!(farthest < kFarthest * tolerance) || !updateContacts(step, {travel_m, travel_m, travel_m})) return false;
     if (effective_s >= kLastStep * fallTime_s && farthest < kSettled * tolerance) return true;
@@ -90,6 +95,8 @@ bool startInEquilibrium(IslandStep& step) {
   const Counters before = step.counters;
   step.scaleMost = 1.0;
   step.unforced = true;
+  const double damping_s = step.law.dampingTime_s;
+  step.law.dampingTime_s = std::min(damping_s, kMostDamping * step.simulation.lengths.fallTime_s);
   Gravity gravity = step.simulation.scene.gravity;
   const double tilt_deg = gravity.tilt_deg;
   const auto stands = [&](double share) {
@@ -116,6 +123,7 @@ bool startInEquilibrium(IslandStep& step) {
     rests = stands(most);
   }
   step.unforced = false;
+  step.law.dampingTime_s = damping_s;
   return rests;
 }
 

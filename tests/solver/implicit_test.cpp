@@ -120,6 +120,30 @@ TEST(ImplicitEuler, HoldsATowerWithinItsTolerance) {
   EXPECT_EQ(simulation.counters.handedOver, 0U);
 }
 
+// A tower of unequal blocks that is laid down begins at rest, however strong its dashpots are: these hold nothing up in the end.
+// Explicit steps took 10000 a frame here.
+TEST(Implicit, ATowerWithStrongDashpotsBeginsAtRest) {
+  for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {
+    TowerOptions options;
+    options.seed = seed;
+    options.heightsSigma_m = 3e-6;
+    Scene scene = bitCodeScene("(L11)-(11L)-(11L)-(1L1)-(L1L)-(LLL)", options);
+    scene.settings.sleep = Sleep::off;
+    scene.settings.tolerance_m = 1e-5;
+    scene.settings.dampingTime = 0.01;
+    Simulation simulation(scene);
+    stepFrame(simulation);
+    EXPECT_LE(simulation.substeps, 8) << "seed " << seed;
+    const CornerArray start = simulation.state.position;
+    stepFor(simulation, 0.5);
+    for (std::size_t b = 0; b < simulation.model.blockCount(); ++b) {
+      for (std::size_t c = 0; c < kCorners; ++c)
+        EXPECT_LT((simulation.state.position.at(b, c) - start.at(b, c)).norm(), 0.01 * 1e-5)
+            << "seed " << seed << ", block " << b;
+    }
+  }
+}
+
 // A block on the floor pulled for six frames with twice what friction holds, and let go: with a = mu g it goes a t^2 / 2 while it
 // is pulled and as far again until friction has stopped it, whichever steps a frame has.
 TEST(Implicit, AForceActsForJustItsTime) {

@@ -1,5 +1,6 @@
 #include "core/scene.h"
 #include "solver/inertia.h"
+#include "solver/penetration.h"
 #include "solver/simulation.h"
 #include "solver/stability.h"
 #include "tests/support/block_scenes.h"
@@ -126,6 +127,19 @@ TEST(Energy, OfUndampedSpringsStaysBoundedOverAMillionSteps) {
     ASSERT_EQ(simulation.counters.steps, 1000000U);
     EXPECT_LT((highest - lowest) / start, 1e-4) << "amplitude " << amplitude;
   }
+}
+
+// Tens of thousands a frame where contacts give by micrometres and dashpots are strong; with 6000 the rows burst at once.
+TEST(ExplicitSteps, AreAsManyAsStiffnessAndDashpotsAskFor) {
+  Scene scene = towerScene(6);
+  scene.settings.method = Method::semiImplicitEuler;
+  scene.settings.tolerance_m = 1e-6;
+  scene.settings.dampingTime = 0.01;
+  Simulation simulation(scene);
+  for (int frame = 0; frame < 3; ++frame) stepFrame(simulation);
+  EXPECT_GT(simulation.substeps, 6000);
+  PenetrationWorkspace workspace;
+  EXPECT_LE(maxPenetration(simulation.state.position, true, workspace).depth, *scene.settings.tolerance_m);
 }
 
 struct InertiaTest : ::testing::TestWithParam<Inertia> {};
