@@ -99,6 +99,7 @@ struct PulledBlock {
   std::string name;
   Scene scene;
   std::size_t block;
+  Vec3 towards;
   double settle_s;
   bool alone;
 };
@@ -109,13 +110,16 @@ std::size_t blockAt(const Scene& scene, int row, int position) {
   return static_cast<std::size_t>(found - scene.blocks.begin());
 }
 
+// Every block along its length, and outer ones of a tower sideways as well, as they come out by the shorter way.
 std::vector<PulledBlock> pulledBlocks(bool longForm) {
   std::vector<PulledBlock> pulled;
-  const auto add = [&](const std::string& name, Scene scene, int row, int position, double settle_s) {
+  const auto add = [&](const std::string& name, Scene scene, int row, int position, double settle_s, bool sideways = false) {
     scene.settings.sleep = Sleep::off;
     const std::size_t block = blockAt(scene, row, position);
     const bool alone = scene.blocks.size() == 1;
-    pulled.push_back({name, std::move(scene), block, settle_s, alone});
+    const Vec3 outwards = (position - 2) * (row % 2 == 0 ? Vec3::UnitY() : Vec3::UnitX());
+    const Vec3 towards = sideways ? outwards : scene.blocks[block].orientation * Vec3::UnitX();
+    pulled.push_back({name, std::move(scene), block, towards, settle_s, alone});
   };
   add("alone on the floor", bitCodeScene("(010)"), 0, 2, 0.5);
   const Scene tower = towerScene(18);
@@ -123,11 +127,14 @@ std::vector<PulledBlock> pulledBlocks(bool longForm) {
   add("18 rows, row 9, middle", tower, 8, 2, 3.0);
   add("18 rows, row 16, middle", tower, 15, 2, 3.0);
   add("18 rows, row 9, side", tower, 8, 1, 3.0);
+  add("18 rows, row 9, side, sideways", tower, 8, 1, 3.0, true);
   add("loose, lying between rows", bitCodeScene("(111)-(111)-(1L1)-(111)-(111)"), 2, 2, 2.0);
   if (!longForm) return pulled;
   for (int row = 0; row < 17; ++row) {
     for (int position = 1; position <= 3; ++position) {
-      add(fmt::format("18 rows, row {}, position {}", row + 1, position), tower, row, position, 3.0);
+      const std::string name = fmt::format("18 rows, row {}, position {}", row + 1, position);
+      add(name, tower, row, position, 3.0);
+      if (position != 2) add(name + ", sideways", tower, row, position, 3.0, true);
     }
   }
   return pulled;
@@ -168,23 +175,20 @@ ValidationSection validateForces(const ValidationPlan& plan) {
 ValidationSection validatePulls(const ValidationPlan& plan) {
   ValidationSection section{
       "Pulling",
-      "A block is pulled at its centre along its length by a force that grows by 1 % of what friction "
-      "bears a second. At first slip "
-      "(0.05 mm against all that it touches) the force is friction times the sum of the normal forces on "
-      "it just before, and no more "
-      "than statics allows. Friction times the normal forces is an upper bound: where light blocks turn with "
-      "the one that is pulled less will do, and limit analysis at these normal forces says how much. Rows "
-      "count from 1 at the bottom."};
+      "A block is pulled at its centre along its length, an outer one sideways as well, by a force that grows by 1 % of what "
+      "friction bears a second. At first slip (0.05 mm against all that it touches) the force is friction times the sum of the "
+      "normal forces on it just before, and no more than statics allows. Friction times the normal forces is an upper bound: "
+      "where light blocks turn with the one that is pulled less will do, and limit analysis at these normal forces says how "
+      "much. Where it says less than 99 % only its own figure is judged. Rows count from 1 at the bottom."};
   const std::vector<PulledBlock> pulled = pulledBlocks(plan.longForm);
   std::vector<SlipTrial> trials(pulled.size());
   std::vector<double> limits_n(pulled.size(), 0.0);
   tbb::parallel_for(std::size_t{0}, pulled.size(), [&](std::size_t i) {
     tbb::this_task_arena::isolate([&] {
-      const Vec3 direction = pulled[i].scene.blocks[pulled[i].block].orientation * Vec3::UnitX();
       Simulation simulation(pulled[i].scene);
       while (simulation.time_s < pulled[i].settle_s) stepFrame(simulation);
-      trials[i] = pullUntilSlip(simulation, pulled[i].block, direction);
-      limits_n[i] = pullLimit(staticScene(pulled[i].scene), blockId(pulled[i].block), direction).value_or(0.0);
+      trials[i] = pullUntilSlip(simulation, pulled[i].block, pulled[i].towards);
+      limits_n[i] = pullLimit(staticScene(pulled[i].scene), blockId(pulled[i].block), pulled[i].towards).value_or(0.0);
     });
   });
   PlotLine friction{"force at first slip over friction", {}};
@@ -195,11 +199,15 @@ ValidationSection validatePulls(const ValidationPlan& plan) {
         pulled[i].scene.staticFriction *
         (pulled[i].alone ? pulled[i].scene.blocks[0].mass * pulled[i].scene.gravity.magnitude : trial.normal_n);
     const double ratio = bears_n > 0.0 ? trial.force_n / bears_n : 0.0;
-    section.claims.push_back(
-        {pulled[i].name + (pulled[i].alone ? ": force over mu m g" : ": force over mu times normal forces"), "1 within 1 %",
-         trial.slipped ? fmt::format("{:.4f} ({:.4f} N; friction bears {:.4f})", ratio, trial.force_n, trial.limit_n / bears_n)
-                       : fmt::format("no slip at {:.3f} N", trial.force_n),
-         trial.slipped && std::abs(ratio - 1.0) <= kSlipTolerance});
+    // No force is both within 1 % of friction times the normal forces and no more than friction bears where that is less.
+    const bool attainable = pulled[i].alone || trial.limit_n >= (1.0 - kSlipTolerance) * bears_n;
+    Claim sum{pulled[i].name + (pulled[i].alone ? ": force over mu m g" : ": force over mu times normal forces"),
+              attainable ? "1 within 1 %" : "reported: more than friction bears",
+              trial.slipped
+                  ? fmt::format("{:.4f} ({:.4f} N; friction bears {:.4f})", ratio, trial.force_n, trial.limit_n / bears_n)
+                  : fmt::format("no slip at {:.3f} N", trial.force_n)};
+    if (attainable || !trial.slipped) sum.passed = trial.slipped && std::abs(ratio - 1.0) <= kSlipTolerance;
+    section.claims.push_back(sum);
     section.claims.push_back({pulled[i].name + ": force over what friction bears at these normal forces", "1 within 1 %",
                               fmt::format("{:.4f}", trial.force_n / trial.limit_n),
                               trial.slipped && std::abs(trial.force_n / trial.limit_n - 1.0) <= kSlipTolerance});
