@@ -136,8 +136,9 @@ void warmUp(Measured& measured, const ProfileLimits& limits) {
   result.allBytes = static_cast<double>(use.total()) / blocks;
 }
 
-// What is known of a scene when it has been prepared.
-void describePrepared(const PreparedScene& scene, ProfileResult& result) {
+// What is known of a scene as it was prepared; another case may have stepped it since.
+void describePrepared(PreparedScene& scene, ProfileResult& result) {
+  scene.restore();
   const Simulation fresh(scene.simulation.scene);
   std::vector<int> row;
   for (const BlockSpec& block : scene.simulation.scene.blocks) row.push_back(block.row);

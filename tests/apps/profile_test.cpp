@@ -287,11 +287,15 @@ TEST(Profile, TowersAndACollapse) {
   EXPECT_THAT(lines, Contains(::testing::ContainsRegex("^towers +2x18 +108 ")));
 }
 
-// A stack of 108 blocks a row that lands: as deep and as many steps with two threads as with one.
+// A stack of 108 blocks a row that lands: as deep and as many steps with two threads as with one, from the same state.
 TEST(Profile, APileLandsOnAnyThreads) {
-  const ProgramResult result = profile({"--rows", "2", "--scenes", "pile", "--methods", "implicit", "--tolerances", "2e-4",
-                                        "--samples", "1", "--frames", "3", "--threads", "1,2", "--sample-limit", "600"});
+  const ScratchFolder scratch;
+  const ProgramResult result =
+      profile({"--rows", "2", "--scenes", "pile", "--methods", "implicit", "--tolerances", "2e-4", "--samples", "1", "--frames",
+               "3", "--threads", "1,2", "--sample-limit", "600", "--out", scratch.file("out")});
   ASSERT_EQ(result.exitCode, 0) << result.error;
+  const Json cases = Json::parse(contentOf(scratch.file("out/profile.json"))).at("cases");
+  for (const char* key : {"prepared_s", "bottom_row_compression_mm"}) EXPECT_EQ(cases.at(0).at(key), cases.at(1).at(key)) << key;
   std::vector<std::pair<std::string, std::string>> stepsAndDepth;
   for (const std::string& line : linesOf(result.output)) {
     std::istringstream words(line);
