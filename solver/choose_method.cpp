@@ -1,5 +1,6 @@
 #include "solver/choose_method.h"
 
+#include "solver/falling.h"
 #include "solver/stiffness.h"
 
 #include <algorithm>
@@ -10,7 +11,7 @@ namespace {
 
 // A block that comes down askew or is thrown rocks: it hits again and again, and each hit asks springs for explicit steps that
 // grow with its speed. From this stiffening on, against what rest needs, rigid blocks cost less; they take a hit in the step that
-// it falls into.
+// it falls into. So do implicit methods where several blocks fall (solver/falling), and lay them down faster then.
 constexpr double kHardImpact = 4.0;
 // Rigid blocks sink into one another by what gravity does in a step: this many times g dt^2 for each layer above.
 constexpr double kRigidSag = 2.4;
@@ -42,7 +43,7 @@ Settings chooseMethod(const Scene& scene) {
   const double thrown = meetingSpeed(scene);
   const double squaredSpeed = 2.0 * gravity * loads.askewFall_m + thrown * thrown;
   const double stiffening = mass * squaredSpeed / (depth * depth * stiffness);
-  if (stiffening < kHardImpact) {
+  if (stiffening < kHardImpact || mayFall(scene.blocks.size())) {
     settings.method = Method::implicit;
     return settings;
   }

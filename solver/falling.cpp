@@ -17,7 +17,7 @@ namespace {
 // Speed at which an island begins to fall, and below which implicit steps are tried again, in sqrt(g h).
 constexpr double kFallSpeed = 0.45;
 constexpr double kFallenSpeed = 0.05;
-// Blocks of an island that begins to fall, at least: one that is thrown, or two that meet, rebound.
+// Blocks of an island that begins to fall, at least.
 constexpr std::size_t kFewest = 3;
 // Steps of a frame, at least; and farthest that a corner may go in one, in block heights.
 constexpr int kFallSteps = 20;
@@ -43,7 +43,7 @@ bool hasAny(const IslandStep& step, bool BlockClock::*flag) {
                      [&](std::int32_t block) { return step.engine.clock[static_cast<std::size_t>(block)].*flag; });
 }
 
-bool mayFall(const IslandStep& step) {
+bool isLeftAlone(const IslandStep& step) {
   return step.blocks.size() < kParallelBlocks && !holdsTether(step) && !isPushed(step);
 }
 
@@ -84,22 +84,26 @@ void rememberSprings(const IslandStep& step, Manifold& manifold) {
 
 }  // namespace
 
+bool mayFall(std::size_t blocks) {
+  return blocks >= kFewest && blocks < kParallelBlocks;
+}
+
 bool falls(const IslandStep& step) {
-  if (!mayFall(step)) return false;
+  if (!isLeftAlone(step)) return false;
   if (hasAny(step, &BlockClock::falls)) {
     const bool handedOver = std::any_of(step.blocks.begin(), step.blocks.end(), [&](std::int32_t block) {
       return step.engine.clock[static_cast<std::size_t>(block)].explicitFrames > 0;
     });
     return handedOver || isFasterThan(step, kFallenSpeed);
   }
-  return step.blocks.size() >= kFewest && isFasterThan(step, kFallSpeed);
+  return mayFall(step.blocks.size()) && isFasterThan(step, kFallSpeed);
 }
 
 bool isHeap(const IslandStep& step) {
   const auto fallen = std::count_if(step.blocks.begin(), step.blocks.end(), [&](std::int32_t block) {
     return step.engine.clock[static_cast<std::size_t>(block)].hasFallen;
   });
-  return mayFall(step) && 2 * static_cast<std::size_t>(fallen) > step.blocks.size();
+  return isLeftAlone(step) && 2 * static_cast<std::size_t>(fallen) > step.blocks.size();
 }
 
 void setFalling(IslandStep& step, bool falling) {

@@ -20,15 +20,18 @@ constexpr int kFallenFrames = 30;
 constexpr double kMostTurn = 0.01;
 
 // Farthest that a corner may go in a step, in block heights: the energy of what goes over, faster and faster, grows in longer
-// ones.
+// ones. A block alone that glides gains none; only what its corners go about its centre counts.
 constexpr double kMostWay = 0.04;
 
 // Steps of a frame in which no corner goes farther than that.
 int stepsForWay(const IslandStep& step) {
   const Simulation& simulation = step.simulation;
+  const CornerArray& velocity = simulation.state.velocity;
+  const bool alone = step.blocks.size() == 1;
+  const Vec3 glide = alone ? centre(velocity, static_cast<std::size_t>(step.blocks.front())) : Vec3::Zero();
   double fastest = 0.0;
   for (const std::int32_t block : step.blocks)
-    fastest = std::max(fastest, fastestCorner(simulation.state.velocity, static_cast<std::size_t>(block), Vec3::Zero()));
+    fastest = std::max(fastest, fastestCorner(velocity, static_cast<std::size_t>(block), glide));
   const double steps = std::ceil(fastest * simulation.scene.settings.frame_s / (kMostWay * simulation.lengths.blockHeight_m));
   return static_cast<int>(std::clamp(steps, 1.0, static_cast<double>(kMostRingingSteps)));
 }

@@ -162,6 +162,7 @@ LoadEstimate estimateLoads(const Scene& scene) {
       lower[a] = std::min(lower[a], bounds[b].lower[a]);
       upper[a] = std::max(upper[a], bounds[b].upper[a]);
     }
+    if (askewFall(scene, bounds, b, below[b]) > 0.0) continue;  // rests on nothing, and is no joint of a tower
     LevelMoments& here = moments[level[b]];
     const auto addOverlap = [&](const BlockBounds& support) {
       here.points += kPointsPerOverlap;
@@ -174,12 +175,17 @@ LoadEstimate estimateLoads(const Scene& scene) {
   }
   if (count == 0) return estimate;
   double compliance = 0.0;
-  for (const LevelMoments& here : moments) compliance += 1.0 / std::max(here.least(), 1e-12);
-  const auto n = static_cast<double>(levels);
+  std::size_t joints = 0;
+  for (const LevelMoments& here : moments) {
+    if (here.points == 0.0) continue;
+    compliance += 1.0 / std::max(here.least(), 1e-12);
+    ++joints;
+  }
+  const auto n = static_cast<double>(joints);
   const double height = upper[2] - lower[2];
   // Weight per level w and level height h: a chain of n joints of stiffness S buckles near w h n^3 = 7.837 S.
   const double jointNeeded = (weight / n) * (height / n) * n * n * n / kBucklingParameter;
-  estimate.swayStiffness_n_m = levels < 2 ? 0.0 : kSwayReserve * jointNeeded * (compliance / n) / kSeriesWithBlocks;
+  estimate.swayStiffness_n_m = joints < 2 ? 0.0 : kSwayReserve * jointNeeded * (compliance / n) / kSeriesWithBlocks;
 
   const double lean = std::abs(scene.gravity.tilt_deg) + std::abs(scene.gravity.sway_deg);
   const double narrow = 0.5 * std::min(upper[0] - lower[0], upper[1] - lower[1]);

@@ -40,6 +40,22 @@ TEST(ChooseMethod, WhatFallsFarAndAskewIsTakenAsRigid) {
   }
 }
 
+// Implicit methods carry falls of some blocks by rigid steps themselves; not those of very many, which run on many threads.
+TEST(ChooseMethod, SomeBlocksThatFallAskewAreSteppedImplicitly) {
+  const auto heap = [](int blocks) {
+    Scene scene = fallingBlock(0.05, 10.0);
+    for (int i = 1; i < blocks; ++i) {
+      scene.blocks.push_back(scene.blocks.back());
+      scene.blocks.back().centre.x() += 0.1;
+    }
+    return scene;
+  };
+  EXPECT_EQ(chooseMethod(heap(2)).method, Method::rigidPgs);
+  EXPECT_EQ(chooseMethod(heap(3)).method, Method::implicit);
+  EXPECT_EQ(chooseMethod(heap(255)).method, Method::implicit);
+  EXPECT_EQ(chooseMethod(heap(256)).method, Method::rigidPgs);
+}
+
 // What is thrown at something rocks as what falls askew does; a block that slides on its own meets nothing.
 TEST(ChooseMethod, WhatMeetsAtSpeedIsTakenAsRigid) {
   for (const double gravity : {kStandardGravity_m_s2, 0.0}) {
