@@ -62,7 +62,7 @@ TurningGap gapAlongTurningFace(const Vec3& normal, const MovingBlock& a, const M
       const Vec3 face = start[i].along[(axis + 1) % 3].cross(start[i].along[(axis + 2) % 3]);
       const double cosine = face.dot(normal);
       const double near = cosine * cosine / face.squaredNorm();
-      if (near <= nearest) continue;
+      if (!(near > nearest)) continue;
       nearest = near;
       block = i;
       first = (axis + 1) % 3;
@@ -85,8 +85,9 @@ TurningGap gapAlongTurningFace(const Vec3& normal, const MovingBlock& a, const M
   for (std::size_t k = 0; k < 4; ++k) {
     const Lanes least = upper[0][k] < upper[1][k] ? upper[0][k] : upper[1][k];
     const Lanes most = lower[0][k] > lower[1][k] ? lower[0][k] : lower[1][k];
-    gap.least = std::min(gap.least, std::min(std::min(least[0], least[1]), std::min(least[2], least[3])) -
-                                        std::max(std::max(most[0], most[1]), std::max(most[2], most[3])));
+    const double here = std::min(std::min(least[0], least[1]), std::min(least[2], least[3])) -
+                        std::max(std::max(most[0], most[1]), std::max(most[2], most[3]));
+    gap.least = std::min(here, gap.least);  // where the face has no area neither is a number
   }
   return gap;
 }

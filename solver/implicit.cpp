@@ -20,7 +20,7 @@ constexpr int kFallenFrames = 30;
 constexpr double kMostTurn = 0.01;
 
 // Farthest that a corner may go in a step, in block heights: the energy of what goes over, faster and faster, grows in longer
-// ones. A block alone that glides gains none; only what its corners go about its centre counts.
+// ones. A block alone that glides gains none: only as far as its corners would go about an edge counts.
 constexpr double kMostWay = 0.04;
 
 // Steps of a frame in which no corner goes farther than that.
@@ -32,6 +32,7 @@ int stepsForWay(const IslandStep& step) {
   double fastest = 0.0;
   for (const std::int32_t block : step.blocks)
     fastest = std::max(fastest, fastestCorner(velocity, static_cast<std::size_t>(block), glide));
+  if (alone) fastest *= 2.0;
   const double steps = std::ceil(fastest * simulation.scene.settings.frame_s / (kMostWay * simulation.lengths.blockHeight_m));
   return static_cast<int>(std::clamp(steps, 1.0, static_cast<double>(kMostRingingSteps)));
 }

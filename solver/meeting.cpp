@@ -261,7 +261,11 @@ Meetings meetingsIn(IslandStep& step) {
     keepPair(step.engine, static_cast<std::size_t>(at));
     pair.checkedTravel = travelOf(step.engine, pair);
     watchApart(step, pair, step.counters, step.times);
-    if (pair.manifold.touch != Touch::apart) found = Meetings::broughtIn;
+    if (pair.manifold.touch == Touch::apart) {
+      pair.margin = 0.0;  // of where this step ends, which may be solved again
+    } else {
+      found = Meetings::broughtIn;
+    }
   }
   return found;
 }

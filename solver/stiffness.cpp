@@ -86,11 +86,16 @@ double unevenness(const std::vector<BlockBounds>& bounds, const std::vector<std:
   return highest - lowest;
 }
 
+// Whether one of a block's sides is level.
+bool isLevel(const BlockSpec& block) {
+  constexpr double kLevel = 0.9998;  // cosine of one degree
+  return block.orientation.toRotationMatrix().row(2).cwiseAbs().maxCoeff() > kLevel;
+}
+
 // How far a block is above the highest of its supports, or the floor, if none of its sides is level; else 0.
 double askewFall(const Scene& scene, const std::vector<BlockBounds>& bounds, std::size_t b,
                  const std::vector<std::size_t>& supports) {
-  constexpr double kLevel = 0.9998;  // cosine of one degree
-  if (scene.blocks[b].orientation.toRotationMatrix().row(2).cwiseAbs().maxCoeff() > kLevel) return 0.0;
+  if (isLevel(scene.blocks[b])) return 0.0;
   if (supports.empty() && !scene.floor) return 0.0;
   double top = supports.empty() ? 0.0 : -1e300;
   for (const std::size_t s : supports) top = std::max(top, bounds[s].upper[2]);
@@ -126,12 +131,12 @@ LoadEstimate estimateLoads(const Scene& scene) {
   // Without gravity nothing loads a contact, yet blocks must be stiff: they are taken to weigh what they would on Earth.
   const double weighing = scene.gravity.magnitude > 0.0 ? scene.gravity.magnitude : kStandardGravity_m_s2;
   LoadEstimate estimate;
-  double weight = 0.0;
+  double towerWeight = 0.0;
   bool anyUneven = false;
   for (const std::size_t b : fromTop) {
     const double own = scene.blocks[b].mass * weighing;
     load[b] += own;
-    weight += own;
+    if (isLevel(scene.blocks[b])) towerWeight += own;
     estimate.askewFall_m = std::max(estimate.askewFall_m, askewFall(scene, bounds, b, below[b]));
     const double spread = unevenness(bounds, below[b]);
     const bool uneven = spread > kUnevenHeight * (bounds[b].upper[2] - bounds[b].lower[2]);
@@ -157,12 +162,16 @@ LoadEstimate estimateLoads(const Scene& scene) {
   std::vector<LevelMoments> moments(levels);
   std::array<double, 3> lower{1e300, 1e300, 1e300};
   std::array<double, 3> upper{-1e300, -1e300, -1e300};
+  double foot = 1e300;
+  double top = -1e300;
   for (std::size_t b = 0; b < count; ++b) {
     for (std::size_t a = 0; a < 3; ++a) {
       lower[a] = std::min(lower[a], bounds[b].lower[a]);
       upper[a] = std::max(upper[a], bounds[b].upper[a]);
     }
-    if (askewFall(scene, bounds, b, below[b]) > 0.0) continue;  // rests on nothing, and is no joint of a tower
+    if (!isLevel(scene.blocks[b])) continue;  // no joint of a tower
+    foot = std::min(foot, bounds[b].lower[2]);
+    top = std::max(top, bounds[b].upper[2]);
     LevelMoments& here = moments[level[b]];
     const auto addOverlap = [&](const BlockBounds& support) {
       here.points += kPointsPerOverlap;
@@ -184,7 +193,7 @@ LoadEstimate estimateLoads(const Scene& scene) {
   const auto n = static_cast<double>(joints);
   const double height = upper[2] - lower[2];
   // Weight per level w and level height h: a chain of n joints of stiffness S buckles near w h n^3 = 7.837 S.
-  const double jointNeeded = (weight / n) * (height / n) * n * n * n / kBucklingParameter;
+  const double jointNeeded = (towerWeight / n) * ((top - foot) / n) * n * n * n / kBucklingParameter;
   estimate.swayStiffness_n_m = joints < 2 ? 0.0 : kSwayReserve * jointNeeded * (compliance / n) / kSeriesWithBlocks;
 
   const double lean = std::abs(scene.gravity.tilt_deg) + std::abs(scene.gravity.sway_deg);

@@ -5,6 +5,7 @@
 #include "solver/measures.h"
 #include "solver/run.h"
 #include "solver/simulation.h"
+#include "solver/stiffness.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -99,8 +100,8 @@ TEST(Falling, BlocksInTheAirFlyAndTumbleAsFreeBodies) {
   EXPECT_LT((momentum(1) - before).norm(), 1e-6 * before.norm());
 }
 
-// Twenty blocks above one another that have come to lie askew anyhow.
-Scene blocksInTheAir(std::uint64_t seed) {
+// Twenty blocks above one another, askew anyhow.
+Scene blocksInTheAir(std::uint64_t seed, double spacing_m) {
   RandomStream random(seed, 0);
   const auto within = [&](double most) { return most * (random.uniform() - 0.5); };
   Scene scene;
@@ -108,7 +109,7 @@ Scene blocksInTheAir(std::uint64_t seed) {
     BlockSpec block;
     block.centre.x() = within(0.22);
     block.centre.y() = within(0.22);
-    block.centre.z() = 0.06 + 0.09 * i;
+    block.centre.z() = 0.06 + spacing_m * i;
     for (int axis = 0; axis < 3; ++axis) block.orientation = block.orientation * Eigen::AngleAxisd(within(2.0), Vec3::Unit(axis));
     scene.blocks.push_back(block);
   }
@@ -119,11 +120,27 @@ Scene blocksInTheAir(std::uint64_t seed) {
 // for tops that differ, rests on a contact. Such heaps were given up to 380 MN/m and burst in their first step.
 TEST(Falling, BlocksInTheAirAreAsStiffAsTheirWeightAsks) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-    Simulation simulation(blocksInTheAir(seed));
-    const double weight_n = 20.0 * simulation.model.mass[0] * simulation.scene.gravity.magnitude;
-    EXPECT_LE(simulation.contactStiffness_n_m, 3.0 * weight_n / simulation.tolerance_m) << "seed " << seed;
+    for (const double spacing_m : {0.06, 0.09}) {
+      const Scene scene = blocksInTheAir(seed, spacing_m);
+      const double weight_n = 20.0 * scene.blocks[0].mass * scene.gravity.magnitude;
+      const double tolerance_m = toleranceOf(scene);
+      EXPECT_LE(stiffnessForTolerance(estimateLoads(scene), tolerance_m).contact_n_m, 3.0 * weight_n / tolerance_m)
+          << "seed " << seed << ", " << spacing_m;
+    }
+    Simulation simulation(blocksInTheAir(seed, 0.09));  // more than the longest diagonal
     for (int frame = 0; frame < 20; ++frame) stepFrame(simulation);
   }
+}
+
+// What flies above a tower makes it no stiffer against swaying.
+TEST(Falling, ABlockHighAboveATowerLeavesItsStiffness) {
+  Scene scene = towerScene(72);
+  const double alone_n_m = Simulation(scene).contactStiffness_n_m;
+  BlockSpec flying = scene.blocks.back();
+  flying.centre.z() += 10.0;
+  flying.orientation = Eigen::AngleAxisd(0.5, Vec3::UnitX());
+  scene.blocks.push_back(flying);
+  EXPECT_LT(Simulation(scene).contactStiffness_n_m, 1.1 * alone_n_m);
 }
 
 }  // namespace
