@@ -14,7 +14,7 @@ picture() {
 
 printf '%s\n' '[tower]' 'rows = 18' '[gravity]' 'tilt_deg = 16.0' 'direction_deg = 30.0' >"$scratch/tilted.toml"
 picture tower18 60 -52:18:0.68 --scene tower:18
-picture collapse 31 -14:20:1.0 --scene "$scratch/tilted.toml" --no-sleep
+picture collapse 38 -14:20:1.0 --scene "$scratch/tilted.toml" --no-sleep
 picture load 120 -52:18:0.44 --scene tower:9 --overlay load --arrows
 picture hints 120 -52:18:0.44 --scene tower:9 --overlay hints
 
