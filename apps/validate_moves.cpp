@@ -176,10 +176,9 @@ ValidationSection validateMoves(const ValidationPlan& plan) {
       "Moves",
       "The report's sequence of moves (its section 6.1.2, scenes/moves.toml) by a hand of at most 5 N, slow at "
       "4 cm/s and quick at 40 cm/s; allowed is what the real tower did; once as the engine comes, and once with nothing asleep. "
-      "Then blocks are pulled out of a full "
-      "tower of 18 rows one by one and put aside, middle blocks along their length and outer ones sideways, at 4 cm/s, or at "
-      "1.5 m/s where friction asks for more than two thirds of the pull that the tower bears by statics; once as the engine "
-      "comes, and once with nothing asleep. "
+      "Then blocks are pulled out of a full tower of 18 rows one by one and put aside, middle blocks along their length and "
+      "outer ones sideways, at 4 cm/s, or at 1.5 m/s where friction asks for more than two thirds of the pull that the tower "
+      "bears by statics; both ways again. "
       "After a state that differs a sequence is not counted further."};
   addSequence(plan, Sleep::on, section);
   addSequence(plan, Sleep::off, section);
