@@ -78,13 +78,14 @@ void keepLeast(Measured& measured, std::size_t frame, double wall_ms, double pro
   measured.processor_ms[frame] = std::min(measured.processor_ms[frame], processor_ms);
 }
 
-// One sample: back to the kept state, a frame that is not timed, then the timed ones.
+// One sample: the first frame from the kept state is run once without being timed, then again with all the others.
 void sample(Measured& measured, const ProfileLimits& limits, Clock::time_point epoch, TracedCase* traced) {
   PreparedScene& scene = *measured.scene;
   Simulation& simulation = scene.simulation;
   const int together = framesTogether(measured.result->what.scene);
   scene.restore();
   scene.step();
+  scene.restore();
   measured.before = simulation.counters;
   if (traced != nullptr) traced->frames.clear();
   const Clock::time_point begin = Clock::now();
@@ -124,7 +125,7 @@ void warmUp(Measured& measured, const ProfileLimits& limits) {
   scene.restore();
   const Clock::time_point begin = Clock::now();
   PenetrationWorkspace workspace;
-  for (int frame = 0; frame <= limits.frames && (frame < 2 || secondsBetween(begin, Clock::now()) < limits.sample_s); ++frame) {
+  for (int frame = 0; frame < limits.frames && (frame < 2 || secondsBetween(begin, Clock::now()) < limits.sample_s); ++frame) {
     scene.step();
     const Penetration deepest = maxPenetration(simulation.state.position, simulation.scene.floor, workspace);
     result.penetration_mm = std::max(result.penetration_mm, 1e3 * deepest.depth);

@@ -34,61 +34,115 @@ SPRINGTOWER_INLINE void add(float factor, const Row& row, Row& to) {
   to.high += factor * row.high;
 }
 
+// Four rows that are worked on together: enough for their sums to hide one another's latency, and few enough for the registers.
+struct Rows {
+  Row a, b, c, d;
+};
+
+SPRINGTOWER_INLINE void loadRows(const float* from, Rows& to) {
+  loadRow(from, to.a);
+  loadRow(from + kNodeSize, to.b);
+  loadRow(from + 2 * kNodeSize, to.c);
+  loadRow(from + 3 * kNodeSize, to.d);
+}
+SPRINGTOWER_INLINE void storeRows(const Rows& from, float* to) {
+  storeRow(from.a, to);
+  storeRow(from.b, to + kNodeSize);
+  storeRow(from.c, to + 2 * kNodeSize);
+  storeRow(from.d, to + 3 * kNodeSize);
+}
+
 // c -= w t, all 12 x 12 row by row.
 SPRINGTOWER_INLINE void subtractProduct(const float* w, const float* t, float* c) {
-  for (std::size_t i = 0; i < kNodeSize; i += 2) {
-    Row first, second;
-    loadRow(c + kNodeSize * i, first);
-    loadRow(c + kNodeSize * (i + 1), second);
+  for (std::size_t i = 0; i < kNodeMatrix; i += 4 * kNodeSize) {
+    Rows sum;
+    loadRows(c + i, sum);
     for (std::size_t k = 0; k < kNodeSize; ++k) {
       Row row;
       loadRow(t + kNodeSize * k, row);
-      subtract(w[kNodeSize * i + k], row, first);
-      subtract(w[kNodeSize * (i + 1) + k], row, second);
+      subtract(w[i + k], row, sum.a);
+      subtract(w[i + kNodeSize + k], row, sum.b);
+      subtract(w[i + 2 * kNodeSize + k], row, sum.c);
+      subtract(w[i + 3 * kNodeSize + k], row, sum.d);
     }
-    storeRow(first, c + kNodeSize * i);
-    storeRow(second, c + kNodeSize * (i + 1));
+    storeRows(sum, c + i);
   }
 }
 
 // c = s t for symmetric s.
 SPRINGTOWER_INLINE void product(const float* s, const float* t, float* c) {
-  for (std::size_t i = 0; i < kNodeSize; ++i) {
-    Row sum{};
+  for (std::size_t i = 0; i < kNodeMatrix; i += 4 * kNodeSize) {
+    Rows sum{};
     for (std::size_t k = 0; k < kNodeSize; ++k) {
       Row row;
       loadRow(t + kNodeSize * k, row);
-      add(s[kNodeSize * i + k], row, sum);
+      add(s[i + k], row, sum.a);
+      add(s[i + kNodeSize + k], row, sum.b);
+      add(s[i + 2 * kNodeSize + k], row, sum.c);
+      add(s[i + 3 * kNodeSize + k], row, sum.d);
     }
-    storeRow(sum, c + kNodeSize * i);
+    storeRows(sum, c + i);
   }
 }
 
+// Four by four at a time.
 SPRINGTOWER_INLINE void transpose(const float* from, float* to) {
-  for (std::size_t i = 0; i < kNodeSize; ++i) {
-    for (std::size_t k = 0; k < kNodeSize; ++k) to[kNodeSize * k + i] = from[kNodeSize * i + k];
+  for (std::size_t i = 0; i < kNodeSize; i += 4) {
+    for (std::size_t k = 0; k < kNodeSize; k += 4) {
+      Quad a, b, c, d;
+      __builtin_memcpy(&a, from + kNodeSize * i + k, sizeof a);
+      __builtin_memcpy(&b, from + kNodeSize * (i + 1) + k, sizeof b);
+      __builtin_memcpy(&c, from + kNodeSize * (i + 2) + k, sizeof c);
+      __builtin_memcpy(&d, from + kNodeSize * (i + 3) + k, sizeof d);
+      const Quad ab = __builtin_shufflevector(a, b, 0, 4, 1, 5);
+      const Quad cd = __builtin_shufflevector(c, d, 0, 4, 1, 5);
+      const Quad abLast = __builtin_shufflevector(a, b, 2, 6, 3, 7);
+      const Quad cdLast = __builtin_shufflevector(c, d, 2, 6, 3, 7);
+      const Quad first = __builtin_shufflevector(ab, cd, 0, 1, 4, 5);
+      const Quad second = __builtin_shufflevector(ab, cd, 2, 3, 6, 7);
+      const Quad third = __builtin_shufflevector(abLast, cdLast, 0, 1, 4, 5);
+      const Quad fourth = __builtin_shufflevector(abLast, cdLast, 2, 3, 6, 7);
+      __builtin_memcpy(to + kNodeSize * k + i, &first, sizeof first);
+      __builtin_memcpy(to + kNodeSize * (k + 1) + i, &second, sizeof second);
+      __builtin_memcpy(to + kNodeSize * (k + 2) + i, &third, sizeof third);
+      __builtin_memcpy(to + kNodeSize * (k + 3) + i, &fourth, sizeof fourth);
+    }
   }
 }
 
-// Gauss-Jordan without pivoting, in place; for positive definite blocks every pivot is positive.
+// A row without its entry p, and a row with nothing but that one.
+using OctetOfPlaces = std::int32_t __attribute__((vector_size(32)));
+using QuadOfPlaces = std::int32_t __attribute__((vector_size(16)));
+SPRINGTOWER_INLINE void split(std::int32_t p, const Row& row, float entry, Row& without, Row& alone) {
+  const OctetOfPlaces low = OctetOfPlaces{0, 1, 2, 3, 4, 5, 6, 7} == p;
+  const QuadOfPlaces high = QuadOfPlaces{8, 9, 10, 11} == p;
+  without.low = low ? Octet{} : row.low;
+  without.high = high ? Quad{} : row.high;
+  alone.low = low ? Octet{} + entry : Octet{};
+  alone.high = high ? Quad{} + entry : Quad{};
+}
+
+// Gauss-Jordan without pivoting, in place; for positive definite blocks every pivot is positive. Rows are changed as vectors
+// only: a number stored into a row would hold up the next load of it.
 SPRINGTOWER_INLINE bool invert(float* m) {
   bool positive = true;
   for (std::size_t p = 0; p < kNodeSize; ++p) {
     const float pivot = m[kNodeSize * p + p];
     positive = positive && pivot > 0.0F;
     const float inverse = 1.0F / pivot;
-    m[kNodeSize * p + p] = 1.0F;
-    Row row;
+    const auto at = static_cast<std::int32_t>(p);
+    Row row, alone;
     loadRow(m + kNodeSize * p, row);
-    row.low *= inverse;
-    row.high *= inverse;
+    split(at, row, inverse, row, alone);
+    row.low = row.low * inverse + alone.low;
+    row.high = row.high * inverse + alone.high;
     storeRow(row, m + kNodeSize * p);
     for (std::size_t i = 0; i < kNodeSize; ++i) {
       if (i == p) continue;
       const float factor = m[kNodeSize * i + p];
-      m[kNodeSize * i + p] = 0.0F;
       Row other;
       loadRow(m + kNodeSize * i, other);
+      split(at, other, 0.0F, other, alone);
       subtract(factor, row, other);
       storeRow(other, m + kNodeSize * i);
     }
@@ -250,17 +304,21 @@ bool factorise(BlockCholesky& matrix) {
     const auto first = static_cast<std::size_t>(matrix.columnStart[j]);
     const auto last = static_cast<std::size_t>(matrix.columnStart[j + 1]);
     for (std::size_t i = first; i < last; ++i) {
-      alignas(32) float w[kNodeMatrix];
       alignas(32) float turned[kNodeMatrix];
+      alignas(32) float divided[kNodeMatrix];
       float* block = blockOf(matrix.lower, i);
-      for (std::size_t e = 0; e < kNodeMatrix; ++e) w[e] = block[e];
-      transpose(w, turned);
-      product(inverse, turned, block);
+      transpose(block, turned);
+      product(inverse, turned, divided);
       const std::int32_t* target = matrix.target.data() + matrix.targetStart[i];
       for (std::size_t k = first; k < i; ++k) {
-        subtractProduct(w, blockOf(matrix.lower, k), blockOf(matrix.lower, static_cast<std::size_t>(target[k - first])));
+        subtractProduct(block, blockOf(matrix.lower, k), blockOf(matrix.lower, static_cast<std::size_t>(target[k - first])));
       }
-      subtractProduct(w, block, blockOf(matrix.diagonal, static_cast<std::size_t>(-1 - target[i - first])));
+      subtractProduct(block, divided, blockOf(matrix.diagonal, static_cast<std::size_t>(-1 - target[i - first])));
+      for (std::size_t r = 0; r < kNodeMatrix; r += 4 * kNodeSize) {
+        Rows rows;
+        loadRows(divided + r, rows);
+        storeRows(rows, block + r);
+      }
     }
   }
   return positive;

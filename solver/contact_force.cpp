@@ -25,6 +25,7 @@ struct LawStep {
   double impactFactor;  // stiffness scale per squared approach speed
   double scaleKeep;     // what is left of a scale's excess after the step
   double relaxGain;     // how much of its lag the relaxing branch forgets in the step
+  double perAdvance;    // 1/s; 0 where the memory is not advanced
   double pointMass;     // kg that a point moves at least: all four of a face that is hit flat push and squash the block
 };
 
@@ -37,6 +38,7 @@ SPRINGTOWER_INLINE LawStep lawStep(const Manifold& m, const ContactLaw& law, con
           reducedMass / (stiffness * aim * aim),
           1.0 / (1.0 + step.advance_s / law.scaleTime_s),
           step.advance_s / (law.relaxingTime_s + step.advance_s),
+          step.advance_s > 0.0 ? 1.0 / step.advance_s : 0.0,
           reducedMass / kFlatInverse};
 }
 
@@ -71,7 +73,10 @@ SPRINGTOWER_INLINE void pointLaw(const LawStep& s, const Lanes& depth, const Lan
       elastic * (1.0 + 1.0 / std::max(law.relaxingRatio, kLeastRelaxingRatio));  // beyond this the branch would pull
   p.relaxed = known ? (relaxed < pushedOut ? relaxed : pushedOut) : zero;
   const Lanes stiffness = s.stiffness * p.scale;
-  Lanes push = stiffness * (elastic + law.relaxingRatio * (elastic - p.relaxed) + law.dampingTime_s * closing);
+  // Seen from a step's end such a point has been pressed for a part of the step: its dashpot has closed by its depth, and no jump
+  // at the surface keeps the step from a solution.
+  const Lanes pressed = known | (depth > closing * s.step.advance_s) ? closing : depth * s.perAdvance;
+  Lanes push = stiffness * (elastic + law.relaxingRatio * (elastic - p.relaxed) + law.dampingTime_s * pressed);
   push = touching & (push > zero) & (elastic > zero) ? push : zero;
   if (s.step.kick_s > 0.0 && any(p.scale > one)) {
     // A point that is thrown back within the step is given no more energy than it came with and its spring stores.

@@ -102,11 +102,12 @@ PointStiffness pointStiffness(const IslandStep& step, const Manifold& manifold, 
                               std::size_t i, double step_s) {
   const ContactLaw& law = step.law;
   const double stiffness = manifold.lower < 0 ? law.floorStiffness_n_m : law.stiffness_n_m;
+  const bool born = manifold.live[i] == 0.0;  // in this step
   const double damping = law.dampingTime_s / step_s;
-  const double relaxing = law.relaxingRatio * law.relaxingTime_s / (law.relaxingTime_s + step.drift_s);
+  const double relaxing = born ? law.relaxingRatio : law.relaxingRatio * law.relaxingTime_s / (law.relaxingTime_s + step.drift_s);
   const double k = stiffness * std::max(1.0, memory.scale[i]);
   PointStiffness result;
-  result.normal = k * (1.0 + relaxing + damping);
+  result.normal = k * (1.0 + relaxing + (born ? law.dampingTime_s / step.drift_s : damping));
   result.tangential = k * (law.tangentialRatio * (1.0 + damping));
   if ((mask >> (8 + i) & 1U) != 0) {
     // Until something has moved it slides as it slid before.

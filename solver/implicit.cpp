@@ -78,7 +78,7 @@ int implicitSteps(const IslandStep& step, bool forced, bool known) {
   }
   int least = forced ? kForcedSteps : 1;
   if (!calm && leansOnSleepers(step)) least = kImplicitSteps;
-  if (!calm && !known) least = kMostRingingSteps;
+  if (!calm && !known) least = isHeap(step) ? kForcedSteps : kMostRingingSteps;  // rigid blocks do not ring
   if (!calm && !forced) least = std::max(least, stepsForWay(step));
   const int steps = std::max(least, stepsForRinging(step, present));
   for (const std::int32_t block : step.blocks) step.engine.clock[static_cast<std::size_t>(block)].implicitSteps = steps;

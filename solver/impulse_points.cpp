@@ -157,6 +157,7 @@ void gatherPoints(IslandStep& step, RigidIsland& island, bool again) {
     const BlockFrame* lower = m.lower < 0 ? nullptr : &engine.frames[static_cast<std::size_t>(m.lower)];
     addPoints(m, mover(m.upper), mover(m.lower), upper, lower, step.simulation, step.drift_s, at, island.points);
   }
+  island.known.reserve(island.points.capacity());  // they change places: one that lags behind would grow when frames run again
 }
 
 void keepPoints(IslandStep& step, const RigidIsland& island) {

@@ -30,7 +30,7 @@ constexpr double kSolved = 2.0;
 struct Iteration {
   int mostContactIterations;  // while points begin or cease to push or slide: a front of load takes an iteration a row
   double near;                // residual below which a correction takes contacts as they stand: friction follows the
-                              // normal forces, and what touches and does not push is open
+                              // normal forces, and what touches and does not push is open; 0 in steps from rest
   double enough;              // share of the residual at the beginning that may be left over
 };
 
@@ -258,6 +258,19 @@ double predict(IslandStep& step, ImplicitIsland& island, double effective_s, Sta
   return evaluateResidual(step, island, effective_s, clock);
 }
 
+// Where the iteration begins when something moves: where the blocks are carried, unless that is not near the solution and where
+// they are is nearer, as when contacts have just let go or taken hold and velocities and accelerations still tell of before.
+// Returns the residual there.
+double beginCarried(IslandStep& step, ImplicitIsland& island, double effective_s, const Iteration& how, StageClock& clock) {
+  const double carried = predict(step, island, effective_s, clock);
+  if (how.near == 0.0 || !(carried > how.near)) return carried;
+  goBack(step);
+  evaluateForces(step, step.simulation.state, step.simulation.state.velocity, 0.0, Memory::trial);
+  island.moved = false;
+  const double still = findResidual(step, island, effective_s);
+  return still < carried ? still : predict(step, island, effective_s, clock);
+}
+
 // Whether the step begins where the blocks are carried, whatever the forces are where they are: all have a history, and one moves
 // so fast that its inertia alone asks for it.
 bool isCarried(const IslandStep& step, double effective_s) {
@@ -284,7 +297,7 @@ bool solveStep(IslandStep& step, double effective_s, bool carried, const Iterati
   island.moved = false;
   if (island.step_s != effective_s || tetherStiffness(step, effective_s) != island.tether) island.factorised = false;
   double residual = island.tooDense || carried ? 0.0 : findResidual(step, island, effective_s);
-  if (!island.tooDense && (carried || residual > kPredicted)) residual = predict(step, island, effective_s, clock);
+  if (!island.tooDense && (carried || residual > kPredicted)) residual = beginCarried(step, island, effective_s, how, clock);
   const double enough = std::clamp(how.enough * residual, 1.0, kMostLeft);
   bool converged = false;
   int most = island.tooDense ? 0 : kMostIterations;

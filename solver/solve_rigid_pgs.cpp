@@ -17,6 +17,9 @@ constexpr double kDampingRatio = 10.0;  // of the critical
 // Share of their overlap by which blocks that fall are pushed apart in a step: the weight of what lies on one another sinks into
 // no softness, to come up again.
 constexpr double kFallPush = 0.05;
+// Overlap, in heights, from which on a pass is too little for a fall: a blow then goes through several blocks at once.
+constexpr double kDeep = 0.005;
+constexpr int kDeepPasses = 3;
 // Speed that blocks are pushed apart with at most, in sqrt(g h).
 constexpr double kPushSpeed = 0.86;
 
@@ -150,6 +153,12 @@ bool notePushed(RigidIsland& island) {
   return std::any_of(island.bodies.begin(), island.bodies.end(), [](const RigidBody& body) { return body.pushed; });
 }
 
+// Whether any two blocks overlap by much.
+bool isDeep(const IslandStep& step, const RigidIsland& island) {
+  const double deep = -kDeep * step.simulation.lengths.blockHeight_m;
+  return std::any_of(island.points.begin(), island.points.end(), [&](const ImpulsePoint& p) { return p.gap < deep; });
+}
+
 double kineticEnergy(const std::vector<RigidBody>& bodies) {
   double energy = 0.0;
   for (const RigidBody& body : bodies) {
@@ -173,7 +182,7 @@ void takeBack(std::vector<RigidBody>& bodies, double added) {
 }
 
 // Passes over all points, from the bodies' velocities to the bodies' velocities.
-void runPasses(IslandStep& step, RigidIsland& island, bool push) {
+void runPasses(IslandStep& step, RigidIsland& island, int passes, bool push) {
   const Scene& scene = step.simulation.scene;
   Pass pass;
   pass.step_s = step.drift_s;
@@ -182,8 +191,8 @@ void runPasses(IslandStep& step, RigidIsland& island, bool push) {
   pass.soft = isRigid(scene.settings.method) ? softness(step.drift_s) : Softness{kFallPush / step.drift_s};
   pass.push = push;
   if (push) applyKnown(island.movers, island.points);
-  for (int i = 0; i < scene.settings.iterations; ++i) solvePoints(pass, island.movers, island.points);
-  step.counters.contactEvaluations += static_cast<std::uint64_t>(scene.settings.iterations) * island.points.size();
+  for (int i = 0; i < passes; ++i) solvePoints(pass, island.movers, island.points);
+  step.counters.contactEvaluations += static_cast<std::uint64_t>(passes) * island.points.size();
   writeMovers(island);
 }
 
@@ -197,7 +206,9 @@ void moveRigidPgs(IslandStep& step, RigidIsland& island, bool again) {
   island.energyBefore_j = kineticEnergy(island.bodies);
   applyForces(step);
   gatherPoints(step, island, again);
-  runPasses(step, island, true);
+  int passes = step.simulation.scene.settings.iterations;
+  if (falls && isDeep(step, island)) passes = std::max(passes, kDeepPasses);
+  runPasses(step, island, passes, true);
   island.touches = notePushed(island);
   for (RigidBody& body : island.bodies) {
     moveFreely(body, step.drift_s);
@@ -213,7 +224,7 @@ void moveRigidPgs(IslandStep& step, RigidIsland& island, bool again) {
 void settleRigidPgs(IslandStep& step, RigidIsland& island) {
   moveGaps(island.bodies, island.points);
   readMovers(island);
-  runPasses(step, island, false);
+  runPasses(step, island, step.simulation.scene.settings.iterations, false);
   // Blocks that stand are moved by such pushes alone, slowly, and would be kept from it.
   if (!isRigid(step.simulation.scene.settings.method) && island.touches)
     takeBack(island.bodies, kineticEnergy(island.bodies) - island.energyBefore_j);

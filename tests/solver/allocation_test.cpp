@@ -36,6 +36,7 @@ struct Case {
   Method method = Settings{}.method;
   Sleep sleep = Sleep::off;
   int frames = 40;
+  double tolerance_m = 5e-4;
 };
 
 class AllocationTest : public ::testing::TestWithParam<Case> {};
@@ -49,7 +50,7 @@ TEST_P(AllocationTest, NoneWhenFramesRunAgain) {
   scene.gravity.tilt_deg = what.tilt_deg;
   scene.settings.method = what.method;
   scene.settings.sleep = what.sleep;
-  scene.settings.tolerance_m = 5e-4;
+  scene.settings.tolerance_m = what.tolerance_m;
   if (what.pull_n > 0.0) {
     const int middle = 3 * (what.rows / 2) + 1;
     scene.forces.push_back(
@@ -72,6 +73,7 @@ INSTANTIATE_TEST_SUITE_P(Frames, AllocationTest,
                          ::testing::Values(Case{.name = "Rest"}, Case{.name = "UnevenHeights", .heightsSigma_m = 0.0002},
                                            Case{.name = "Pull", .pull_n = 2.0},
                                            Case{.name = "Collapse", .tilt_deg = 14.5, .frames = 60},
+                                           Case{.name = "FineCollapse", .tilt_deg = 14.5, .frames = 90, .tolerance_m = 2.57e-5},
                                            Case{.name = "FallingAsleep", .rows = 3, .sleep = Sleep::on, .frames = 300},
                                            Case{.name = "Explicit", .tilt_deg = 14.5, .method = Method::semiImplicitEuler},
                                            Case{.name = "Midpoint", .rows = 3, .method = Method::midpoint, .frames = 5},

@@ -173,6 +173,44 @@ TEST(ContactTangent, ATouchingPointThatDoesNotPushResistsNothing) {
   expectTangentsToBeTheDerivative(drawn, 1e-9);
 }
 
+// A block that comes down on its supports within the step: at its end each point pushes as one that has been pressed since it
+// reached the surface, by no more than its depth asks for. A dashpot of the full speed would push as hard from no depth at all,
+// here two and a half times as hard, and no place of the block would balance a force between that and none.
+TEST(ContactTangent, APointThatIsReachedInTheStepPushesFromNothing) {
+  constexpr std::int32_t kLanding = 7;  // the middle block of the top row
+  constexpr double kLift_m = 6.5e-6;    // of 8 micrometres that its points are deep
+  constexpr double kSpeed_m_s = 0.1;
+  DrawnBlock drawn;
+  Engine& engine = *drawn.simulation.engine;
+  for (const std::int32_t pair : drawn.island().touching) {
+    Manifold& manifold = engine.pairs[static_cast<std::size_t>(pair)].manifold;
+    if (manifold.upper == kLanding || manifold.lower == kLanding) static_cast<PointMemory&>(manifold) = PointMemory{};
+  }
+  std::vector<double> lift(kNodeSize * drawn.step.blocks.size());
+  lift[kNodeSize * static_cast<std::size_t>(engine.nodeOf[static_cast<std::size_t>(kLanding)]) + 2] = kLift_m;
+  drawn.move(lift);
+  for (std::size_t c = 0; c < kCorners; ++c) drawn.simulation.state.velocity.add(kLanding, c, Vec3(0.0, 0.0, -kSpeed_m_s));
+  drawn.move(std::vector<double>(lift.size()));
+
+  const ContactLaw& law = drawn.step.law;
+  double most = 0.0;
+  int pushing = 0;
+  for (const std::int32_t pair : drawn.island().touching) {
+    const Manifold& manifold = engine.pairs[static_cast<std::size_t>(pair)].manifold;
+    if (manifold.upper != kLanding && manifold.lower != kLanding) continue;
+    const PointForces points = forcesNow(drawn.simulation, manifold);
+    for (std::size_t i = 0; i < static_cast<std::size_t>(manifold.count); ++i) {
+      if (!(points.depth[i] > 0.0)) continue;
+      ++pushing;
+      most += law.stiffness_n_m * points.depth[i] * (1.0 + law.relaxingRatio + law.dampingTime_s / drawn.step.drift_s);
+    }
+  }
+  ASSERT_GE(pushing, 4);
+  EXPECT_GT(engine.contactForce[kLanding].centre[2], 0.5 * most);
+  EXPECT_LT(engine.contactForce[kLanding].centre[2], 1.01 * most) << "of which friction lifts by what the block leans";
+  expectTangentsToBeTheDerivative(drawn, 1e-10);
+}
+
 // What the factors know and what the contacts are then differ by what is not symmetric alone.
 TEST(ContactTangent, FactorsLackWhatIsNotSymmetric) {
   DrawnBlock drawn;

@@ -43,13 +43,15 @@ TEST_P(FineCollapseTest, TakesNoMoreStepsThanImpactsAskFor) {
   EXPECT_EQ(lying.counters.contactsBornPenetrating, 0U);
   for (const RunResult& result : {falling, lying}) {
     ASSERT_TRUE(result.maxEnergyRise);
-    EXPECT_LE(*result.maxEnergyRise, 1e-6) << "of the energy at the start";
+    // Half way down, where the second run starts, the energy against the floor may be anything, even none.
+    const double scale = std::abs(result.energyStart.total() / falling.energyStart.total());
+    EXPECT_LE(scale * *result.maxEnergyRise, 1e-6) << "of the standing tower's energy";
   }
   PenetrationWorkspace workspace;
   EXPECT_LE(maxPenetration(simulation.state.position, true, workspace).depth, 1e-4);
 }
 
-INSTANTIATE_TEST_SUITE_P(Tolerances, FineCollapseTest, ::testing::Values(1e-5, 2e-5),
+INSTANTIATE_TEST_SUITE_P(Tolerances, FineCollapseTest, ::testing::Values(1e-5, 1.3e-5, 2e-5, 3e-5),
                          [](const auto& tested) { return std::to_string(std::lround(1e6 * tested.param)) + "um"; });
 
 // Three rows land from 2 cm by rigid steps. What lies then is handed back to implicit steps and comes to rest, no deeper than the
