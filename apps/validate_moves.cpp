@@ -32,6 +32,8 @@ RunResult play(const Scene& scene) {
 
 // Heights that are more equal than the 0.02 mm within which those of the scene vary, m, standard deviation.
 constexpr double kEqualHeightsSigma_m = 1e-6;
+// The step in which a block that bears a load is drawn slowly, from 0.
+constexpr std::size_t kLoadedStep = 2;
 
 // The report's sequence, played once a seed.
 struct PlayedSequence {
@@ -55,17 +57,17 @@ PlayedSequence playSequence(const ValidationPlan& plan, Sleep sleep, std::option
   return played;
 }
 
-// One claim that the sequence comes to its end, and one a step: judged, or only reported.
-void addSequence(const PlayedSequence& played, std::string_view setting, bool judged, ValidationSection& section) {
+// One claim that the sequence comes to its end, and one a step; those of the block that bears a load and is drawn slowly may be
+// reported only.
+void addSequence(const PlayedSequence& played, std::string_view setting, bool judgesLoaded, ValidationSection& section) {
   const auto& [moves, results] = played;
-  const auto passed = [&](bool all) { return judged ? std::optional<bool>(all) : std::nullopt; };
   const auto finished = std::count_if(results.begin(), results.end(), [&](const RunResult& result) {
     return result.standing.stands && result.moves.size() == moves.size() && result.moves.back().done &&
            result.moves.back().rested;
   });
   section.claims.push_back({fmt::format("the report's sequence, {}, is played to its end and the tower stands", setting),
-                            judged ? fmt::format("all {}", results.size()) : "reported",
-                            fmt::format("{} of {}", finished, results.size()), passed(finished == std::ssize(results))});
+                            fmt::format("all {}", results.size()), fmt::format("{} of {}", finished, results.size()),
+                            finished == std::ssize(results)});
   for (std::size_t step = 0; step < moves.size(); ++step) {
     std::size_t within = 0;
     double worst_m = 0.0;
@@ -78,10 +80,13 @@ void addSequence(const PlayedSequence& played, std::string_view setting, bool ju
     }
     std::string measured = fmt::format("{:.3f} mm at most, {} of {} seeds", 1e3 * worst_m, within, results.size());
     if (moves[step].kind == MoveKind::put) measured += fmt::format("; the block itself {:.2f} mm", 1e3 * slide_m);
-    section.claims.push_back({fmt::format("step {}, {}, {}: other blocks move", step + 1, describe(moves[step]), setting),
-                              fmt::format("{}{:g} mm beyond rigid settlement", judged ? "" : "reported; with sleep ",
-                                          1e3 * moves[step].allowed_m.value_or(0.0)),
-                              measured, passed(within == results.size())});
+    const bool judged = judgesLoaded || step != kLoadedStep;
+    const bool all = within == results.size();
+    Claim claim{fmt::format("step {}, {}, {}: other blocks move", step + 1, describe(moves[step]), setting),
+                fmt::format("{:g} mm beyond rigid settlement", 1e3 * moves[step].allowed_m.value_or(0.0)), measured};
+    if (judged) claim.passed = all;
+    if (!judged) claim.tolerance = fmt::format("reported: {}, {}", claim.tolerance, all ? "met" : "not met");
+    section.claims.push_back(claim);
   }
 }
 
@@ -191,15 +196,17 @@ ValidationSection validateMoves(const ValidationPlan& plan) {
       "Moves",
       "The report's sequence of moves (its section 6.1.2, scenes/moves.toml) by a hand of at most 5 N, slow at "
       "4 cm/s and quick at 40 cm/s; allowed is what the real tower did. Blocks that are not loose have heights within 0.02 mm of "
-      "one another. With nothing asleep it is judged with heights within 0.006 mm, and reported with those: where they jam the "
-      "block of step 3, a hand that draws it slowly rocks a tower that is awake. "
+      "one another; once more with nothing asleep, and with nothing asleep and heights within 0.006 mm. Heights within 0.02 mm "
+      "may "
+      "jam the block of step 3: a hand that draws it slowly then rocks a tower that is awake, so that this one step is reported "
+      "there. "
       "Then blocks are pulled out of a full tower of 18 rows one by one and put aside, middle blocks along their length and "
       "outer ones sideways, at 4 cm/s, or at 1.5 m/s where friction asks for more than two thirds of the pull that the tower "
       "bears by statics; both ways again. "
       "After a state that differs a sequence is not counted further."};
   addSequence(playSequence(plan, Sleep::on, std::nullopt), "sleep on", true, section);
-  addSequence(playSequence(plan, Sleep::off, kEqualHeightsSigma_m), "sleep off, heights within 0.006 mm", true, section);
   addSequence(playSequence(plan, Sleep::off, std::nullopt), "sleep off", false, section);
+  addSequence(playSequence(plan, Sleep::off, kEqualHeightsSigma_m), "sleep off, heights within 0.006 mm", true, section);
   const std::vector<RemovalSequence> sequences = removalSequences(plan);
   addRemovalsByPulling(sequences, Sleep::on, section);
   addRemovalsByPulling(sequences, Sleep::off, section);

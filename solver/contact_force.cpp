@@ -73,10 +73,11 @@ SPRINGTOWER_INLINE void pointLaw(const LawStep& s, const Lanes& depth, const Lan
       elastic * (1.0 + 1.0 / std::max(law.relaxingRatio, kLeastRelaxingRatio));  // beyond this the branch would pull
   p.relaxed = known ? (relaxed < pushedOut ? relaxed : pushedOut) : zero;
   const Lanes stiffness = s.stiffness * p.scale;
-  // Seen from a step's end such a point has been pressed for a part of the step: its dashpot has closed by its depth, and no jump
-  // at the surface keeps the step from a solution.
-  const Lanes pressed = known | (depth > closing * s.step.advance_s) ? closing : depth * s.perAdvance;
-  Lanes push = stiffness * (elastic + law.relaxingRatio * (elastic - p.relaxed) + law.dampingTime_s * pressed);
+  // Seen from a step's end, a point that is reached in the step has been pressed for a part of it: its dashpot has closed by no
+  // more than its depth, and no jump at the surface keeps the step from a solution. (Where such points begin to push at the depth
+  // they are found at, as in other steps, they do not push yet.)
+  const Lanes damped = known | (depth > closing * s.step.advance_s) ? closing : depth * s.perAdvance;
+  Lanes push = stiffness * (elastic + law.relaxingRatio * (elastic - p.relaxed) + law.dampingTime_s * damped);
   push = touching & (push > zero) & (elastic > zero) ? push : zero;
   if (s.step.kick_s > 0.0 && any(p.scale > one)) {
     // A point that is thrown back within the step is given no more energy than it came with and its spring stores.

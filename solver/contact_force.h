@@ -29,7 +29,8 @@ struct ContactStep {
   double advance_s = 0.0;  ///< s by which the contact memory is behind the positions
   double scaleMost = 1.0;  ///< most a contact that is born now may be stiffened
   /// Where a point that is reached now starts to push: at 1 from the depth it is found at, which adds no energy; at 0 from the
-  /// surface, which an implicit step needs, as it looks at the step's end alone.
+  /// surface, which an implicit step needs, as it looks at the step's end alone. Its dashpot then closes by its depth in the
+  /// step.
   double bornOffset = 1.0;
   double kick_s = 0.0;  ///< s for which the force acts on the velocities of a leapfrog step; 0 in other steps
 };

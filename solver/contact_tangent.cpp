@@ -102,7 +102,7 @@ PointStiffness pointStiffness(const IslandStep& step, const Manifold& manifold, 
                               std::size_t i, double step_s) {
   const ContactLaw& law = step.law;
   const double stiffness = manifold.lower < 0 ? law.floorStiffness_n_m : law.stiffness_n_m;
-  const bool born = manifold.live[i] == 0.0;  // in this step
+  const bool born = manifold.live[i] == 0.0;  // in this step, in which its dashpot has closed by its depth
   const double damping = law.dampingTime_s / step_s;
   const double relaxing = born ? law.relaxingRatio : law.relaxingRatio * law.relaxingTime_s / (law.relaxingTime_s + step.drift_s);
   const double k = stiffness * std::max(1.0, memory.scale[i]);

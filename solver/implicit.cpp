@@ -14,6 +14,8 @@ namespace {
 // Steps of a frame where the user names none: where fewer do not do, and where a hand or a force moves something, at least.
 constexpr int kImplicitSteps = 4;
 constexpr int kForcedSteps = 2;
+// And where rigid steps have just handed a heap back, at least: it hardly moves, and has no swing that steps could damp.
+constexpr int kHandedBackSteps = 2;
 // Frames that rigid steps carry what has fallen before implicit ones are tried again.
 constexpr int kFallenFrames = 30;
 // Angle by which a block may turn in an implicit step, rad: the two-step formula turns along chords.
@@ -78,7 +80,7 @@ int implicitSteps(const IslandStep& step, bool forced, bool known) {
   }
   int least = forced ? kForcedSteps : 1;
   if (!calm && leansOnSleepers(step)) least = kImplicitSteps;
-  if (!calm && !known) least = isHeap(step) ? kForcedSteps : kMostRingingSteps;  // rigid blocks do not ring
+  if (!calm && !known) least = std::max(least, isHeap(step) ? kHandedBackSteps : kMostRingingSteps);
   if (!calm && !forced) least = std::max(least, stepsForWay(step));
   const int steps = std::max(least, stepsForRinging(step, present));
   for (const std::int32_t block : step.blocks) step.engine.clock[static_cast<std::size_t>(block)].implicitSteps = steps;

@@ -265,9 +265,8 @@ double beginCarried(IslandStep& step, ImplicitIsland& island, double effective_s
   const double carried = predict(step, island, effective_s, clock);
   if (how.near == 0.0 || !(carried > how.near)) return carried;
   goBack(step);
-  evaluateForces(step, step.simulation.state, step.simulation.state.velocity, 0.0, Memory::trial);
-  island.moved = false;
-  const double still = findResidual(step, island, effective_s);
+  for (const std::int32_t block : step.blocks) updateVelocities(step, static_cast<std::size_t>(block), effective_s);
+  const double still = evaluateResidual(step, island, effective_s, clock);
   return still < carried ? still : predict(step, island, effective_s, clock);
 }
 

@@ -99,13 +99,22 @@ bool startInEquilibrium(IslandStep& step) {
   step.law.dampingTime_s = std::min(damping_s, kMostDamping * step.simulation.lengths.fallTime_s);
   Gravity gravity = step.simulation.scene.gravity;
   const double tilt_deg = gravity.tilt_deg;
+  const auto startAgain = [&] {
+    step.counters = before;
+    rewindIsland(step);
+    for (const std::int32_t block : step.blocks) {  // nothing has moved yet
+      for (std::size_t a = 0; a < 3; ++a) {
+        const auto b = static_cast<std::size_t>(block);
+        std::copy_n(step.simulation.state.position.values(a, b), kCorners, step.engine.previous.values(a, b));
+      }
+    }
+    findTouching(step);
+  };
   const auto stands = [&](double share) {
     gravity.tilt_deg = share * tilt_deg;
     step.gravity = gravity.at(step.simulation.time_s);
     if (settle(step)) return true;
-    step.counters = before;
-    rewindIsland(step);
-    findTouching(step);
+    startAgain();
     return false;
   };
   bool rests = stands(1.0);
@@ -115,10 +124,12 @@ bool startInEquilibrium(IslandStep& step) {
     double most = 0.0;
     for (double least = 1.0; least - most > kLeanStep;) {
       const double middle = 0.5 * (least + most);
-      (stands(middle) ? most : least) = middle;
-      step.counters = before;
-      rewindIsland(step);
-      findTouching(step);
+      if (stands(middle)) {
+        most = middle;
+        startAgain();
+      } else {
+        least = middle;
+      }
     }
     rests = stands(most);
   }
