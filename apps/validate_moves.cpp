@@ -60,7 +60,8 @@ PlayedSequence playSequence(const ValidationPlan& plan, Sleep sleep, std::option
 // One claim that the sequence comes to its end, and one a step; those of the block that bears a load and is drawn slowly may be
 // reported only.
 void addSequence(const PlayedSequence& played, std::string_view setting, bool judgesLoaded, ValidationSection& section) {
-  const auto& [moves, results] = played;
+  const std::vector<Move>& moves = played.moves;
+  const std::vector<RunResult>& results = played.results;
   const auto finished = std::count_if(results.begin(), results.end(), [&](const RunResult& result) {
     return result.standing.stands && result.moves.size() == moves.size() && result.moves.back().done &&
            result.moves.back().rested;
