@@ -130,7 +130,7 @@ std::vector<PulledBlock> pulledBlocks(bool longForm) {
   add("18 rows, row 9, side, sideways", tower, 8, 1, 3.0, true);
   add("loose, lying between rows", bitCodeScene("(111)-(111)-(1L1)-(111)-(111)"), 2, 2, 2.0);
   if (!longForm) return pulled;
-  for (int row = 0; row < 17; ++row) {
+  for (int row = 0; row < 18; ++row) {
     for (int position = 1; position <= 3; ++position) {
       const std::string name = fmt::format("18 rows, row {}, position {}", row + 1, position);
       add(name, tower, row, position, 3.0);

@@ -12,6 +12,7 @@
 #include "solver/rigid_island.h"
 #include "solver/simulation.h"
 #include "solver/sparse_factors.h"
+#include "solver/support.h"
 
 #include <array>
 #include <cstdint>
@@ -76,6 +77,25 @@ struct PushChange {
   bool begunOrLost = false;    ///< whether a contact has come or gone
 };
 
+/// How a sleeping block was pushed when all sleepers stayed.
+struct KnownPush {
+  std::int32_t block = -1;
+  Vec3 force = Vec3::Zero();   ///< N, change
+  Vec3 torque = Vec3::Zero();  ///< N m, about the block's centre
+};
+
+/// What looks for sleepers that give way: working space, and what it last found to stay.
+struct LoadPath {
+  std::vector<std::int32_t> start;  ///< pairs of sleeper b with sleepers and the floor are pairs[start[b] .. start[b + 1]]
+  std::vector<std::int32_t> pairs;
+  std::vector<std::int32_t> blocks;  ///< sleepers that touch pushed ones, directly or through others, from the top down
+  std::vector<std::int32_t> parent;  ///< of groups above the level, -1 below it, [blocks]
+  std::vector<std::int32_t> open;    ///< pairs across the level
+  std::vector<std::int32_t> groups;  ///< that are pushed
+  std::vector<KnownPush> known;      ///< of all pushed blocks, in their order; none where some gave way
+  std::vector<SupportPoint> supports;
+};
+
 /// Islands of at least this many blocks run their kernels on many threads; smaller ones fit one core's cache.
 inline constexpr std::size_t kParallelBlocks = 256;
 
@@ -134,14 +154,15 @@ struct Engine {
   std::vector<std::int32_t> toWake;       ///< working space
   std::vector<std::int32_t> pushed;       ///< working space: sleeping blocks with awake neighbours
   std::vector<PushChange> change;         ///< working space, [blocks]
-  std::vector<std::int32_t> restless;     ///< working space
-  std::vector<std::int32_t> parent;       ///< working space of connectedBlocks
-  std::vector<std::uint8_t> touched;      ///< working space: 1 where a block touches one of toWake, directly or through others
-  std::vector<std::uint8_t> joined;       ///< working space: 1 where a block touches a restless one, directly or through others
-  std::vector<RestWindow> rest;           ///< [blocks]
-  Vec3 gravitySlept = Vec3::Zero();       ///< m/s2, gravity when the last block fell asleep
-  ReportState report;                     ///< of method `report`; empty for the others
-  MotionState frameStart;                 ///< what a frame that has to be run again starts from
+  LoadPath loadPath;
+  std::vector<std::int32_t> restless;  ///< working space
+  std::vector<std::int32_t> parent;    ///< working space of connectedBlocks
+  std::vector<std::uint8_t> touched;   ///< working space: 1 where a block touches one of toWake, directly or through others
+  std::vector<std::uint8_t> joined;    ///< working space: 1 where a block touches a restless one, directly or through others
+  std::vector<RestWindow> rest;        ///< [blocks]
+  Vec3 gravitySlept = Vec3::Zero();    ///< m/s2, gravity when the last block fell asleep
+  ReportState report;                  ///< of method `report`; empty for the others
+  MotionState frameStart;              ///< what a frame that has to be run again starts from
   std::vector<BlockClock> frameStartClock;
   std::vector<FewPoints> frameStartPoints;  ///< by position in `pairs`: what the points of those that touch remember
   std::vector<std::uint8_t> pairKept;       ///< 1 where a pair has changed since otherwise than in that

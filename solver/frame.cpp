@@ -293,10 +293,15 @@ void stepFrame(Simulation& simulation) {
   if (engine.awakeCount > 0) {
     double margin = kSweepMargin * simulation.lengths.blockHeight_m;
     findNearPairs(simulation, margin);
-    while (!runIslands(simulation)) {
-      // Something was hit and left its swept box: the frame is run again with a wider one, so that no meeting is missed.
+    while (true) {
+      // The frame is run again where something was hit and left its swept box, with a wider one, so that no meeting is missed;
+      // and where sleepers gave way to what was done to them, with these awake.
+      if (wakeWhatIsHit(simulation)) findNearPairs(simulation, margin);
+      const bool inside = runIslands(simulation);
+      const bool gaveWay = inside && wakeWhatGaveWay(simulation);
+      if (inside && !gaveWay) break;
       ++simulation.counters.replayedFrames;
-      margin *= 4.0;
+      if (!inside) margin *= 4.0;
       rewindFrame(simulation);
       if (simulation.scene.settings.method == Method::report) rewindReportFrame(simulation);
       findNearPairs(simulation, margin);

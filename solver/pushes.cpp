@@ -1,6 +1,7 @@
 #include "solver/pushes.h"
 
 #include "solver/forces_now.h"
+#include "solver/load_path.h"
 
 #include <algorithm>
 #include <cmath>
@@ -113,13 +114,14 @@ void rememberPushes(Simulation& simulation, std::span<const std::uint8_t> staysA
   }
 }
 
-void findBlocksToWake(Simulation& simulation) {
+bool findBlocksToWake(Simulation& simulation) {
   Engine& engine = *simulation.engine;
   engine.toWake.clear();
   engine.pushed.clear();
   engine.change.resize(simulation.asleep.size());
   engine.joined.assign(simulation.asleep.size(), 0);
   bool changed = false;
+  bool gives = false;
   for (const std::int32_t at : engine.islandPairs) {
     const NearPair& pair = engine.pairs[static_cast<std::size_t>(at)];
     if (pair.b < 0 || sleeps(simulation, pair.a) == sleeps(simulation, pair.b)) continue;
@@ -138,9 +140,11 @@ void findBlocksToWake(Simulation& simulation) {
     for (const std::int32_t block : engine.pushed) {
       if (!bears(simulation, block)) engine.toWake.push_back(block);
     }
+    if (simulation.scene.settings.sleep == Sleep::on) gives = findWhatGivesWay(simulation);
   }
   // A pair that the sweep has dropped pushes no more.
   engine.toWake.insert(engine.toWake.end(), engine.lostPartner.begin(), engine.lostPartner.end());
+  return gives;
 }
 
 }  // namespace springtower

@@ -14,7 +14,8 @@ namespace springtower {
 void rememberPushes(Simulation& simulation, std::span<const std::uint8_t> staysAwake);
 
 /// Fills engine.toWake with the sleeping blocks that have lost or gained a contact, or whose other contacts cannot bear what
-/// awake neighbours do to them now.
-void findBlocksToWake(Simulation& simulation);
+/// awake neighbours do to them now; and those that give way together (solver/load_path). Returns whether there are any of the
+/// latter: what awake neighbours did in this frame was done to blocks that should have moved.
+bool findBlocksToWake(Simulation& simulation);
 
 }  // namespace springtower

@@ -1,6 +1,8 @@
 #include "solver/rest.h"
 
+#include "narrowphase/separation.h"
 #include "solver/inertia.h"
+#include "solver/meeting.h"
 #include "solver/pushes.h"
 
 #include <algorithm>
@@ -12,6 +14,8 @@ namespace {
 
 // How much longer than others a block is at rest that falls asleep beside restless ones.
 constexpr double kPatience = 4.0;
+// Speed from which on a block hits a sleeper rather than being laid on it, in sqrt(g h).
+constexpr double kHit = 0.05;
 // What gravity may have turned since the last block fell asleep, in g.
 constexpr double kWakeGravity = 1e-4;
 
@@ -77,6 +81,26 @@ void judgeAsReported(Simulation& simulation, std::size_t b) {
   simulation.restTime_s[b] = moved < simulation.scene.settings.reportDisableDistance_m ? simulation.scene.settings.frame_s : 0.0;
 }
 
+// Whether an awake block may hit the sleeper of a pair in this frame, faster than a hand lays a block down.
+bool isHit(const Simulation& simulation, const NearPair& pair, std::int32_t awake) {
+  if (pair.manifold.touch != Touch::apart && anyPointTouches(pair.manifold)) return false;
+  const auto block = static_cast<std::size_t>(awake);
+  const bool falls = simulation.restTime_s[block] == 0.0 && block != index(simulation.tether.block);
+  const double frame_s = simulation.scene.settings.frame_s;
+  const double slowest = kHit * speedScale(simulation);
+  if (!falls && fastestCorner(simulation.state.velocity, block, Vec3::Zero()) <= slowest) return false;
+  const CornerArray& position = simulation.state.position;
+  const Separation separation = findSeparation(cornersOf(position, static_cast<std::size_t>(pair.a)),
+                                               cornersOf(position, static_cast<std::size_t>(pair.b)));
+  const double gap = std::max(0.0, separation.best());
+  const Vec3 towards = pair.a == awake ? Vec3(-separation.bestNormal()) : separation.bestNormal();
+  double closing = 0.0;
+  for (std::size_t c = 0; c < kCorners; ++c) closing = std::max(closing, simulation.state.velocity.at(block, c).dot(towards));
+  const double fall = falls ? std::max(0.0, simulation.scene.gravity.at(simulation.time_s).dot(towards)) : 0.0;
+  if (gap > frame_s * (closing + 0.5 * fall * frame_s)) return false;
+  return closing * closing + 2.0 * fall * gap > slowest * slowest;
+}
+
 double restNeeded(const Simulation& simulation) {
   return simulation.scene.settings.sleep == Sleep::report ? simulation.scene.settings.frame_s
                                                           : simulation.scene.settings.restTime * timeScale(simulation);
@@ -85,6 +109,7 @@ double restNeeded(const Simulation& simulation) {
 void fallAsleep(Simulation& simulation, std::size_t b) {
   Engine& engine = *simulation.engine;
   simulation.asleep[b] = 1;
+  engine.loadPath.known.clear();
   BlockClock& clock = engine.clock[b];
   clock.falls = clock.hasFallen = false;
   clock.explicitFrames = 0;
@@ -169,6 +194,7 @@ void putToSleep(Simulation& simulation) {
 void wake(Simulation& simulation, std::size_t block) {
   if (simulation.asleep[block] == 0) return;
   simulation.asleep[block] = 0;
+  simulation.engine->loadPath.known.clear();
   simulation.restTime_s[block] = 0.0;
   ++simulation.engine->awakeCount;
   const RigidMotion motion = rigidMotion(simulation.state, block);
@@ -190,6 +216,38 @@ void wakeForFrame(Simulation& simulation) {
   if (simulation.tether.block != kFloor) wake(simulation, index(simulation.tether.block));
 }
 
+bool wakeWhatIsHit(Simulation& simulation) {
+  Engine& engine = *simulation.engine;
+  if (simulation.scene.settings.sleep != Sleep::on || engine.awakeCount == simulation.asleep.size()) return false;
+  engine.toWake.clear();
+  for (const std::int32_t at : engine.islandPairs) {
+    const NearPair& pair = engine.pairs[static_cast<std::size_t>(at)];
+    if (pair.b < 0 || sleeps(simulation, pair.a) == sleeps(simulation, pair.b)) continue;
+    const bool sleepsA = sleeps(simulation, pair.a);
+    if (isHit(simulation, pair, sleepsA ? pair.b : pair.a)) engine.toWake.push_back(sleepsA ? pair.a : pair.b);
+  }
+  if (engine.toWake.empty()) return false;
+  engine.touchingEdges.clear();
+  for (const NearPair& pair : engine.pairs) {
+    if (pair.b >= 0 && pair.manifold.touch != Touch::apart && sleeps(simulation, pair.a) && sleeps(simulation, pair.b))
+      engine.touchingEdges.push_back({pair.a, pair.b});
+  }
+  engine.touched.resize(simulation.asleep.size());
+  connectedBlocks(engine.touchingEdges, engine.toWake, engine.parent, engine.touched);
+  for (std::size_t b = 0; b < engine.touched.size(); ++b) {
+    if (engine.touched[b] != 0) wake(simulation, b);
+  }
+  return true;
+}
+
+bool wakeWhatGaveWay(Simulation& simulation) {
+  Engine& engine = *simulation.engine;
+  engine.toWake.clear();
+  if (engine.awakeCount == simulation.asleep.size() || !findBlocksToWake(simulation)) return false;
+  for (const std::int32_t block : engine.toWake) wake(simulation, static_cast<std::size_t>(block));
+  return true;
+}
+
 void updateRest(Simulation& simulation) {
   Engine& engine = *simulation.engine;
   const Sleep sleep = simulation.scene.settings.sleep;
@@ -198,10 +256,7 @@ void updateRest(Simulation& simulation) {
     sleep == Sleep::report ? judgeAsReported(simulation, b) : judge(simulation, b);
   }
   if (sleep == Sleep::off) return;
-  if (engine.awakeCount < simulation.asleep.size()) {
-    findBlocksToWake(simulation);
-    for (const std::int32_t block : engine.toWake) wake(simulation, static_cast<std::size_t>(block));
-  }
+  for (const std::int32_t block : engine.toWake) wake(simulation, static_cast<std::size_t>(block));
   putToSleep(simulation);
 }
 

@@ -8,8 +8,18 @@ namespace springtower {
 /// fell asleep.
 void wakeForFrame(Simulation& simulation);
 
-/// After a frame: judges the rest of every awake block by its rigid motion and its balance, wakes sleeping blocks whose awake
-/// neighbours push them otherwise than when they fell asleep, and puts groups of touching blocks to sleep that are all at rest.
+/// Once a frame's near pairs are found: wakes sleeping blocks that awake ones may hit in it, with all sleepers they touch,
+/// directly or through others, as a blow is over before what it does can be looked at. Returns whether there were any; near pairs
+/// have then to be found again.
+bool wakeWhatIsHit(Simulation& simulation);
+
+/// At the end of a frame: finds the sleeping blocks to wake, whose awake neighbours push them otherwise than when they fell
+/// asleep (engine.toWake). Where some of them gave way all are woken, and the frame has to be run again from its start: returns
+/// whether it has.
+bool wakeWhatGaveWay(Simulation& simulation);
+
+/// After that: judges the rest of every awake block by its rigid motion and its balance, wakes what wakeWhatGaveWay has found,
+/// and puts groups of touching blocks to sleep that are all at rest.
 void updateRest(Simulation& simulation);
 
 /// Wakes one block.

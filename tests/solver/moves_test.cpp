@@ -147,7 +147,9 @@ TEST(Moves, AWeakHandGivesUp) {
 }
 
 // The removals `removal-0-2` of the reference set, by pulling: statics lets the tower stand after five of them, and not after the
-// sixth. Outer blocks are drawn sideways, the shorter way: along their length they drag round what lies on their end.
+// sixth. Outer blocks are drawn sideways, the shorter way: along their length they drag round what lies on their end. The second
+// one is jerked out: friction asks for 0.69 N eight rows above the first one's place, which is 0.10 N m about the edge of what is
+// left there, and the twelve rows on it bear 0.09.
 TEST(Moves, BlocksPulledOutOneByOneLeaveWhatStaticsSays) {
   Scene scene = towerScene(18);
   Move away;
@@ -160,9 +162,10 @@ TEST(Moves, BlocksPulledOutOneByOneLeaveWhatStaticsSays) {
     scene.moves.push_back(away);
   }
   for (Move& move : scene.moves) move.limit_n = 20.0;
+  scene.moves[2].speed_m_s = 1.5;
   Simulation simulation(scene);
   const RunResult result = play(simulation);
-  EXPECT_GE(result.moves.size(), 10U);
+  ASSERT_GE(result.moves.size(), 10U);
   EXPECT_LT(result.moves.size(), 12U);
   for (std::size_t i = 0; i < 10; ++i) EXPECT_TRUE(result.moves.at(i).done);
   EXPECT_FALSE(result.standing.stands);

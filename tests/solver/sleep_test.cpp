@@ -120,6 +120,65 @@ TEST(Sleep, WhatTipsDoesNotSleepBeforeItFalls) {
   }
 }
 
+Move take(int row, int position, const Vec3& towards) {
+  Move move;
+  move.row = row;
+  move.position = position;
+  move.towards = towards;
+  return move;
+}
+
+RunResult play(Simulation& simulation) {
+  RunOptions options;
+  options.seconds = 30.0;
+  options.stopWhenFallen = true;
+  options.measureEveryFrame = false;
+  return runScene(simulation, options);
+}
+
+// Without block 5:1 the twelve rows above stand on two blocks. What friction asks of a hand that draws 13:1 outwards, 0.4 of the
+// four rows on it and of its own, both a third, is 0.69 N; eight rows above that storey it is 0.10 N m about its edge, and twelve
+// rows bear 0.09: the tower goes over. The hand touches sleepers that all bear what is done to them one by one.
+TEST(Sleep, AHandDrawsATowerOverAsleepAsAwake) {
+  Scene scene = towerScene(18);
+  std::erase_if(scene.blocks, [](const BlockSpec& block) { return block.row == 5 && block.position == 1; });
+  scene.moves = {take(13, 1, -Vec3::UnitX())};
+  Simulation asleep(scene);
+  const RunResult result = play(asleep);
+  scene.settings.sleep = Sleep::off;
+  Simulation awake(scene);
+  const RunResult expected = play(awake);
+  ASSERT_TRUE(expected.fallTime_s.has_value());
+  ASSERT_TRUE(result.fallTime_s.has_value());
+  EXPECT_NEAR(*result.fallTime_s, *expected.fallTime_s, 0.05 * *expected.fallTime_s);
+  EXPECT_EQ(result.standing.block, expected.standing.block);
+}
+
+// A block dropped from 2 cm, that hardly rebounds, shifts a tower of three rows by half a millimetre; sleepers that took the blow
+// like the floor moved by 0.004 mm. They differ by 0.1 %; 2 % are allowed,
+// as a slide amplifies what is left.
+TEST(Sleep, ABlockThatHitsSleepersMovesThemAsAwake) {
+  Scene scene = towerScene(3);
+  Move drop;
+  drop.kind = MoveKind::put;
+  drop.row = 3;
+  drop.position = 1;
+  drop.drop_m = 0.02;
+  scene.moves = {take(2, 3, Vec3::UnitX()), drop};
+  scene.settings.tolerance_m = 1e-5;
+  scene.settings.dampingTime = 0.01;
+  Simulation asleep(scene);
+  const RunResult result = play(asleep);
+  scene.settings.sleep = Sleep::off;
+  Simulation awake(scene);
+  const RunResult expected = play(awake);
+  ASSERT_EQ(result.moves.size(), 2U);
+  ASSERT_EQ(expected.moves.size(), 2U);
+  EXPECT_GT(expected.moves[1].moved_m, 3e-4) << "the blow has to be felt";
+  EXPECT_NEAR(result.moves[1].moved_m, expected.moves[1].moved_m, 0.02 * expected.moves[1].moved_m);
+  EXPECT_EQ(asleepBlocks(asleep), 9U) << "and they sleep again";
+}
+
 // The report's test: a block is disabled when its particles have moved little in one frame.
 TEST(Sleep, AsReportedDisablesAtRest) {
   Scene scene = towerScene(2);

@@ -1,0 +1,35 @@
+#pragma once
+
+#include "core/state.h"
+
+#include <cstdint>
+#include <span>
+
+namespace springtower {
+
+/// What a point does on which a body rests.
+enum class SupportState : std::uint8_t { sticks, slides, lifted };
+
+/// A point on which a rigid body rests, and what it takes up of a change.
+struct SupportPoint {
+  Vec3 arm = Vec3::Zero();     ///< m, from where the change's torque is taken about
+  Vec3 normal = Vec3::Zero();  ///< unit, towards the body
+  Vec3 force = Vec3::Zero();   ///< N, on the body before the change
+  Vec3 added = Vec3::Zero();   ///< N, by the change
+  Vec3 slide = Vec3::Zero();   ///< N, its friction where it slides
+  SupportState state = SupportState::sticks;
+};
+
+struct SupportLaw {
+  double tangentialRatio = 1.0;  ///< tangential stiffness over normal, > 0
+  double friction = 0.0;         ///< Coulomb's coefficient
+};
+
+/// Lets the points under a rigid body take up a change of what is done to it: a force (N) and a torque (N m). Each is a spring,
+/// all as stiff, that only pushes and whose friction is bounded by Coulomb's cone: points that would pull lift off, those that
+/// reach the cone slide, and the others take over what they give up, round after round; none comes back. Fills `added` of each
+/// point. Returns false where those that are left cannot hold the body, which then tips, slides or turns; without points as well.
+/// `length_m` is a length of the body, that turns and moves are weighed with alike.
+bool takeUp(std::span<SupportPoint> points, const Vec3& force, const Vec3& torque, double length_m, const SupportLaw& law);
+
+}  // namespace springtower
