@@ -1,5 +1,6 @@
 #include "apps/moves_report.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -23,6 +24,28 @@ std::string outcomeOf(const Move& move, const MoveResult& result) {
   if (!result.rested) return "not at rest";
   if (!move.allowed_m) return "";
   return fmt::format("{} {:g} mm", isWithin(move, result) ? "within" : "beyond", 1e3 * *move.allowed_m);
+}
+
+constexpr std::size_t kColumns = 12;  // blocks side by side
+
+// A table of how far each other block moved in each step, some blocks side by side.
+void printEach(const RunResult& result) {
+  if (result.moves.empty()) return;
+  const std::size_t blocks = result.moves.front().each_m.size();
+  for (std::size_t first = 0; first < blocks; first += kColumns) {
+    const std::size_t last = std::min(first + kColumns, blocks);
+    fmt::print("\n  {:<16}", "moved mm, block");
+    for (std::size_t b = first; b < last; ++b) fmt::print("{:>9}", b);
+    fmt::print("\n");
+    for (std::size_t i = 0; i < result.moves.size(); ++i) {
+      const MoveResult& what = result.moves[i];
+      fmt::print("  {:<16}", fmt::format("step {}", i + 1));
+      for (std::size_t b = first; b < last; ++b) {
+        fmt::print("{:>9}", b == index(what.block) ? "-" : fmt::format("{:.4f}", 1e3 * what.each_m[b]));
+      }
+      fmt::print("\n");
+    }
+  }
 }
 
 }  // namespace
@@ -78,6 +101,7 @@ void printMoves(const Simulation& simulation, const RunResult& result) {
                what.force_n, outcomeOf(move, what));
   }
   fmt::print("  {} of {} moves made\n", result.moves.size(), simulation.scene.moves.size());
+  printEach(result);
 }
 
 }  // namespace springtower

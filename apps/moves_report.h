@@ -10,7 +10,7 @@ namespace springtower {
 /// new set of blocks.
 nlohmann::ordered_json movesJson(const Simulation& simulation, const RunResult& result);
 
-/// Prints a line a move.
+/// Prints a line a move, then how far each other block moved in each of them.
 void printMoves(const Simulation& simulation, const RunResult& result);
 
 /// "take 3-1" or "put 7-2": a move in a few words, rows counted from 0 as in scene files.

@@ -84,6 +84,17 @@ DrawnOut drawOut(Scene scene, int row, Sleep sleep) {
   return drawn;
 }
 
+// Counts frame by frame: "9, 3 x 110, 12".
+std::string countsByFrame(const std::vector<double>& counts) {
+  std::string text;
+  for (std::size_t i = 0, same = 0; i < counts.size(); i += same) {
+    same = 1;
+    while (i + same < counts.size() && counts[i + same] == counts[i]) ++same;
+    text += fmt::format("{}{:g}{}", text.empty() ? "" : ", ", counts[i], same > 1 ? fmt::format(" x {}", same) : "");
+  }
+  return text;
+}
+
 // Two crossed blocks, the upper one's centre of mass beyond the lower one's edge by so much.
 Scene overhanging(double over_m, Sleep sleep) {
   TowerOptions options;
@@ -169,6 +180,7 @@ ValidationSection validateSleep(const ValidationPlan& plan) {
                               fmt::format("median {:g}, most {:g} of {} over {} frames", median, quantile(drawn.awake, 1.0),
                                           what.scene.blocks.size(), drawn.awake.size()),
                               drawn.freed && drawn.stands && median <= most});
+    section.notes.push_back(fmt::format("{}, awake blocks frame by frame: {}", what.name, countsByFrame(drawn.awake)));
     PlotLine line{what.name, {}, Marker::none};
     for (std::size_t i = 0; i < drawn.awake.size(); ++i) line.points.push_back({static_cast<double>(i), drawn.awake[i]});
     plot.lines.push_back(line);

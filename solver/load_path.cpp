@@ -12,7 +12,7 @@ namespace {
 // row, a third of what bears the rows above, asks the others for half of their friction when it is drawn.
 constexpr double kMargin = 1.5;
 // Contacts below a block rather than beside it, by the cosine.
-constexpr double kUpwards = 0.5;
+constexpr double kBeneath = 0.5;
 // Change of what is done to a block, as a share of what goes through it, that is not worth asking again.
 constexpr double kSame = 0.05;
 // Change of force, in a block's weights, that is felt at all; of torque, in its weight times its height.
@@ -129,7 +129,7 @@ Vec3 findSupports(Simulation& simulation, std::int32_t group, const Vec3& up) {
     if (rootOf(path.parent, above) != group) continue;
     const PointForces points = forcesNow(simulation, pair.manifold);
     const double sense = pair.manifold.upper == above ? 1.0 : -1.0;
-    if (!(sense * points.direction.dot(up) > kUpwards)) continue;
+    if (!(sense * points.direction.dot(up) > kBeneath)) continue;
     for (std::size_t i = 0; i < static_cast<std::size_t>(pair.manifold.count); ++i) {
       if (!(points.normal[i] > 0.0)) continue;
       const Vec3 friction{points.friction[i][0], points.friction[i][1], points.friction[i][2]};

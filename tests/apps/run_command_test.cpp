@@ -313,5 +313,34 @@ TEST(RunCommand, DivergenceHasItsOwnExitCodeAndKeepsThePoses) {
   EXPECT_FALSE(std::filesystem::exists(scratch.file("report.json")));
 }
 
+// After the line of each move a table says how far every other block moved in it, as the report does; the block in the hand has
+// a dash.
+TEST(RunMoves, PrintsHowFarEachOtherBlockMoved) {
+  const ScratchFolder scratch;
+  std::ofstream(scratch.file("take.toml")) << "[tower]\nrows = 5\n[[moves]]\ndo = \"take\"\nrow = 3\nposition = 2\n"
+                                              "towards = \"+y\"\n";
+  const ProgramResult result = run({scratch.file("take.toml"), "--report", scratch.file("report.json")});
+  ASSERT_EQ(result.exitCode, 0) << result.error;
+  const Json moved = Json::parse(contentOf(scratch.file("report.json"))).at("moves").at(0).at("moved_mm");
+  ASSERT_EQ(moved.size(), 15U);
+  std::vector<std::string> cells;
+  for (const std::string& line : linesOf(result.output)) {
+    if (!line.starts_with("  step 1")) continue;
+    std::istringstream words(line);
+    std::string word;
+    words >> word >> word;
+    while (words >> word) cells.push_back(word);
+  }
+  ASSERT_EQ(cells.size(), 15U);
+  constexpr std::size_t kTaken = 10;
+  for (std::size_t b = 0; b < cells.size(); ++b) {
+    if (b == kTaken) {
+      EXPECT_EQ(cells[b], "-");
+    } else {
+      EXPECT_NEAR(std::stod(cells[b]), moved.at(b).get<double>(), 5e-5) << b;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace springtower
