@@ -17,7 +17,6 @@ constexpr double kSway_deg = 0.1;
 constexpr double kSway_hz = 1.0;
 constexpr double kProfileHeightsSigma_m = 0.0002;
 constexpr double kPullSpeed_m_s = 0.04;
-constexpr double kSettingOut_s = 0.2;   // in which the hand comes to its speed, so that it does not start the tower swaying
 constexpr double kPullStart_m = 0.001;  // from here on the block slides
 constexpr double kPullLongest_s = 5.0;
 constexpr double kAsleepLongest_s = 60.0;
@@ -97,15 +96,14 @@ void startPulling(PreparedScene& scene, int rows, const Deadline& deadline) {
   Simulation& simulation = scene.simulation;
   const auto block = static_cast<std::size_t>(pulledBlock(simulation.scene, rows));
   const Vec3 direction = simulation.scene.blocks[block].orientation * Vec3::UnitX();
-  scene.hand = drawingFrom(simulation, blockId(block), direction, 0.0, kStrongest_n);
-  scene.setOut_s = simulation.time_s;
+  scene.hand = drawingFrom(simulation, blockId(block), direction, kPullSpeed_m_s, kStrongest_n);
   scene.leftOut.assign(simulation.scene.blocks.size(), 0);
   scene.leftOut[block] = 1;
   const Vec3 start = centre(simulation.state.position, block);
   while ((centre(simulation.state.position, block) - start).dot(direction) < kPullStart_m) {
-    if (deadline.passed() || simulation.time_s > scene.setOut_s + kPullLongest_s) {
-      scene.failure = fmt::format("the block does not slide yet after {:.2f} s of pulling, now with {:.2f} N",
-                                  simulation.time_s - scene.setOut_s, gripForce(simulation).force.norm());
+    if (deadline.passed() || scene.hand.drawn_s > kPullLongest_s) {
+      scene.failure = fmt::format("the block does not slide yet after {:.2f} s of pulling, now with {:.2f} N", scene.hand.drawn_s,
+                                  gripForce(simulation).force.norm());
       return;
     }
     scene.step();
@@ -116,10 +114,7 @@ void startPulling(PreparedScene& scene, int rows, const Deadline& deadline) {
 
 void PreparedScene::step() {
   const BlockId held = hand.hand.block;
-  if (held != kFloor) {
-    hand.speed_m_s = kPullSpeed_m_s * std::min(1.0, (simulation.time_s - setOut_s) / kSettingOut_s);
-    drawOn(hand, contactForcesOn(simulation, held), simulation);
-  }
+  if (held != kFloor) drawOn(hand, contactForcesOn(simulation, held), simulation);
   stepFrame(simulation);
 }
 

@@ -20,8 +20,7 @@ struct PreparedScene {
   explicit PreparedScene(const ProfileCase& what) : simulation(sceneOf(what)) {}
 
   Simulation simulation;
-  Draw hand;              ///< that pulls a block; it holds none in other scenes
-  double setOut_s = 0.0;  ///< when it set out
+  Draw hand;  ///< that pulls a block; it holds none in other scenes
   std::shared_ptr<const Snapshot> snapshot;
   Draw handKept;                      ///< the hand of the snapshot
   std::vector<std::uint8_t> leftOut;  ///< 1 for blocks that need not stand: the pulled one, a pile's; [blocks] or empty

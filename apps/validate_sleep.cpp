@@ -40,6 +40,7 @@ struct SleepPull {
   Scene scene;
   int row;
   bool loose = false;
+  bool stands = true;  // what is to come of it
   DrawnOut asleep = {};
   DrawnOut awake = {};
 };
@@ -134,8 +135,8 @@ ValidationSection validateSleep(const ValidationPlan& plan) {
   std::vector<SleepPull> pulls;
   const Scene tower = towerScene(18);
   const Scene tall = towerScene(3 * 18);
-  const auto add = [&](const Scene& scene, int rows, int row) {
-    pulls.push_back({fmt::format("{} rows, row {}, middle", rows, row), scene, row - 1});
+  const auto add = [&](const Scene& scene, int rows, int row, bool stands = true) {
+    pulls.push_back({fmt::format("{} rows, row {}, middle", rows, row), scene, row - 1, false, stands});
   };
   for (const int row : {2, 9, 16}) add(tower, 18, row);
   TowerOptions loose;
@@ -144,7 +145,8 @@ ValidationSection validateSleep(const ValidationPlan& plan) {
   add(tall, 54, 52);
   if (plan.longForm) {
     for (const int row : {15, 14}) add(tower, 18, row);
-    for (const int row : {51, 50, 45, 38}) add(tall, 54, row);
+    for (const int row : {51, 50}) add(tall, 54, row);
+    for (const int row : {45, 38}) add(tall, 54, row, false);
   }
   tbb::parallel_for(std::size_t{0}, 2 * pulls.size(), [&](std::size_t i) {
     tbb::this_task_arena::isolate([&] {
@@ -163,10 +165,11 @@ ValidationSection validateSleep(const ValidationPlan& plan) {
     const auto words = [](const DrawnOut& of) {
       return fmt::format("{}, {}", of.freed ? "free" : "not free", of.stands ? "stands" : "falls");
     };
-    section.claims.push_back({what.name + ": drawn out", "as with nothing asleep",
-                              fmt::format("{}; with nothing asleep {}", words(drawn), words(what.awake)),
-                              drawn.freed == what.awake.freed && drawn.stands == what.awake.stands});
-    if (!what.awake.stands) continue;  // all of it moves
+    const auto expected = [&](const DrawnOut& of) { return what.stands ? of.freed && of.stands : !of.stands; };
+    section.claims.push_back(
+        {what.name + ": drawn out", what.stands ? "free within 8 s, the tower stands, both ways" : "falls, both ways",
+         fmt::format("{}; with nothing asleep {}", words(drawn), words(what.awake)), expected(drawn) && expected(what.awake)});
+    if (!what.stands) continue;  // all of it moves
     double most = static_cast<double>(what.loose ? kLooseAwake : kLoadedAwake);
     std::string tolerance = fmt::format("median at most {}", most);
     if (what.scene.blocks.size() > tower.blocks.size()) {  // as many rows above as in the tower of 18

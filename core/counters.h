@@ -18,7 +18,7 @@ inline constexpr std::array<std::string_view, kStages> kStageNames = {"broadphas
 struct Counters {
   std::uint64_t frames = 0;
   std::uint64_t steps = 0;                    ///< substeps: over all islands the most in a frame, summed
-  std::uint64_t replayedFrames = 0;           ///< frames run again with a wider sweep
+  std::uint64_t replayedFrames = 0;           ///< frames run again: with a wider sweep, or with sleepers awake that gave way
   std::uint64_t blockPairs = 0;               ///< pairs of blocks whose swept boxes overlap
   std::uint64_t marginsSpent = 0;             ///< of these, pairs looked at because their margin was used up
   std::uint64_t candidateTests = 0;           ///< feature pairs of block pairs whose margin was used up

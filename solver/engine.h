@@ -84,14 +84,22 @@ struct KnownPush {
   Vec3 torque = Vec3::Zero();  ///< N m, about the block's centre
 };
 
+/// A group of sleepers, by its root, and a pair on which it may rest.
+struct PairBeneath {
+  std::int32_t group;
+  std::int32_t pair;
+  auto operator<=>(const PairBeneath&) const = default;
+};
+
 /// What looks for sleepers that give way: working space, and what it last found to stay.
 struct LoadPath {
-  std::vector<std::int32_t> start;  ///< pairs of sleeper b with sleepers and the floor are pairs[start[b] .. start[b + 1]]
+  std::vector<std::int32_t> start;  ///< pairs in which sleeper b touches something are pairs[start[b] .. start[b + 1]]
   std::vector<std::int32_t> pairs;
   std::vector<std::int32_t> blocks;  ///< sleepers that touch pushed ones, directly or through others, from the top down
   std::vector<std::int32_t> parent;  ///< of groups above the level, -1 below it, [blocks]
   std::vector<std::int32_t> open;    ///< pairs across the level
-  std::vector<std::int32_t> groups;  ///< that are pushed
+  std::vector<std::int32_t> groups;  ///< that are pushed, ascending
+  std::vector<PairBeneath> beneath;  ///< of these groups, ascending
   std::vector<KnownPush> known;      ///< of all pushed blocks, in their order; none where some gave way
   std::vector<SupportPoint> supports;
 };
@@ -164,12 +172,13 @@ struct Engine {
   ReportState report;                  ///< of method `report`; empty for the others
   MotionState frameStart;              ///< what a frame that has to be run again starts from
   std::vector<BlockClock> frameStartClock;
-  std::vector<FewPoints> frameStartPoints;  ///< by position in `pairs`: what the points of those that touch remember
-  std::vector<std::uint8_t> pairKept;       ///< 1 where a pair has changed since otherwise than in that
-  CornerArray frameStartPrevious;           ///< m, and for implicit steps what they started from
-  CornerArray frameStartPreviousVelocity;   ///< m/s
-  std::vector<Counters> chunkCounters;      ///< of ranges of pairs inside a large island
-  std::vector<StageTimes> chunkTimes;       ///< and their times, s of one thread each
+  std::vector<FewPoints> frameStartPoints;   ///< by position in `pairs`: what the points of those that touch remember
+  std::vector<RelativePose> frameStartPose;  ///< by position in `pairs`, as engine.pose
+  std::vector<std::uint8_t> pairKept;        ///< 1 where a pair has changed since otherwise than in that
+  CornerArray frameStartPrevious;            ///< m, and for implicit steps what they started from
+  CornerArray frameStartPreviousVelocity;    ///< m/s
+  std::vector<Counters> chunkCounters;       ///< of ranges of pairs inside a large island
+  std::vector<StageTimes> chunkTimes;        ///< and their times, s of one thread each
   std::vector<Counters> islandCounters;
   std::vector<StageTimes> islandTimes;
   std::vector<int> islandOutcome;  ///< steps of each island, -1 where a block left its swept box

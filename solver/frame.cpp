@@ -77,8 +77,10 @@ Approach approachOf(const IslandStep& step) {
     const bool mayMeet = apart && pair.margin - (travel - pair.checkedTravel) < speed * frame_s;
     if (apart && !mayMeet) continue;
     if (apart || !anyPointTouches(pair.manifold)) {
-      approach.together = std::max(approach.together, ++beginning[a]);
-      if (pair.b >= 0) approach.together = std::max(approach.together, ++beginning[static_cast<std::size_t>(pair.b)]);
+      for (const std::int32_t block : {pair.a, pair.b}) {  // sleepers may be those of other islands as well, and do not move
+        if (!sleeps(simulation, block))
+          approach.together = std::max(approach.together, ++beginning[static_cast<std::size_t>(block)]);
+      }
     }
     approach.meeting = approach.meeting || mayMeet;
     approach.speed = std::max(approach.speed, speed);
@@ -279,7 +281,6 @@ bool runIslands(Simulation& simulation) {
     inside = inside && engine.islandOutcome[i] >= 0;
     simulation.substeps = std::max(simulation.substeps, engine.islandOutcome[i]);
   }
-  for (std::size_t i = 0; i < islands && inside; ++i) simulation.counters += engine.islandCounters[i];
   for (std::size_t i = 0; i < islands; ++i) simulation.stageTimes += engine.islandTimes[i];
   return inside;
 }
@@ -296,7 +297,7 @@ void stepFrame(Simulation& simulation) {
     while (true) {
       // The frame is run again where something was hit and left its swept box, with a wider one, so that no meeting is missed;
       // and where sleepers gave way to what was done to them, with these awake.
-      if (wakeWhatIsHit(simulation)) findNearPairs(simulation, margin);
+      if (wakeWhatIsStruck(simulation)) findNearPairs(simulation, margin);
       const bool inside = runIslands(simulation);
       const bool gaveWay = inside && wakeWhatGaveWay(simulation);
       if (inside && !gaveWay) break;
@@ -306,6 +307,7 @@ void stepFrame(Simulation& simulation) {
       if (simulation.scene.settings.method == Method::report) rewindReportFrame(simulation);
       findNearPairs(simulation, margin);
     }
+    for (const Counters& island : engine.islandCounters) simulation.counters += island;
     simulation.counters.steps += static_cast<std::uint64_t>(simulation.substeps);
     simulation.time_s += simulation.scene.settings.frame_s;
     checkShapes(simulation, engine.awakeBlocks);

@@ -49,7 +49,7 @@ void rewindBlock(Simulation& simulation, std::size_t b) {
 void rewindPair(Engine& engine, std::size_t at) {
   NearPair& pair = engine.pairs[at];
   if (engine.pairKept[at] != 0) pair = engine.pairsBefore[at];
-  if (at < engine.pose.size()) engine.pose[at] = RelativePose{};
+  if (at < engine.pose.size()) engine.pose[at] = engine.frameStartPose[at];
   if (pair.manifold.touch == Touch::apart || pair.manifold.count > kFew) return;
   restorePoints(engine.frameStartPoints[at], pair.manifold);
 }
@@ -68,6 +68,7 @@ void prepareFrameStart(Simulation& simulation) {
   }
   engine.pairsBefore.resize(engine.pairs.size());
   engine.frameStartPoints.resize(engine.pairs.size());
+  engine.frameStartPose.resize(engine.pairs.size());
   engine.pairKept.assign(engine.pairs.size(), 0);
 }
 
@@ -84,6 +85,7 @@ void rememberStart(IslandStep& step) {
   }
   for (const std::int32_t pair : step.pairs) {
     const auto at = static_cast<std::size_t>(pair);
+    if (at < engine.pose.size()) engine.frameStartPose[at] = engine.pose[at];
     const Manifold& manifold = engine.pairs[at].manifold;
     if (manifold.touch == Touch::apart) continue;
     if (manifold.count > kFew) {

@@ -17,6 +17,9 @@ constexpr double kCarryTime_s = 0.03;
 constexpr double kSteady = 1.5;
 // How fast a hand that draws gives in to the height at which its block lies.
 constexpr double kGiveIn_s = 0.05;
+// Way on which a hand comes to its speed, m: one that is there at once starts the tower swaying, by up to twice as much as it
+// asks of it.
+constexpr double kSettingOut_m = 0.002;
 // How far inside what it lies on such a hand keeps the centre of its block from tipping, in heights of the block.
 constexpr double kInside = 0.75;
 // Contacts that push upwards rather than aside, by the cosine.
@@ -177,9 +180,12 @@ void drawOn(Draw& draw, std::span<const ContactForce> contacts, Simulation& simu
   const std::size_t b = index(hand.block);
   const double reach = hand.limit_n / (simulation.model.mass[b] * hand.rate_rad_s * hand.rate_rad_s);
   const double ahead = (hand.place - centre(simulation.state.position, b)).dot(hand.line);
-  hand.velocity = (ahead < reach ? draw.speed_m_s : 0.0) * hand.line;
-  hand.place += simulation.scene.settings.frame_s * hand.velocity;
-  const double give = (1.0 - draw.grip.carried) * (1.0 - std::exp(-simulation.scene.settings.frame_s / kGiveIn_s));
+  const double frame_s = simulation.scene.settings.frame_s;
+  const double gained = draw.speed_m_s * draw.speed_m_s / (2.0 * kSettingOut_m) * (draw.drawn_s + 0.5 * frame_s);
+  draw.drawn_s += frame_s;
+  hand.velocity = (ahead < reach ? std::min(draw.speed_m_s, gained) : 0.0) * hand.line;
+  hand.place += frame_s * hand.velocity;
+  const double give = (1.0 - draw.grip.carried) * (1.0 - std::exp(-frame_s / kGiveIn_s));
   hand.place.z() += give * (centre(simulation.state.position, b).z() - hand.place.z());
   hold(hand, contacts, draw.grip, simulation);
 }

@@ -68,7 +68,8 @@ GripForce gripForce(const Simulation& simulation);
 struct Draw {
   Hand hand;  ///< the block, a place on the line, its direction, and the force that the hand has at most
   Grip grip;
-  double speed_m_s = 0.04;
+  double speed_m_s = 0.04;  ///< to which it comes evenly, over the first millimetres
+  double drawn_s = 0.0;     ///< s since it set out
 };
 
 /// Leads the hand on for the coming frame, no farther ahead of its block than its force reaches, and lets it hold the block.

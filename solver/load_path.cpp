@@ -3,6 +3,7 @@
 #include "solver/forces_now.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace springtower {
 
@@ -15,8 +16,8 @@ constexpr double kMargin = 1.5;
 constexpr double kBeneath = 0.5;
 // Change of what is done to a block, as a share of what goes through it, that is not worth asking again.
 constexpr double kSame = 0.05;
-// Change of force, in a block's weights, that is felt at all; of torque, in its weight times its height.
-constexpr double kFelt = 0.02;
+// Change of force, as a share of what bears a group, that is felt at all; of torque, as a share of that times a block's height.
+constexpr double kFelt = 0.01;
 // Blocks whose centres differ by less than this share of a height are of one storey.
 constexpr double kStorey = 0.5;
 // Share of its friction from which on a point of an awake block counts as sliding.
@@ -92,8 +93,13 @@ std::int32_t rootOf(std::vector<std::int32_t>& parent, std::int32_t block) {
   return block;
 }
 
-// Adds a sleeper to the groups above the level: it joins those it touches, and opens the pairs below it.
-void addToGroups(Simulation& simulation, std::int32_t block) {
+// Whether one sleeper of a pair bears the other: what only leans on another, or lies beside it, does not go with it.
+bool bears(const NearPair& pair, const Vec3& up) {
+  return std::abs(pair.restForce.dot(up)) > kBeneath * pair.restForce.norm();
+}
+
+// Adds a sleeper to the groups above the level: it joins those it bears, and opens the pairs below it.
+void addToGroups(Simulation& simulation, std::int32_t block, const Vec3& up) {
   Engine& engine = *simulation.engine;
   LoadPath& path = engine.loadPath;
   path.parent[static_cast<std::size_t>(block)] = block;
@@ -103,6 +109,7 @@ void addToGroups(Simulation& simulation, std::int32_t block) {
       path.open.push_back(at);
       return;
     }
+    if (!bears(pair, up)) return;
     const std::int32_t into = rootOf(path.parent, block);
     const std::int32_t from = rootOf(path.parent, other);
     if (into == from) return;
@@ -117,19 +124,38 @@ bool isAbove(const LoadPath& path, std::int32_t block) {
   return block >= 0 && path.parent[static_cast<std::size_t>(block)] >= 0;
 }
 
+// Lists the groups above the level that are pushed, and the pairs on which each may rest, group by group.
+void listPushedGroups(Simulation& simulation) {
+  Engine& engine = *simulation.engine;
+  LoadPath& path = engine.loadPath;
+  path.groups.clear();
+  for (const std::int32_t block : engine.pushed) {
+    if (isAbove(path, block)) path.groups.push_back(rootOf(path.parent, block));
+  }
+  std::sort(path.groups.begin(), path.groups.end());
+  path.groups.erase(std::unique(path.groups.begin(), path.groups.end()), path.groups.end());
+  path.beneath.clear();
+  for (const std::int32_t at : path.open) {
+    const NearPair& pair = engine.pairs[static_cast<std::size_t>(at)];
+    const std::int32_t group = rootOf(path.parent, isAbove(path, pair.a) ? pair.a : pair.b);
+    if (std::binary_search(path.groups.begin(), path.groups.end(), group)) path.beneath.push_back({group, at});
+  }
+  std::sort(path.beneath.begin(), path.beneath.end());
+}
+
 // The points on which a group above the level rests, seen from their middle, which is returned.
-Vec3 findSupports(Simulation& simulation, std::int32_t group, const Vec3& up) {
+Vec3 findSupports(Simulation& simulation, std::span<const PairBeneath> beneath, const Vec3& up) {
   LoadPath& path = simulation.engine->loadPath;
   path.supports.clear();
-  const double mu = simulation.scene.kineticFriction;
+  const Scene& scene = simulation.scene;
   Vec3 middle = Vec3::Zero();
-  for (const std::int32_t at : path.open) {
-    const NearPair& pair = simulation.engine->pairs[static_cast<std::size_t>(at)];
+  for (const PairBeneath& of : beneath) {
+    const NearPair& pair = simulation.engine->pairs[static_cast<std::size_t>(of.pair)];
     const std::int32_t above = isAbove(path, pair.a) ? pair.a : pair.b;
-    if (rootOf(path.parent, above) != group) continue;
     const PointForces points = forcesNow(simulation, pair.manifold);
     const double sense = pair.manifold.upper == above ? 1.0 : -1.0;
     if (!(sense * points.direction.dot(up) > kBeneath)) continue;
+    const bool awake = !sleeps(simulation, pair.a == above ? pair.b : pair.a);
     for (std::size_t i = 0; i < static_cast<std::size_t>(pair.manifold.count); ++i) {
       if (!(points.normal[i] > 0.0)) continue;
       const Vec3 friction{points.friction[i][0], points.friction[i][1], points.friction[i][2]};
@@ -137,9 +163,11 @@ Vec3 findSupports(Simulation& simulation, std::int32_t group, const Vec3& up) {
       point.arm = points.place[i];
       point.normal = sense * points.direction;
       point.force = sense * (points.normal[i] * points.direction + friction);
-      if (!sleeps(simulation, pair.a == above ? pair.b : pair.a) && friction.norm() > kSliding * mu * points.normal[i]) {
+      point.friction = scene.staticFriction;
+      if (awake && friction.norm() > kSliding * scene.kineticFriction * points.normal[i]) {
         point.state = SupportState::slides;
         point.slide = sense * friction;
+        point.friction = scene.kineticFriction;
       }
       path.supports.push_back(point);
       middle += point.arm;
@@ -151,31 +179,32 @@ Vec3 findSupports(Simulation& simulation, std::int32_t group, const Vec3& up) {
 }
 
 // Whether a group above the level stays on what bears it.
-bool stays(Simulation& simulation, std::int32_t group, const Vec3& up) {
-  PushChange change = simulation.engine->change[static_cast<std::size_t>(group)];
+bool staysPut(Simulation& simulation, std::int32_t group, std::span<const PairBeneath> beneath, const Vec3& up) {
+  const PushChange& change = simulation.engine->change[static_cast<std::size_t>(group)];
+  std::vector<SupportPoint>& supports = simulation.engine->loadPath.supports;
   const double height = simulation.lengths.blockHeight_m;
-  const double least = kFelt * simulation.model.mass[static_cast<std::size_t>(group)] * simulation.scene.gravity.magnitude;
-  const Vec3 middle = findSupports(simulation, group, up);
-  change.torque -= middle.cross(change.force);
-  if (simulation.engine->loadPath.supports.empty()) return true;  // it rests on awake blocks alone, and was asked above them
-  if (change.force.norm() <= least && change.torque.norm() <= least * height) return true;
-  return takeUp(simulation.engine->loadPath.supports, change.force, change.torque, height,
-                {simulation.scene.settings.tangentialRatio, simulation.scene.staticFriction});
+  const Vec3 middle = findSupports(simulation, beneath, up);
+  if (supports.empty()) return true;  // it rests on awake blocks alone, and was asked above them
+  const Vec3 torque = change.torque - middle.cross(change.force);
+  double borne = 0.0;
+  for (const SupportPoint& point : supports) borne += point.normal.dot(point.force);
+  if (change.force.norm() <= kFelt * borne && torque.norm() <= kFelt * borne * height) return true;
+  return takeUp(supports, change.force, torque, height, simulation.scene.settings.tangentialRatio);
 }
 
 // Whether the same blocks were pushed in much the same way when all stayed last; if not, that is how they are pushed now.
 bool isKnownToStay(Simulation& simulation) {
   Engine& engine = *simulation.engine;
   std::vector<KnownPush>& known = engine.loadPath.known;
-  const bool stays = std::equal(known.begin(), known.end(), engine.pushed.begin(), engine.pushed.end(),
-                                [&](const KnownPush& before, std::int32_t block) {
-                                  const auto b = static_cast<std::size_t>(block);
-                                  const PushChange& now = engine.change[b];
-                                  const double most = kSame * now.load_n;
-                                  return before.block == block && (now.force - before.force).norm() <= most &&
-                                         (now.torque - before.torque).norm() <= most * simulation.model.dimensions[b].minCoeff();
-                                });
-  if (stays) return true;
+  const bool same = std::equal(known.begin(), known.end(), engine.pushed.begin(), engine.pushed.end(),
+                               [&](const KnownPush& before, std::int32_t block) {
+                                 const auto b = static_cast<std::size_t>(block);
+                                 const PushChange& now = engine.change[b];
+                                 const double most = kSame * now.load_n;
+                                 return before.block == block && (now.force - before.force).norm() <= most &&
+                                        (now.torque - before.torque).norm() <= most * simulation.model.dimensions[b].minCoeff();
+                               });
+  if (same) return true;
   known.clear();
   for (const std::int32_t block : engine.pushed) {
     const PushChange& now = engine.change[static_cast<std::size_t>(block)];
@@ -200,21 +229,21 @@ bool findWhatGivesWay(Simulation& simulation) {
   while (above < path.blocks.size()) {
     const double level = heightOf(simulation, path.blocks[above], up) - kStorey * simulation.lengths.blockHeight_m;
     for (; above < path.blocks.size() && heightOf(simulation, path.blocks[above], up) > level; ++above) {
-      addToGroups(simulation, path.blocks[above]);
+      addToGroups(simulation, path.blocks[above], up);
     }
     const auto isOver = [&](std::int32_t block) { return block >= 0 && heightOf(simulation, block, up) > level; };
     std::erase_if(path.open, [&](std::int32_t at) {
       const NearPair& pair = engine.pairs[static_cast<std::size_t>(at)];
       return isOver(pair.a) && isOver(pair.b);
     });
-    path.groups.clear();
-    for (const std::int32_t block : engine.pushed) {
-      if (!isAbove(path, block)) continue;
-      const std::int32_t group = rootOf(path.parent, block);
-      if (std::find(path.groups.begin(), path.groups.end(), group) == path.groups.end()) path.groups.push_back(group);
-    }
+    listPushedGroups(simulation);
+    const auto beneathOf = [&](std::int32_t group) {
+      const auto first = std::lower_bound(path.beneath.begin(), path.beneath.end(), PairBeneath{group, 0});
+      const auto last = std::lower_bound(first, path.beneath.end(), PairBeneath{group + 1, 0});
+      return std::span<const PairBeneath>(first, last);
+    };
     for (const std::int32_t group : path.groups) {
-      if (stays(simulation, group, up)) continue;
+      if (staysPut(simulation, group, beneathOf(group), up)) continue;
       gives = true;
       path.known.clear();
       for (std::size_t i = 0; i < above; ++i) {

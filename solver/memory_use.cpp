@@ -47,16 +47,17 @@ MemoryUse memoryUse(const Simulation& simulation) {
     use.model += sumOf(model.restLength[g], model.springStiffness[g], model.springDamping[g]);
   }
   use.contacts = bytesOf(engine.pairs);
-  use.working = sumOf(
-      engine.reach, engine.travelAtSweep, engine.sweptPairs, engine.keys, engine.pairKeys, engine.awakeBlocks, engine.pairsBefore,
-      engine.pairStart, engine.islandPairs, engine.watchedPairs, engine.path, engine.foreseenPath, engine.blockPairStart,
-      engine.blockPairs, engine.cursor, engine.touchingEdges, engine.force, engine.frames, engine.motion, engine.carriedMotion,
-      engine.contactForce, engine.springRadius, engine.contactMetric, engine.previous, engine.carried, engine.pairForce,
-      engine.clock, engine.lostPartner, engine.toWake, engine.pushed, engine.change, engine.loadPath.start, engine.loadPath.pairs,
-      engine.loadPath.blocks, engine.loadPath.parent, engine.loadPath.open, engine.loadPath.groups, engine.loadPath.known,
-      engine.loadPath.supports, engine.beginning, engine.restless, engine.parent, engine.joined, engine.touched, engine.rest,
-      engine.report, engine.frameStart, engine.frameStartClock, engine.frameStartPoints, engine.pairKept, engine.chunkCounters,
-      engine.chunkTimes, engine.islandCounters, engine.islandTimes, engine.islandOutcome);
+  use.working =
+      sumOf(engine.reach, engine.travelAtSweep, engine.sweptPairs, engine.keys, engine.pairKeys, engine.awakeBlocks,
+            engine.pairsBefore, engine.pairStart, engine.islandPairs, engine.watchedPairs, engine.path, engine.foreseenPath,
+            engine.blockPairStart, engine.blockPairs, engine.cursor, engine.touchingEdges, engine.force, engine.frames,
+            engine.motion, engine.carriedMotion, engine.contactForce, engine.springRadius, engine.contactMetric, engine.previous,
+            engine.carried, engine.pairForce, engine.clock, engine.lostPartner, engine.toWake, engine.pushed, engine.change,
+            engine.loadPath.start, engine.loadPath.pairs, engine.loadPath.blocks, engine.loadPath.parent, engine.loadPath.open,
+            engine.loadPath.groups, engine.loadPath.beneath, engine.loadPath.known, engine.loadPath.supports, engine.beginning,
+            engine.restless, engine.parent, engine.joined, engine.touched, engine.rest, engine.report, engine.frameStart,
+            engine.frameStartClock, engine.frameStartPoints, engine.frameStartPose, engine.pairKept, engine.chunkCounters,
+            engine.chunkTimes, engine.islandCounters, engine.islandTimes, engine.islandOutcome);
   use.working += sumOf(engine.sweep.order, engine.sweep.place, engine.sweep.columns, engine.sweep.awake, engine.sweep.renewed,
                        engine.sweep.ascending, engine.sweep.outOfOrder);
   for (const MotionState& stage : engine.stage) use.working += bytesOf(stage);

@@ -133,7 +133,9 @@ bool findBlocksToWake(Simulation& simulation) {
       change = {};
     }
     addChange(simulation, pair, sleeper);
-    changed = changed || change.begunOrLost || change.force.norm() > kChange * weightOf(simulation, sleeper);
+    const double least = kChange * weightOf(simulation, sleeper);
+    changed = changed || change.begunOrLost || change.force.norm() > least ||
+              change.torque.norm() > least * simulation.model.dimensions[static_cast<std::size_t>(sleeper)].minCoeff();
   }
   if (changed) {
     findLoads(simulation);

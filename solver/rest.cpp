@@ -16,6 +16,9 @@ namespace {
 constexpr double kPatience = 4.0;
 // Speed from which on a block hits a sleeper rather than being laid on it, in sqrt(g h).
 constexpr double kHit = 0.05;
+// Speed from which on a block that slides on sleepers, or is drawn over them, shakes all they touch before what it does to them
+// can be looked at, alike; a player's 4 cm/s are half of it.
+constexpr double kRush = 0.2;
 // What gravity may have turned since the last block fell asleep, in g.
 constexpr double kWakeGravity = 1e-4;
 
@@ -81,14 +84,18 @@ void judgeAsReported(Simulation& simulation, std::size_t b) {
   simulation.restTime_s[b] = moved < simulation.scene.settings.reportDisableDistance_m ? simulation.scene.settings.frame_s : 0.0;
 }
 
-// Whether an awake block may hit the sleeper of a pair in this frame, faster than a hand lays a block down.
-bool isHit(const Simulation& simulation, const NearPair& pair, std::int32_t awake) {
-  if (pair.manifold.touch != Touch::apart && anyPointTouches(pair.manifold)) return false;
+// Whether an awake block slides on the sleeper of a pair too fast for it to be asked afterwards, or may hit it in this frame
+// faster than a hand lays a block down. `supported`: whether anything touches the awake block.
+bool isStruck(const Simulation& simulation, const NearPair& pair, std::int32_t awake, bool supported) {
   const auto block = static_cast<std::size_t>(awake);
-  const bool falls = simulation.restTime_s[block] == 0.0 && block != index(simulation.tether.block);
+  const double scale = speedScale(simulation);
+  const bool held = block == index(simulation.tether.block);
+  const double speed =
+      std::max(fastestCorner(simulation.state.velocity, block, Vec3::Zero()), held ? simulation.tether.velocity.norm() : 0.0);
+  if (pair.manifold.touch != Touch::apart && anyPointTouches(pair.manifold)) return speed > kRush * scale;
+  const bool falls = !supported && !held;
+  if (!falls && speed <= kHit * scale) return false;
   const double frame_s = simulation.scene.settings.frame_s;
-  const double slowest = kHit * speedScale(simulation);
-  if (!falls && fastestCorner(simulation.state.velocity, block, Vec3::Zero()) <= slowest) return false;
   const CornerArray& position = simulation.state.position;
   const Separation separation = findSeparation(cornersOf(position, static_cast<std::size_t>(pair.a)),
                                                cornersOf(position, static_cast<std::size_t>(pair.b)));
@@ -98,7 +105,7 @@ bool isHit(const Simulation& simulation, const NearPair& pair, std::int32_t awak
   for (std::size_t c = 0; c < kCorners; ++c) closing = std::max(closing, simulation.state.velocity.at(block, c).dot(towards));
   const double fall = falls ? std::max(0.0, simulation.scene.gravity.at(simulation.time_s).dot(towards)) : 0.0;
   if (gap > frame_s * (closing + 0.5 * fall * frame_s)) return false;
-  return closing * closing + 2.0 * fall * gap > slowest * slowest;
+  return std::sqrt(closing * closing + 2.0 * fall * gap) > kHit * scale;
 }
 
 double restNeeded(const Simulation& simulation) {
@@ -216,15 +223,24 @@ void wakeForFrame(Simulation& simulation) {
   if (simulation.tether.block != kFloor) wake(simulation, index(simulation.tether.block));
 }
 
-bool wakeWhatIsHit(Simulation& simulation) {
+bool wakeWhatIsStruck(Simulation& simulation) {
   Engine& engine = *simulation.engine;
   if (simulation.scene.settings.sleep != Sleep::on || engine.awakeCount == simulation.asleep.size()) return false;
   engine.toWake.clear();
+  engine.touched.assign(simulation.asleep.size(), 0);
+  for (const std::int32_t at : engine.islandPairs) {
+    const NearPair& pair = engine.pairs[static_cast<std::size_t>(at)];
+    if (pair.manifold.touch == Touch::apart || !anyPointTouches(pair.manifold)) continue;
+    engine.touched[static_cast<std::size_t>(pair.a)] = 1;
+    if (pair.b >= 0) engine.touched[static_cast<std::size_t>(pair.b)] = 1;
+  }
   for (const std::int32_t at : engine.islandPairs) {
     const NearPair& pair = engine.pairs[static_cast<std::size_t>(at)];
     if (pair.b < 0 || sleeps(simulation, pair.a) == sleeps(simulation, pair.b)) continue;
     const bool sleepsA = sleeps(simulation, pair.a);
-    if (isHit(simulation, pair, sleepsA ? pair.b : pair.a)) engine.toWake.push_back(sleepsA ? pair.a : pair.b);
+    const std::int32_t awake = sleepsA ? pair.b : pair.a;
+    if (isStruck(simulation, pair, awake, engine.touched[static_cast<std::size_t>(awake)] != 0))
+      engine.toWake.push_back(sleepsA ? pair.a : pair.b);
   }
   if (engine.toWake.empty()) return false;
   engine.touchingEdges.clear();

@@ -8,10 +8,10 @@ namespace springtower {
 /// fell asleep.
 void wakeForFrame(Simulation& simulation);
 
-/// Once a frame's near pairs are found: wakes sleeping blocks that awake ones may hit in it, with all sleepers they touch,
-/// directly or through others, as a blow is over before what it does can be looked at. Returns whether there were any; near pairs
-/// have then to be found again.
-bool wakeWhatIsHit(Simulation& simulation);
+/// Once a frame's near pairs are found: wakes sleeping blocks on which awake ones slide fast, or that they may hit in it, with
+/// all sleepers they touch, directly or through others: such a blow is over before what it does can be looked at. Returns whether
+/// there were any; near pairs have then to be found again.
+bool wakeWhatIsStruck(Simulation& simulation);
 
 /// At the end of a frame: finds the sleeping blocks to wake, whose awake neighbours push them otherwise than when they fell
 /// asleep (engine.toWake). Where some of them gave way all are woken, and the frame has to be run again from its start: returns

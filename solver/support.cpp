@@ -39,7 +39,7 @@ Vec3 givenUp(const SupportPoint& point) {
 }
 
 // Whether a point keeps to what was taken for granted of it; else what is to be taken next.
-bool keepsState(SupportPoint& point, double friction, double slip_n) {
+bool keepsState(SupportPoint& point, double slip_n) {
   if (point.state == SupportState::lifted) return true;
   const Vec3 force = point.force + point.added;
   const double push = point.normal.dot(force);
@@ -49,27 +49,27 @@ bool keepsState(SupportPoint& point, double friction, double slip_n) {
   }
   const Vec3 shear = force - push * point.normal;
   const bool slides = point.state == SupportState::slides;
-  const double off_n = shear.norm() - friction * push;
+  const double off_n = shear.norm() - point.friction * push;
   if (slides ? std::abs(off_n) <= slip_n : off_n <= slip_n) return true;
-  point.slide = friction * push * shear.normalized();
+  point.slide = point.friction * push * shear.normalized();
   point.state = SupportState::slides;
   return false;
 }
 
 }  // namespace
 
-bool takeUp(std::span<SupportPoint> points, const Vec3& force, const Vec3& torque, double length_m, const SupportLaw& law) {
+bool takeUp(std::span<SupportPoint> points, const Vec3& force, const Vec3& torque, double length_m, double tangentialRatio) {
   if (points.empty()) return false;
-  double pushes = 0.0;
-  for (const SupportPoint& point : points) pushes += point.normal.dot(point.force);
-  const double slip_n = kSlip * law.friction * pushes / static_cast<double>(points.size());
+  double friction_n = 0.0;
+  for (const SupportPoint& point : points) friction_n += point.friction * point.normal.dot(point.force);
+  const double slip_n = kSlip * friction_n / static_cast<double>(points.size());
   for (int round = 0; round < kRounds; ++round) {
     Mat6 stiffness = Mat6::Zero();
     Vec6 load;
     load << -force, -torque / length_m;
     for (const SupportPoint& point : points) {
       const Eigen::Matrix3d turn = turning(point.arm / length_m);
-      const Eigen::Matrix3d spring = stiffnessOf(point, law.tangentialRatio);
+      const Eigen::Matrix3d spring = stiffnessOf(point, tangentialRatio);
       const Eigen::Matrix3d coupled = spring * turn;
       stiffness.topLeftCorner<3, 3>() += spring;
       stiffness.bottomLeftCorner<3, 3>() += coupled.transpose();
@@ -84,8 +84,8 @@ bool takeUp(std::span<SupportPoint> points, const Vec3& force, const Vec3& torqu
     bool kept = true;
     for (SupportPoint& point : points) {
       const Vec3 motion = moved.head<3>() + turning(point.arm / length_m) * moved.tail<3>();
-      point.added = givenUp(point) + stiffnessOf(point, law.tangentialRatio) * motion;
-      kept = keepsState(point, law.friction, slip_n) && kept;
+      point.added = givenUp(point) + stiffnessOf(point, tangentialRatio) * motion;
+      kept = keepsState(point, slip_n) && kept;
     }
     if (kept) return true;
   }

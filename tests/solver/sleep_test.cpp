@@ -1,4 +1,5 @@
 #include "core/scene.h"
+#include "solver/moves.h"
 #include "solver/run.h"
 
 #include <algorithm>
@@ -152,6 +153,49 @@ TEST(Sleep, AHandDrawsATowerOverAsleepAsAwake) {
   ASSERT_TRUE(result.fallTime_s.has_value());
   EXPECT_NEAR(*result.fallTime_s, *expected.fallTime_s, 0.05 * *expected.fallTime_s);
   EXPECT_EQ(result.standing.block, expected.standing.block);
+}
+
+// Two columns of twelve blocks, side by side: one that is light but for its top, which is pulled away from the other by 4 weights
+// of a common block. Its foot is the edge over which 3.1 of them tip it, and the other column, which touches it and bears nothing
+// of it, must not be taken for its support.
+TEST(Sleep, WhatOnlyStandsBesideAColumnDoesNotHoldIt) {
+  Scene scene;
+  constexpr int kStorey = 12;
+  for (const double x : {0.0, kBlockWidth_m}) {
+    for (int i = 0; i < kStorey; ++i) {
+      BlockSpec block;
+      block.dimensions = {kBlockWidth_m, kBlockLength_m, kBlockHeight_m};
+      block.centre = {x, 0.0, (i + 0.5) * kBlockHeight_m};
+      block.mass = kBlockMass_kg * (x > 0.0 ? 5.0 : i == kStorey - 1 ? 30.0 : 1.0);
+      scene.blocks.push_back(block);
+    }
+  }
+  scene.forces.push_back({kStorey - 1, -1, Vec3(-4.0 * kBlockMass_kg * 9.81, 0.0, 0.0), 4.0, 8.0});
+  Simulation asleep(scene);
+  const RunResult result = play(asleep);
+  scene.settings.sleep = Sleep::off;
+  Simulation awake(scene);
+  const RunResult expected = play(awake);
+  ASSERT_TRUE(expected.fallTime_s.has_value());
+  ASSERT_TRUE(result.fallTime_s.has_value());
+  EXPECT_NEAR(*result.fallTime_s, *expected.fallTime_s, 0.05 * *expected.fallTime_s);
+}
+
+// Blocks over loose ones are not falling on them: those they bear upon stay asleep, and so does most of the tower.
+TEST(Sleep, LooseBlocksBelowAreNotHitByWhatLiesOverThem) {
+  TowerOptions options;
+  options.loose = {{14, 2, 0.0003}, {9, 2, 0.0003}, {4, 2, 0.0003}};
+  Scene scene = towerScene(18, options);
+  scene.moves = {take(15, 2, Vec3::UnitY())};
+  Simulation simulation(scene);
+  MoveRun moves = beginMoves(simulation);
+  std::size_t most = 0;
+  while (simulation.time_s < 2.5) {
+    guideHand(moves, simulation);
+    stepFrame(simulation);
+    if (simulation.time_s > 0.7) most = std::max(most, simulation.asleep.size() - asleepBlocks(simulation));
+  }
+  EXPECT_LE(most, 27U) << "half of the tower";
 }
 
 // A block dropped from 2 cm, that hardly rebounds, shifts a tower of three rows by half a millimetre; sleepers that took the blow

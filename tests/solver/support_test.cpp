@@ -15,19 +15,20 @@ constexpr double kFriction = 0.4;
 using Square = std::array<SupportPoint, 4>;
 
 // A body at rest on the corners of a square, a quarter of its weight on each.
-Square restingSquare() {
+Square restingSquare(double friction) {
   Square square;
   for (std::size_t i = 0; i < square.size(); ++i) {
     square[i].arm = {i % 2 == 0 ? -kHalf_m : kHalf_m, i < 2 ? -kHalf_m : kHalf_m, 0.0};
     square[i].normal = Vec3::UnitZ();
     square[i].force = 0.25 * kWeight_n * Vec3::UnitZ();
+    square[i].friction = friction;
   }
   return square;
 }
 
 bool stays(const Vec3& force, const Vec3& torque, double friction) {
-  Square square = restingSquare();
-  return takeUp(square, force, torque, kHeight_m, {1.0, friction});
+  Square square = restingSquare(friction);
+  return takeUp(square, force, torque, kHeight_m, 1.0);
 }
 
 // Pulled at a height, it tips when the torque about its edge is that of its weight.
@@ -55,8 +56,8 @@ TEST(Support, SlidesAndTurnsWhenFrictionIsUsedUp) {
 TEST(Support, TakesUpAllOfTheChange) {
   const Vec3 force{0.45, 0.1, 0.3};
   const Vec3 torque = Vec3(0.0, 0.0, 0.01).cross(force) + Vec3(0.0, 0.012, 0.001);
-  Square square = restingSquare();
-  ASSERT_TRUE(takeUp(square, force, torque, kHeight_m, {1.0, kFriction}));
+  Square square = restingSquare(kFriction);
+  ASSERT_TRUE(takeUp(square, force, torque, kHeight_m, 1.0));
   Vec3 sum = force;
   Vec3 moment = torque;
   int lifted = 0;
@@ -77,13 +78,13 @@ TEST(Support, TakesUpAllOfTheChange) {
 }
 
 TEST(Support, HoldsNothingWithoutPoints) {
-  EXPECT_FALSE(takeUp({}, Vec3::Zero(), Vec3::Zero(), kHeight_m, {1.0, kFriction}));
+  EXPECT_FALSE(takeUp({}, Vec3::Zero(), Vec3::Zero(), kHeight_m, 1.0));
 }
 
 // Two points hold it up, but not against a turn about the line through them.
 TEST(Support, OnALineIsFreeToTurn) {
-  Square square = restingSquare();
-  EXPECT_FALSE(takeUp(std::span(square).first(2), Vec3::Zero(), 1e-4 * Vec3::UnitX(), kHeight_m, {1.0, 10.0}));
+  Square square = restingSquare(10.0);
+  EXPECT_FALSE(takeUp(std::span(square).first(2), Vec3::Zero(), 1e-4 * Vec3::UnitX(), kHeight_m, 1.0));
 }
 
 }  // namespace
