@@ -15,7 +15,7 @@ constexpr double kMargin = 1.5;
 // Contacts below a block rather than beside it, by the cosine.
 constexpr double kBeneath = 0.5;
 // Change of what is done to a block, as a share of what goes through it, that is not worth asking again.
-constexpr double kSame = 0.05;
+constexpr double kSame = 0.1;
 // Change of force, as a share of what bears a group, that is felt at all; of torque, as a share of that times a block's height.
 constexpr double kFelt = 0.01;
 // Blocks whose centres differ by less than this share of a height are of one storey.

@@ -4,6 +4,7 @@
 #include "solver/inertia.h"
 #include "solver/meeting.h"
 #include "solver/pushes.h"
+#include "solver/stage_clock.h"
 
 #include <algorithm>
 #include <cmath>
@@ -226,6 +227,7 @@ void wakeForFrame(Simulation& simulation) {
 bool wakeWhatIsStruck(Simulation& simulation) {
   Engine& engine = *simulation.engine;
   if (simulation.scene.settings.sleep != Sleep::on || engine.awakeCount == simulation.asleep.size()) return false;
+  const StageTimer timer(simulation.stageTimes, Stage::islandsAndSleep);
   engine.toWake.clear();
   engine.touched.assign(simulation.asleep.size(), 0);
   for (const std::int32_t at : engine.islandPairs) {
@@ -259,7 +261,9 @@ bool wakeWhatIsStruck(Simulation& simulation) {
 bool wakeWhatGaveWay(Simulation& simulation) {
   Engine& engine = *simulation.engine;
   engine.toWake.clear();
-  if (engine.awakeCount == simulation.asleep.size() || !findBlocksToWake(simulation)) return false;
+  if (engine.awakeCount == simulation.asleep.size()) return false;
+  const StageTimer timer(simulation.stageTimes, Stage::islandsAndSleep);
+  if (!findBlocksToWake(simulation)) return false;
   for (const std::int32_t block : engine.toWake) wake(simulation, static_cast<std::size_t>(block));
   return true;
 }
