@@ -17,14 +17,6 @@ void makeSingletons(Parent& parent, std::size_t blocks) {
   std::iota(parent.begin(), parent.end(), 0);
 }
 
-std::int32_t findRoot(Parent& parent, std::int32_t block) {
-  while (at(parent, block) != block) {
-    at(parent, block) = at(parent, at(parent, block));
-    block = at(parent, block);
-  }
-  return block;
-}
-
 void unite(Parent& parent, const BlockPair& edge) {
   const std::int32_t a = findRoot(parent, edge.a);
   const std::int32_t b = findRoot(parent, edge.b);
@@ -32,6 +24,14 @@ void unite(Parent& parent, const BlockPair& edge) {
 }
 
 }  // namespace
+
+std::int32_t findRoot(std::vector<std::int32_t>& parent, std::int32_t block) {
+  while (at(parent, block) != block) {
+    at(parent, block) = at(parent, at(parent, block));
+    block = at(parent, block);
+  }
+  return block;
+}
 
 bool updateIslands(Islands& islands, std::span<const BlockPair> edges, std::span<const std::uint8_t> asleep) {
   if (!islands.start.empty() && std::ranges::equal(edges, islands.edges) && std::ranges::equal(asleep, islands.asleep)) {

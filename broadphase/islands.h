@@ -33,6 +33,10 @@ struct Islands {
 /// reach new heights.
 bool updateIslands(Islands& islands, std::span<const BlockPair> edges, std::span<const std::uint8_t> asleep);
 
+/// The root of a block's tree in a union-find: `parent` is [blocks], a root its own. Halves the path on its way (Tarjan & van
+/// Leeuwen 1984). Precondition: the block is in a tree.
+std::int32_t findRoot(std::vector<std::int32_t>& parent, std::int32_t block);
+
 /// Marks every block that the edges join to a seed, the seeds among them: connected[b] becomes 1 there and 0 elsewhere,
 /// [blocks]. The caller picks the edges, so it decides what carries a wake or a sleep on. `parent` is working space, kept to save
 /// allocations. Precondition: edges and seeds name blocks of the scene.

@@ -87,12 +87,6 @@ void listSleepers(Simulation& simulation, const Vec3& up) {
   });
 }
 
-std::int32_t rootOf(std::vector<std::int32_t>& parent, std::int32_t block) {
-  auto at = [&](std::int32_t b) -> std::int32_t& { return parent[static_cast<std::size_t>(b)]; };
-  while (at(block) != block) block = at(block) = at(at(block));
-  return block;
-}
-
 // Whether one sleeper of a pair bears the other: what only leans on another, or lies beside it, does not go with it.
 bool bears(const NearPair& pair, const Vec3& up) {
   return std::abs(pair.restForce.dot(up)) > kBeneath * pair.restForce.norm();
@@ -110,8 +104,8 @@ void addToGroups(Simulation& simulation, std::int32_t block, const Vec3& up) {
       return;
     }
     if (!bears(pair, up)) return;
-    const std::int32_t into = rootOf(path.parent, block);
-    const std::int32_t from = rootOf(path.parent, other);
+    const std::int32_t into = findRoot(path.parent, block);
+    const std::int32_t from = findRoot(path.parent, other);
     if (into == from) return;
     path.parent[static_cast<std::size_t>(from)] = into;
     PushChange& sum = engine.change[static_cast<std::size_t>(into)];
@@ -130,14 +124,14 @@ void listPushedGroups(Simulation& simulation) {
   LoadPath& path = engine.loadPath;
   path.groups.clear();
   for (const std::int32_t block : engine.pushed) {
-    if (isAbove(path, block)) path.groups.push_back(rootOf(path.parent, block));
+    if (isAbove(path, block)) path.groups.push_back(findRoot(path.parent, block));
   }
   std::sort(path.groups.begin(), path.groups.end());
   path.groups.erase(std::unique(path.groups.begin(), path.groups.end()), path.groups.end());
   path.beneath.clear();
   for (const std::int32_t at : path.open) {
     const NearPair& pair = engine.pairs[static_cast<std::size_t>(at)];
-    const std::int32_t group = rootOf(path.parent, isAbove(path, pair.a) ? pair.a : pair.b);
+    const std::int32_t group = findRoot(path.parent, isAbove(path, pair.a) ? pair.a : pair.b);
     if (std::binary_search(path.groups.begin(), path.groups.end(), group)) path.beneath.push_back({group, at});
   }
   std::sort(path.beneath.begin(), path.beneath.end());
@@ -247,7 +241,7 @@ bool findWhatGivesWay(Simulation& simulation) {
       gives = true;
       path.known.clear();
       for (std::size_t i = 0; i < above; ++i) {
-        if (rootOf(path.parent, path.blocks[i]) == group) engine.toWake.push_back(path.blocks[i]);
+        if (findRoot(path.parent, path.blocks[i]) == group) engine.toWake.push_back(path.blocks[i]);
       }
     }
   }

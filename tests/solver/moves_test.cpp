@@ -2,6 +2,7 @@
 
 #include "core/scene.h"
 #include "solver/run.h"
+#include "tests/solver/take.h"
 
 #include <gtest/gtest.h>
 #include <string>
@@ -9,15 +10,6 @@
 
 namespace springtower {
 namespace {
-
-Move take(int row, int position, const Vec3& towards, double speed_m_s = 0.04) {
-  Move move;
-  move.row = row;
-  move.position = position;
-  move.towards = towards;
-  move.speed_m_s = speed_m_s;
-  return move;
-}
 
 Move put(int row, int position, double drop_m = 0.0) {
   Move move;
