@@ -226,8 +226,8 @@ void findColumns(std::span<const BlockPair> edges, BlockCholesky& matrix) {
 
 }  // namespace
 
-bool analyse(std::span<const std::int32_t> order, std::span<const BlockPair> edges, std::size_t mostProducts,
-             BlockCholesky& matrix) {
+bool findPattern(std::span<const std::int32_t> order, std::span<const BlockPair> edges, std::size_t mostProducts,
+                 BlockCholesky& matrix) {
   const std::size_t count = order.size();
   matrix.node.assign(order.begin(), order.end());
   matrix.position.resize(count);
@@ -267,6 +267,14 @@ bool analyse(std::span<const std::int32_t> order, std::span<const BlockPair> edg
     matrix.nextChild[j] = matrix.firstChild[parent];
     matrix.firstChild[parent] = column;
   }
+  matrix.products = products;
+  return true;
+}
+
+bool analyse(std::span<const std::int32_t> order, std::span<const BlockPair> edges, std::size_t mostProducts,
+             BlockCholesky& matrix) {
+  if (!findPattern(order, edges, mostProducts, matrix)) return false;
+  const std::size_t count = order.size();
   matrix.target.clear();
   matrix.targetStart.clear();
   for (std::size_t j = 0; j < count; ++j) {
@@ -282,6 +290,16 @@ bool analyse(std::span<const std::int32_t> order, std::span<const BlockPair> edg
   matrix.lower.resize(kNodeMatrix * matrix.row.size());
   matrix.work.resize(kNodeSize * count);
   return true;
+}
+
+bool holds(const BlockCholesky& matrix, std::span<const BlockPair> edges) {
+  return std::all_of(edges.begin(), edges.end(), [&](const BlockPair& edge) {
+    const std::int32_t p = matrix.position[static_cast<std::size_t>(edge.a)];
+    const std::int32_t q = matrix.position[static_cast<std::size_t>(edge.b)];
+    const std::int32_t at = find(matrix, std::min(p, q), std::max(p, q));
+    return at < matrix.columnStart[static_cast<std::size_t>(std::min(p, q)) + 1] &&
+           matrix.row[static_cast<std::size_t>(at)] == std::max(p, q);
+  });
 }
 
 BlockSlot slotOf(const BlockCholesky& matrix, std::int32_t first, std::int32_t second) {

@@ -27,6 +27,7 @@ struct BlockCholesky {
   std::vector<std::int32_t> row;          ///< their rows, ascending
   std::vector<std::int32_t> targetStart;  ///< per block: where its updates' targets are listed
   std::vector<std::int32_t> target;       ///< blocks (>= 0) or diagonals (-1 - row) that elimination updates, in order
+  std::size_t products = 0;               ///< of 12 x 12 blocks that a factorisation takes
   AlignedVector<float> diagonal;          ///< [nodes][144]; after factorisation the inverse of D
   AlignedVector<float> lower;             ///< [blocks][144]; after factorisation the transposed blocks of L
   std::vector<std::int32_t> mark, firstChild, nextChild, edgeStart, edgeRow;  ///< working space of `analyse`
@@ -36,11 +37,19 @@ struct BlockCholesky {
   [[nodiscard]] std::size_t blockCount() const { return row.size(); }
 };
 
+/// Finds which blocks fill in, and how many products of 12 x 12 blocks a factorisation takes (matrix.products), for nodes in this
+/// order of elimination; the first part of `analyse`. Returns false where these are more than `mostProducts`.
+bool findPattern(std::span<const std::int32_t> order, std::span<const BlockPair> edges, std::size_t mostProducts,
+                 BlockCholesky& matrix);
+
 /// Lays out the matrix for nodes in this order of elimination (a permutation: order[k] is the k-th node) that are coupled by
 /// `edges`, and all blocks that fill in. Returns false, and lays out nothing, where factorising would take more than
 /// `mostProducts` products of 12 x 12 blocks.
 bool analyse(std::span<const std::int32_t> order, std::span<const BlockPair> edges, std::size_t mostProducts,
              BlockCholesky& matrix);
+
+/// Whether the layout has a block for each of these pairs of nodes.
+bool holds(const BlockCholesky& matrix, std::span<const BlockPair> edges);
 
 /// The slot of a coupled pair of nodes.
 BlockSlot slotOf(const BlockCholesky& matrix, std::int32_t first, std::int32_t second);

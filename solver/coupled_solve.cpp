@@ -10,8 +10,12 @@ namespace springtower {
 
 namespace {
 
-// Directions tried for one correction; a drawn block takes two to four.
-constexpr std::size_t kMostDirections = 6;
+// Directions tried for one correction, in narrow islands and at most.
+constexpr std::size_t kFewDirections = 6;
+constexpr std::size_t kMostDirections = 30;
+// Half of what new factors cost may go into directions, and a product of a factorisation costs four times what a block of the
+// factors costs in a solution (measured: 3 to 4 from 200 to 1800 blocks).
+constexpr std::size_t kDirectionsPerProduct = 2;
 // What may be left over of the forces asked for: the next iteration looks at them anew.
 constexpr double kLeftOver = 0.002;
 
@@ -60,12 +64,20 @@ SPRINGTOWER_INLINE void applyTangents(ImplicitIsland& island, double* force) {
   addTangentForces(island.tangents, {island.coupledMotion.data(), count}, {force, count});
 }
 
+// Room for direction j and the forces that are left after it.
+void makeRoom(std::size_t j, std::size_t count, ImplicitIsland& island) {
+  const std::size_t all = island.affine.size();
+  const std::size_t room = std::max(kFewDirections, j + 1);
+  if (island.coupledForce.size() < (room + 1) * count) island.coupledForce.resize((room + 1) * count);
+  if (island.correction.size() < (room + 1) * all) island.correction.resize((room + 1) * all);
+}
+
 // Turns column j of the Hessenberg matrix into one of a triangle (Givens), and the right-hand side with it.
 struct LeastSquares {
-  double column[kMostDirections][kMostDirections + 1] = {};
-  double cosine[kMostDirections] = {};
-  double sine[kMostDirections] = {};
-  double right[kMostDirections + 1] = {};
+  double column[kMostDirections][kMostDirections + 1];
+  double cosine[kMostDirections];
+  double sine[kMostDirections];
+  double right[kMostDirections + 1];
 
   void turn(std::size_t j) {
     double* h = column[j];
@@ -91,6 +103,12 @@ struct LeastSquares {
 
 }  // namespace
 
+std::size_t mostDirections(const ImplicitIsland& island) {
+  if (island.residual.size() <= kNarrowBlocks) return kFewDirections;
+  const std::size_t blocks = std::max<std::size_t>(1, island.matrix.blockCount());
+  return std::clamp(kDirectionsPerProduct * island.matrix.products / blocks, kFewDirections, kMostDirections);
+}
+
 bool solveCoupled(IslandStep& step, ImplicitIsland& island, double allowed_n) {
   island.directions = 0;
   if (island.tangents.empty()) {
@@ -103,21 +121,22 @@ bool solveCoupled(IslandStep& step, ImplicitIsland& island, double allowed_n) {
   findCoupledNodes(island);
   const std::size_t count = kNodeSize * island.coupled.size();
   island.coupledMotion.resize(count);
-  island.coupledForce.resize((kMostDirections + 1) * count);
-  island.correction.resize((kMostDirections + 1) * all);
+  makeRoom(0, count, island);
   const auto force = [&](std::size_t j) { return island.coupledForce.data() + j * count; };
-  const auto correction = [&](std::size_t j) { return island.correction.data() + j * all; };
+  const auto correction = [&](std::size_t j) { return island.correction.data() + (j + 1) * all; };
 
   LeastSquares squares;
-  std::copy(island.affine.begin(), island.affine.end(), correction(kMostDirections));
+  std::copy(island.affine.begin(), island.affine.end(), island.correction.begin());
   applyTangents(island, force(0));
   squares.right[0] = std::sqrt(dot(force(0), force(0), count));
   if (!(squares.right[0] > allowed)) return true;
   for (std::size_t i = 0; i < count; ++i) force(0)[i] /= squares.right[0];
 
   std::size_t used = 0;
-  while (used < kMostDirections) {
+  const std::size_t most = mostDirections(island);
+  while (used < most) {
     const std::size_t j = used++;
+    makeRoom(j, count, island);
     std::fill(island.affine.begin(), island.affine.end(), 0.0);
     for (std::size_t c = 0; c < island.coupled.size(); ++c)
       std::copy_n(force(j) + kNodeSize * c, kNodeSize,
@@ -140,7 +159,7 @@ bool solveCoupled(IslandStep& step, ImplicitIsland& island, double allowed_n) {
   const bool reached = !(std::abs(squares.right[used]) > allowed);
   island.directions = static_cast<int>(used);
   squares.backSubstitute(used);
-  std::copy_n(correction(kMostDirections), all, island.affine.data());
+  std::copy_n(island.correction.data(), all, island.affine.data());
   for (std::size_t j = 0; j < used; ++j) addScaled(squares.right[j], correction(j), all, island.affine.data());
   return reached;
 }

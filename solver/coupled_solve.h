@@ -1,9 +1,15 @@
 #pragma once
 
+#include <cstddef>
+
 namespace springtower {
 
 struct IslandStep;
 struct ImplicitIsland;
+
+/// Directions that are tried for one correction before new factors cost less: six in a tower, where a drawn block takes two to
+/// four; up to thirty in a wide island, whose factors cost as much as so many solutions.
+std::size_t mostDirections(const ImplicitIsland& island);
 
 /// Solves for island.affine in place as `solve` does, but for the contacts as island.tangents has them: where these differ from
 /// what the factors know, and where friction follows the normal force, which a symmetric matrix cannot hold. GMRES (Saad &

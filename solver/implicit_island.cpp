@@ -12,9 +12,11 @@ namespace springtower {
 
 namespace {
 
-// Products of 12 x 12 blocks a block of the island that a factorisation may take, some 70 microseconds. A tower takes 15, a heap
-// of fifty blocks as many; for a heap of thousands explicit steps are cheaper.
-constexpr std::size_t kMostProducts = 200;
+// Products of 12 x 12 blocks that a factorisation may take: some 3 s of one thread, and a list of 120 MB. A tower of 18 rows
+// takes 800, a wall of 5000 blocks 340,000, a hundred layers deep solid of 5000 blocks 6 million.
+constexpr std::size_t kMostProducts = 30'000'000;
+// Products, over those that it was found for, from which on an order of elimination is found anew.
+constexpr double kWorseOrder = 1.25;
 
 using Axes = std::array<std::array<double, 3>, 3>;
 using Weights = std::array<double, kAffine>;
@@ -188,6 +190,68 @@ void mix(std::uint64_t& hash, std::uint64_t value) {
   hash = (hash ^ value) * 1099511628211ULL;
 }
 
+// Whether a touching pair couples two nodes: neither side is the floor or asleep.
+bool isCoupled(const IslandStep& step, const Manifold& m) {
+  const std::vector<std::uint8_t>& asleep = step.simulation.asleep;
+  return m.lower >= 0 && asleep[static_cast<std::size_t>(m.upper)] == 0 && asleep[static_cast<std::size_t>(m.lower)] == 0;
+}
+
+// Fills island.touching, and island.edges with the nodes that these pairs couple.
+void findEdges(const IslandStep& step, ImplicitIsland& island) {
+  const Engine& engine = step.engine;
+  island.edges.clear();
+  island.touching.clear();
+  for (const std::int32_t at : step.pairs) {
+    const Manifold& m = engine.pairs[static_cast<std::size_t>(at)].manifold;
+    if (m.touch == Touch::apart) continue;
+    island.touching.push_back(at);
+    if (!isCoupled(step, m)) continue;
+    island.edges.push_back({engine.nodeOf[static_cast<std::size_t>(m.upper)], engine.nodeOf[static_cast<std::size_t>(m.lower)]});
+  }
+}
+
+// From the bottom up, or by dissection where less fills in.
+void chooseOrder(ImplicitIsland& island) {
+  orderBottomUp(island.order);
+  if (island.order.centre.size() <= kNarrowBlocks) return;
+  const bool fits = findPattern(island.order.nodes, island.edges, kMostProducts, island.matrix);
+  const std::size_t products = fits ? island.matrix.products : kMostProducts + 1;
+  orderByDissection(island.edges, island.order);
+  if (!findPattern(island.order.nodes, island.edges, products - 1, island.matrix)) orderBottomUp(island.order);
+}
+
+// Lays out the matrix for island.edges; false where it would take too many products. A wide island keeps its order of elimination
+// while its blocks are the same, and all of the layout where the edges are among those that it has room for: contacts come
+// and go far more often than what is best to be eliminated first changes. `members` is a hash of the blocks.
+bool layOutMatrix(const IslandStep& step, ImplicitIsland& island, std::uint64_t members) {
+  BlockCholesky& matrix = island.matrix;
+  const bool known = island.members == members && step.blocks.size() > kNarrowBlocks;
+  if (known && holds(matrix, island.edges)) return true;
+  if (known && analyse(island.order.nodes, island.edges, kMostProducts, matrix) &&
+      static_cast<double>(matrix.products) <= kWorseOrder * static_cast<double>(island.orderProducts))
+    return true;
+  island.members = 0;
+  island.order.centre.clear();
+  for (const std::int32_t block : step.blocks)
+    island.order.centre.push_back(centre(step.simulation.state.position, static_cast<std::size_t>(block)));
+  chooseOrder(island);
+  if (!analyse(island.order.nodes, island.edges, kMostProducts, matrix)) return false;
+  island.members = members;
+  island.orderProducts = matrix.products;
+  return true;
+}
+
+void findSlots(const IslandStep& step, ImplicitIsland& island) {
+  const Engine& engine = step.engine;
+  island.slot.clear();
+  for (const std::int32_t at : island.touching) {
+    const Manifold& m = engine.pairs[static_cast<std::size_t>(at)].manifold;
+    island.slot.push_back(isCoupled(step, m) ? slotOf(island.matrix, engine.nodeOf[static_cast<std::size_t>(m.upper)],
+                                                      engine.nodeOf[static_cast<std::size_t>(m.lower)])
+                                             : BlockSlot{});
+  }
+}
+
 }  // namespace
 
 std::array<double, kAffine> weightsAt(const BlockFrame& frame, const Vec3& place) {
@@ -203,6 +267,7 @@ void layOut(IslandStep& step, ImplicitIsland& island) {
   const std::vector<std::uint8_t>& asleep = step.simulation.asleep;
   std::uint64_t pattern = 1469598103934665603ULL;
   for (const std::int32_t block : step.blocks) mix(pattern, static_cast<std::uint64_t>(block));
+  const std::uint64_t members = pattern;
   for (const std::int32_t at : step.pairs) {
     const Manifold& m = engine.pairs[static_cast<std::size_t>(at)].manifold;
     if (m.touch == Touch::apart) continue;
@@ -217,42 +282,13 @@ void layOut(IslandStep& step, ImplicitIsland& island) {
   for (std::size_t i = 0; i < count; ++i) engine.nodeOf[static_cast<std::size_t>(step.blocks[i])] = static_cast<std::int32_t>(i);
   if (pattern == island.pattern) return;
 
-  // From the bottom up: in a tower the matrix is then a band three blocks wide.
-  std::vector<std::int32_t>& order = island.order;
-  std::vector<double>& height = island.height;
-  order.resize(count);
-  height.resize(count);
-  for (std::size_t i = 0; i < count; ++i) order[i] = static_cast<std::int32_t>(i);
-  for (std::size_t i = 0; i < count; ++i)
-    height[i] = centre(step.simulation.state.position, static_cast<std::size_t>(step.blocks[i])).z();
-  std::sort(order.begin(), order.end(), [&](std::int32_t p, std::int32_t q) {
-    const double a = height[static_cast<std::size_t>(p)];
-    const double b = height[static_cast<std::size_t>(q)];
-    return a != b ? a < b : p < q;
-  });
-  island.edges.clear();
-  island.touching.clear();
-  for (const std::int32_t at : step.pairs) {
-    const Manifold& m = engine.pairs[static_cast<std::size_t>(at)].manifold;
-    if (m.touch == Touch::apart) continue;
-    island.touching.push_back(at);
-    if (m.lower < 0 || asleep[static_cast<std::size_t>(m.upper)] != 0 || asleep[static_cast<std::size_t>(m.lower)] != 0) continue;
-    island.edges.push_back({engine.nodeOf[static_cast<std::size_t>(m.upper)], engine.nodeOf[static_cast<std::size_t>(m.lower)]});
-  }
+  findEdges(step, island);
   island.pattern = pattern;
   island.factorised = false;
   if (!engine.sparseFactors.empty()) engine.sparseFactors[firstBlock(step)].analysed = false;
-  island.tooDense = !analyse(order, island.edges, kMostProducts * count, island.matrix);
+  island.tooDense = !layOutMatrix(step, island, members);
   if (island.tooDense) return;
-  island.slot.clear();
-  for (const std::int32_t at : island.touching) {
-    const Manifold& m = engine.pairs[static_cast<std::size_t>(at)].manifold;
-    const bool coupled =
-        m.lower >= 0 && asleep[static_cast<std::size_t>(m.upper)] == 0 && asleep[static_cast<std::size_t>(m.lower)] == 0;
-    island.slot.push_back(coupled ? slotOf(island.matrix, engine.nodeOf[static_cast<std::size_t>(m.upper)],
-                                           engine.nodeOf[static_cast<std::size_t>(m.lower)])
-                                  : BlockSlot{});
-  }
+  findSlots(step, island);
   island.mask.assign(island.touching.size(), 0);
   island.axes.resize(count);
   island.residual.resize(count);

@@ -4,6 +4,7 @@
 #include "solver/block_frames.h"
 #include "solver/block_jacobian.h"
 #include "solver/contact_tangent.h"
+#include "solver/elimination_order.h"
 
 #include <array>
 #include <cstdint>
@@ -30,7 +31,7 @@ struct ImplicitIsland {
     BlockJacobian jacobian;
   };
   std::uint64_t pattern = 0;  ///< of which blocks touch which; what the matrix is laid out for
-  bool tooDense = false;      ///< so many blocks touch one another that explicit steps cost less
+  bool tooDense = false;      ///< so much fills in that there are no factors
   bool factorised = false;
   double step_s = 0.0;       ///< the step times the method's factor that the factors are for
   TetherStiffness tether;    ///< the hand's springs that the factors contain
@@ -57,10 +58,14 @@ struct ImplicitIsland {
   std::vector<double> coupledMotion;                       ///< m, [coupled][12]
   std::vector<double> coupledForce;                        ///< N, [direction][coupled][12]
   std::vector<double> correction;                          ///< m, [direction][nodes][12]
-  std::vector<std::int32_t> order;                         ///< working space of `layOut`
-  std::vector<double> height;                              ///< working space of `layOut`, m
-  std::vector<BlockPair> edges;                            ///< working space of `layOut`
+  EliminationOrder order;                                  ///< in which the matrix is laid out
+  std::uint64_t members = 0;                               ///< of the blocks that this order was found for
+  std::size_t orderProducts = 0;                           ///< products of a factorisation then
+  std::vector<BlockPair> edges;                            ///< nodes that touching pairs couple, as last laid out
 };
+
+/// Islands of more blocks than this may be so wide that their factors cost as much as dozens of solutions.
+inline constexpr std::size_t kNarrowBlocks = 60;
 
 /// The own matrix of a node's block.
 inline const BlockJacobian& jacobianOf(const ImplicitIsland& island, std::size_t node) {

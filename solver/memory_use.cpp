@@ -74,7 +74,12 @@ MemoryUse memoryUse(const Simulation& simulation) {
                                        matrix.work, island.touching, island.slot, island.mask, island.axes, island.residual,
                                        island.affine, island.factorTangents, island.tangents, island.coupled, island.coupledAs,
                                        island.coupledMotion, island.coupledForce, island.correction, island.kinds, island.kindOf,
-                                       island.order, island.height, island.edges);
+                                       island.order.nodes, island.order.centre, island.edges, island.direction);
+  }
+  for (const ImplicitIsland& island : engine.implicitIslands) {
+    for (const DissectionSpace& space : island.order.space)
+      use.working += sizeof(space) + sumOf(space.neighbourStart, space.neighbour, space.sorted, space.best, space.place,
+                                           space.reach, space.change);
   }
   for (const RigidIsland& island : engine.rigidIslands) {
     const PivotingSpace& pivoting = island.pivoting;

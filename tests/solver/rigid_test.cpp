@@ -1,4 +1,5 @@
 #include "core/scene.h"
+#include "solver/engine.h"
 #include "solver/measures.h"
 #include "solver/penetration.h"
 #include "solver/run.h"

@@ -7,7 +7,7 @@
 namespace springtower {
 namespace {
 
-constexpr double kWeight_n = 2.0;
+constexpr double kSetWeight_n = 2.0;
 constexpr double kHalf_m = 0.0135;  // of the square on whose corners the body rests
 constexpr double kHeight_m = 0.018;
 constexpr double kFriction = 0.4;
@@ -20,7 +20,7 @@ Square restingSquare(double friction) {
   for (std::size_t i = 0; i < square.size(); ++i) {
     square[i].arm = {i % 2 == 0 ? -kHalf_m : kHalf_m, i < 2 ? -kHalf_m : kHalf_m, 0.0};
     square[i].normal = Vec3::UnitZ();
-    square[i].force = 0.25 * kWeight_n * Vec3::UnitZ();
+    square[i].force = 0.25 * kSetWeight_n * Vec3::UnitZ();
     square[i].friction = friction;
   }
   return square;
@@ -34,7 +34,7 @@ bool stays(const Vec3& force, const Vec3& torque, double friction) {
 // Pulled at a height, it tips when the torque about its edge is that of its weight.
 TEST(Support, TipsOverItsEdge) {
   constexpr double kPulledAt_m = 0.1;
-  const double limit_n = kWeight_n * kHalf_m / kPulledAt_m;
+  const double limit_n = kSetWeight_n * kHalf_m / kPulledAt_m;
   for (const double share : {0.98, 1.02}) {
     const Vec3 force = share * limit_n * Vec3::UnitX();
     const Vec3 torque = Vec3(0.0, 0.0, kPulledAt_m).cross(force);
@@ -46,8 +46,8 @@ TEST(Support, TipsOverItsEdge) {
 // which points keep to Coulomb's cone.
 TEST(Support, SlidesAndTurnsWhenFrictionIsUsedUp) {
   for (const double share : {0.97, 1.03}) {
-    EXPECT_EQ(stays(share * kFriction * kWeight_n * Vec3::UnitY(), Vec3::Zero(), kFriction), share < 1.0) << share;
-    const double turning = kFriction * kWeight_n * std::sqrt(2.0) * kHalf_m;
+    EXPECT_EQ(stays(share * kFriction * kSetWeight_n * Vec3::UnitY(), Vec3::Zero(), kFriction), share < 1.0) << share;
+    const double turning = kFriction * kSetWeight_n * std::sqrt(2.0) * kHalf_m;
     EXPECT_EQ(stays(Vec3::Zero(), share * turning * Vec3::UnitZ(), kFriction), share < 1.0) << share;
   }
 }
@@ -68,7 +68,7 @@ TEST(Support, TakesUpAllOfTheChange) {
     const Vec3 after = point.force + point.added;
     const double shear = after.head<2>().norm();
     EXPECT_GE(after.z(), -1e-12);
-    EXPECT_LE(shear, kFriction * (after.z() + 0.02 * 0.25 * kWeight_n) + 1e-12);
+    EXPECT_LE(shear, kFriction * (after.z() + 0.02 * 0.25 * kSetWeight_n) + 1e-12);
     lifted += point.state == SupportState::lifted ? 1 : 0;
     sliding += point.state == SupportState::slides ? 1 : 0;
   }
