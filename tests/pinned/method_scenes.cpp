@@ -1,0 +1,64 @@
+#include "tests/pinned/pinned_scene.h"
+
+#include <cctype>
+
+namespace springtower {
+namespace {
+
+// Something of everything in few blocks: a stack that sways, a block that is pushed along under others, and one that lands on top
+// with a corner first.
+Scene sampler() {
+  Scene scene = awake(bitCodeScene("(101)-(111)-(101)"));
+  scene.gravity.sway_deg = 0.5;
+  scene.gravity.sway_hz = 2.0;
+  scene.forces.push_back({3, -1, Vec3(0.0, 0.2, 0.0), 0.1, 0.3});
+  BlockSpec falling;
+  falling.centre = Vec3(0.005, 0.0, 3.0 * kBlockHeight_m + 0.025);
+  falling.orientation = Eigen::Quaterniond(0.99, 0.06, 0.04, 0.02).normalized();
+  scene.blocks.push_back(falling);
+  return scene;
+}
+
+PinnedScene withSettings(const char* name, Settings (*change)(Settings)) {
+  return {name, 60, [=] {
+            Scene scene = sampler();
+            scene.settings = change(scene.settings);
+            return scene;
+          }};
+}
+
+// "semi-implicit-euler" as "MethodSemiImplicitEuler".
+std::string pinNameOf(Method method) {
+  std::string name = "Method";
+  bool begins = true;
+  for (const char letter : nameOf(method)) {
+    if (letter != '-') name += begins ? static_cast<char>(std::toupper(static_cast<unsigned char>(letter))) : letter;
+    begins = letter == '-';
+  }
+  return name;
+}
+
+}  // namespace
+
+std::vector<PinnedScene> pinnedMethods() {
+  std::vector<PinnedScene> scenes;
+  for (const Method method :
+       {Method::implicit, Method::implicitEuler, Method::implicitEigen, Method::semiImplicitEuler, Method::midpoint,
+        Method::rungeKutta4, Method::report, Method::rigidPgs, Method::rigidLcp, Method::xpbd, Method::automatic}) {
+    scenes.push_back({pinNameOf(method), 60, [=] {
+                        Scene scene = sampler();
+                        scene.settings.method = method;
+                        return scene;
+                      }});
+  }
+  const auto add = [&](const char* name, Settings (*change)(Settings)) { scenes.push_back(withSettings(name, change)); };
+  add("LumpedInertia", [](Settings s) { return s.inertia = Inertia::lumped, s; });
+  add("FixedSubsteps", [](Settings s) { return s.substeps = 200, s.method = Method::semiImplicitEuler, s; });
+  add("WithoutContinuousTests", [](Settings s) { return s.continuousTests = false, s; });
+  add("FineTolerance", [](Settings s) { return s.tolerance_m = 1e-5, s; });
+  add("SoftAndUndamped", [](Settings s) { return s.tolerance_m = 2e-4, s.dampingTime = 0.0, s.viscoelasticRatio = 0.0, s; });
+  add("LongFrames", [](Settings s) { return s.frame_s = 1.0 / 30.0, s; });
+  return scenes;
+}
+
+}  // namespace springtower
