@@ -1,5 +1,6 @@
 #include "solver/implicit_island.h"
 
+#include "core/hash.h"
 #include "core/lanes.h"
 #include "solver/island_step.h"
 
@@ -186,10 +187,6 @@ std::size_t firstBlock(const IslandStep& step) {
   return static_cast<std::size_t>(step.blocks.front());
 }
 
-void mix(std::uint64_t& hash, std::uint64_t value) {
-  hash = (hash ^ value) * 1099511628211ULL;
-}
-
 // Whether a touching pair couples two nodes: neither side is the floor or asleep.
 bool isCoupled(const IslandStep& step, const Manifold& m) {
   const std::vector<std::uint8_t>& asleep = step.simulation.asleep;
@@ -265,21 +262,22 @@ std::array<double, kAffine> weightsAt(const BlockFrame& frame, const Vec3& place
 void layOut(IslandStep& step, ImplicitIsland& island) {
   Engine& engine = step.engine;
   const std::vector<std::uint8_t>& asleep = step.simulation.asleep;
-  std::uint64_t pattern = 1469598103934665603ULL;
-  for (const std::int32_t block : step.blocks) mix(pattern, static_cast<std::uint64_t>(block));
-  const std::uint64_t members = pattern;
+  Hash hash;
+  for (const std::int32_t block : step.blocks) hash.word(static_cast<std::uint64_t>(block));
+  const std::uint64_t members = hash.value();
   for (const std::int32_t at : step.pairs) {
     const Manifold& m = engine.pairs[static_cast<std::size_t>(at)].manifold;
     if (m.touch == Touch::apart) continue;
-    mix(pattern, static_cast<std::uint64_t>(m.upper) << 32U | static_cast<std::uint32_t>(m.lower));
-    mix(pattern, static_cast<std::uint64_t>(at));
+    hash.word(static_cast<std::uint64_t>(m.upper) << 32U | static_cast<std::uint32_t>(m.lower));
+    hash.word(static_cast<std::uint64_t>(at));
     if (m.lower >= 0) {
-      mix(pattern, std::uint64_t{asleep[static_cast<std::size_t>(m.upper)]} << 1U | asleep[static_cast<std::size_t>(m.lower)]);
+      hash.word(std::uint64_t{asleep[static_cast<std::size_t>(m.upper)]} << 1U | asleep[static_cast<std::size_t>(m.lower)]);
     }
   }
   // A block may have been in another island since this layout was made, so its place in it is written every time.
   const std::size_t count = step.blocks.size();
   for (std::size_t i = 0; i < count; ++i) engine.nodeOf[static_cast<std::size_t>(step.blocks[i])] = static_cast<std::int32_t>(i);
+  const std::uint64_t pattern = hash.value();
   if (pattern == island.pattern) return;
 
   findEdges(step, island);

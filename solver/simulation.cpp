@@ -1,6 +1,7 @@
 #include "solver/simulation.h"
 
 #include "core/error.h"
+#include "core/hash.h"
 #include "solver/choose_method.h"
 #include "solver/engine.h"
 #include "solver/implicit.h"
@@ -202,18 +203,14 @@ void restoreSnapshot(Simulation& s, const Snapshot& snapshot) {
 }
 
 std::uint64_t stateHash(const Simulation& simulation) {
-  std::uint64_t hash = 1469598103934665603ULL;
-  const auto mix = [&](const void* data, std::size_t size) {
-    const auto* bytes = static_cast<const unsigned char*>(data);
-    for (std::size_t i = 0; i < size; ++i) hash = (hash ^ bytes[i]) * 1099511628211ULL;
-  };
-  const auto mixDoubles = [&](const auto& values) { mix(values.data(), values.size() * sizeof(double)); };
+  Hash hash;
+  const auto mixDoubles = [&](const auto& values) { hash.bytes(values.data(), values.size() * sizeof(double)); };
   for (const auto& values : simulation.state.position.component) mixDoubles(values);
   for (const auto& values : simulation.state.velocity.component) mixDoubles(values);
-  mix(simulation.asleep.data(), simulation.asleep.size());
+  hash.bytes(simulation.asleep.data(), simulation.asleep.size());
   for (const NearPair& pair : simulation.engine->pairs) {
     const Manifold& m = pair.manifold;
-    mix(&m.count, sizeof m.count);
+    hash.bytes(&m.count, sizeof m.count);
     mixDoubles(m.u);
     mixDoubles(m.v);
     mixDoubles(m.stretchX);
@@ -224,15 +221,15 @@ std::uint64_t stateHash(const Simulation& simulation) {
   }
   for (const std::vector<ReportContact>& contacts : simulation.engine->report.contacts) {
     for (const ReportContact& contact : contacts) {
-      mix(&contact.first, sizeof contact.first);
-      mix(&contact.second, sizeof contact.second);
-      mix(contact.corner.data(), contact.corner.size());
+      hash.bytes(&contact.first, sizeof contact.first);
+      hash.bytes(&contact.second, sizeof contact.second);
+      hash.bytes(contact.corner.data(), contact.corner.size());
       mixDoubles(contact.weight);
       mixDoubles(contact.normal);
-      mix(&contact.impulse, sizeof contact.impulse);
+      hash.bytes(&contact.impulse, sizeof contact.impulse);
     }
   }
-  return hash;
+  return hash.value();
 }
 
 }  // namespace springtower

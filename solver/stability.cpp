@@ -1,5 +1,6 @@
 #include "solver/stability.h"
 
+#include "core/hash.h"
 #include "solver/inertia.h"
 #include "solver/spring_force.h"
 
@@ -109,18 +110,17 @@ double blockSpectralRadius(const BlockModel& model, Inertia inertia, std::size_t
 }
 
 std::uint64_t contactSignature(const Engine& engine, std::span<const std::int32_t> pairs) {
-  std::uint64_t hash = 1469598103934665603ULL;
-  const auto mix = [&](std::uint64_t value) { hash = (hash ^ value) * 1099511628211ULL; };
+  Hash hash;
   for (const std::int32_t at : pairs) {
     const Manifold& m = engine.pairs[static_cast<std::size_t>(at)].manifold;
     if (m.touch == Touch::apart) continue;
-    mix(static_cast<std::uint64_t>(at));
-    mix(static_cast<std::uint64_t>(m.count) + 16U * static_cast<std::uint64_t>(m.incidentFace) +
-        256U * static_cast<std::uint64_t>(m.referenceFace));
+    hash.word(static_cast<std::uint64_t>(at));
+    hash.word(static_cast<std::uint64_t>(m.count) + 16U * static_cast<std::uint64_t>(m.incidentFace) +
+              256U * static_cast<std::uint64_t>(m.referenceFace));
     for (std::size_t p = 0; p < static_cast<std::size_t>(m.count); ++p)
-      mix(static_cast<std::uint64_t>(16.0 * std::log2(m.scale[p])));
+      hash.word(static_cast<std::uint64_t>(16.0 * std::log2(m.scale[p])));
   }
-  return hash;
+  return hash.value();
 }
 
 }  // namespace springtower
