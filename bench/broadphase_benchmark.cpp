@@ -3,7 +3,7 @@
 #include "broadphase/islands.h"
 #include "broadphase/sort_and_sweep.h"
 #include "broadphase/swept_boxes.h"
-#include "core/scene.h"
+#include "core/scene/scene.h"
 #include "core/state.h"
 
 #include <benchmark/benchmark.h>

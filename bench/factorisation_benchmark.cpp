@@ -2,7 +2,7 @@
 // uses it in double and in Eigen's own order: LltOrdered). The matrix has the pattern of a tower of 18 rows (54 nodes of 12
 // freedoms, each coupled to the three below) and random entries that make it positive definite. Patterns are analysed before; a
 // factorisation and a solution with its factors are timed, each alone.
-#include "solver/block_cholesky.h"
+#include "solver/algebra/block_ldlt.h"
 
 #include <Eigen/Sparse>
 #include <algorithm>

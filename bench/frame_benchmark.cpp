@@ -3,8 +3,8 @@
 
 #include "bench/towers.h"
 #include "core/processor_time.h"
-#include "solver/memory_use.h"
-#include "solver/simulation.h"
+#include "solver/world/memory_use.h"
+#include "solver/world/simulation.h"
 
 #include <benchmark/benchmark.h>
 #include <oneapi/tbb/global_control.h>

@@ -5,11 +5,11 @@
 //   gate_scenes SCENE 300  runs it for 300 frames instead: what accuracy it settles to
 
 #include "core/error.h"
-#include "core/scene.h"
+#include "core/scene/scene.h"
 #include "core/version.h"
-#include "solver/measures.h"
-#include "solver/penetration.h"
-#include "solver/simulation.h"
+#include "solver/metrics/measures.h"
+#include "solver/metrics/penetration.h"
+#include "solver/world/simulation.h"
 
 #include <algorithm>
 #include <cstdint>

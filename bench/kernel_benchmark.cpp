@@ -6,12 +6,15 @@
 #include "narrowphase/crossing.h"
 #include "narrowphase/manifold.h"
 #include "narrowphase/separation.h"
-#include "solver/block_frames.h"
-#include "solver/contact_force.h"
-#include "solver/forces_now.h"
-#include "solver/island_step.h"
-#include "solver/rest.h"
-#include "solver/spring_force.h"
+#include "solver/block/affine.h"
+#include "solver/block/springs.h"
+#include "solver/contact/evaluate_forces.h"
+#include "solver/contact/query.h"
+#include "solver/contact/update.h"
+#include "solver/explicit/leapfrog.h"
+#include "solver/law/contact_force.h"
+#include "solver/sleep/rest.h"
+#include "solver/world/island_step.h"
 
 #include <benchmark/benchmark.h>
 #include <cstdint>

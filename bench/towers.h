@@ -1,8 +1,8 @@
 #pragma once
 
-#include "core/scene.h"
-#include "solver/engine.h"
-#include "solver/simulation.h"
+#include "core/scene/scene.h"
+#include "solver/world/engine.h"
+#include "solver/world/simulation.h"
 
 #include <cmath>
 #include <cstdint>

@@ -33,11 +33,11 @@ function(springtower_precompile target)
 endfunction()
 
 # springtower_add_library(<folder> PUBLIC <targets> PRIVATE <targets>)
-# Adds springtower_<folder> from all sources of the current folder. A folder that has only headers becomes an interface library.
+# Adds springtower_<folder> from all sources of the current folder and the folders in it. A folder that has only headers becomes an interface library.
 function(springtower_add_library folder)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "PUBLIC;PRIVATE")
   set(target springtower_${folder})
-  file(GLOB sources CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/*.cpp")
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/*.cpp")
   if(sources)
     add_library(${target} STATIC ${sources})
     springtower_configure_target(${target})

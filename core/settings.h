@@ -52,7 +52,7 @@ struct Settings {
   Sleep sleep = Sleep::on;
   double frame_s = 1.0 / 60.0;  ///< s; one frame of a 60 Hz display
   /// m; no resting penetration and no row compression above it. Where none is given it is in proportion to the blocks
-  /// (core/scene.h, toleranceOf); with substeps alone the largest stable stiffness is taken.
+  /// (core/scene/scene.h, toleranceOf); with substeps alone the largest stable stiffness is taken.
   std::optional<double> tolerance_m;
   int substeps = 0;              ///< steps a frame; 0 takes them from the tolerance
   bool forceUnstable = false;    ///< allow a tolerance and substeps that do not fit together

@@ -1,6 +1,6 @@
 #include "narrowphase/crossing.h"
 
-#include "narrowphase/time_of_impact.h"
+#include "narrowphase/exact/time_of_impact.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "narrowphase/query_set.h"
+#include "narrowphase/exact/query_set.h"
 #include "tests/support/program.h"
 
 #include <cmath>

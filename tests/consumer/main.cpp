@@ -1,7 +1,7 @@
 // A program outside the repository: it finds the installed library, lets a small tower stand for a second and looks at it.
-#include "core/scene.h"
+#include "core/scene/scene.h"
 #include "core/version.h"
-#include "solver/simulation.h"
+#include "solver/world/simulation.h"
 
 #include <cstdio>
 

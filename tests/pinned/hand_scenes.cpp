@@ -1,7 +1,7 @@
-#include "solver/grip.h"
-#include "solver/moves.h"
+#include "solver/hand/grip.h"
+#include "solver/hand/moves.h"
 #include "tests/pinned/pinned_scene.h"
-#include "tests/solver/take.h"
+#include "tests/solver/hand/take.h"
 
 #include <optional>
 

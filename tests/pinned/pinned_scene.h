@@ -1,7 +1,7 @@
 #pragma once
 
-#include "core/scene.h"
-#include "solver/simulation.h"
+#include "core/scene/scene.h"
+#include "solver/world/simulation.h"
 
 #include <functional>
 #include <string>

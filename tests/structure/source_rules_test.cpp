@@ -38,6 +38,28 @@ TEST(SourceRules, EachFolderKnowsItselfAndTheFoldersBelow) {
   }
 }
 
+TEST(SourceRules, ARoomOfTheSolverKnowsThoseBeforeIt) {
+  EXPECT_THAT(brokenRules("solver/implicit/newton.cpp", "#include \"solver/contact/update.h\"\n"), IsEmpty());
+  EXPECT_THAT(brokenRules("solver/implicit/newton.cpp", "#include \"solver/implicit/system.h\"\n"), IsEmpty());
+  EXPECT_THAT(brokenRules("solver/contact/update.cpp", "#include \"solver/implicit/newton.h\"\n"),
+              ElementsAre(HasSubstr("solver/contact must not know solver/implicit")));
+  EXPECT_THAT(brokenRules("solver/contact/update.cpp", "#include \"solver/attic/old.h\"\n"), ElementsAre(HasSubstr("no place")));
+  EXPECT_THAT(brokenRules("apps/viewer/main.cpp", "#include \"solver/implicit/system.h\"\n"), IsEmpty());
+}
+
+TEST(SourceRules, FunctionsAreShort) {
+  const auto function = [](int lines, const std::string& margin) {
+    std::string text = margin + "int f(int x) {\n";
+    for (int line = 2; line < lines; ++line) text += margin + "  ++x;\n";
+    return text + margin + "}\n";
+  };
+  EXPECT_THAT(brokenRules("core/state.cpp", function(kMaxFunctionLines, "")), IsEmpty());
+  EXPECT_THAT(brokenRules("core/state.cpp", function(kMaxFunctionLines + 1, "")),
+              ElementsAre("core/state.cpp:61: ends a function of 61 lines, more than 60"));
+  EXPECT_THAT(brokenRules("core/state.cpp", "struct S {\n" + function(kMaxFunctionLines + 1, "  ") + "};\n"),
+              ElementsAre(HasSubstr("61 lines")));
+}
+
 TEST(SourceRules, NameTheFileTheLineAndTheReason) {
   EXPECT_THAT(brokenRules("core/state.cpp", "#include \"core/state.h\"\n\n  #  include \"solver/step.h\"\n"),
               ElementsAre("core/state.cpp:3: #include of solver/step.h: core must not know solver"));
@@ -56,7 +78,7 @@ TEST(SourceRules, HeadersAreGuardedAndFilesAreShort) {
   std::string text;
   for (int line = 0; line < kMaxLines; ++line) text += "//\n";
   EXPECT_THAT(brokenRules("core/state.cpp", text), IsEmpty());
-  EXPECT_THAT(brokenRules("core/state.cpp", text + "//\n"), ElementsAre("core/state.cpp: 401 lines, more than 400"));
+  EXPECT_THAT(brokenRules("core/state.cpp", text + "//\n"), ElementsAre("core/state.cpp: 801 lines, more than 800"));
 }
 
 TEST(SourceRules, AFilePlantedDeepInATreeIsFound) {
@@ -65,8 +87,19 @@ TEST(SourceRules, AFilePlantedDeepInATreeIsFound) {
   std::filesystem::create_directories(root / "broadphase/detail");
   std::ofstream(root / "broadphase/sweep.cpp") << "#include \"core/state.h\"\n";
   EXPECT_THAT(brokenRulesInTree(root), IsEmpty());
-  std::ofstream(root / "broadphase/detail/islands.h") << "#pragma once\n#include \"narrowphase/cubic.h\"\n";
+  std::ofstream(root / "broadphase/detail/islands.h") << "#pragma once\n#include \"narrowphase/exact/cubic.h\"\n";
   EXPECT_THAT(brokenRulesInTree(root), ElementsAre(HasSubstr("broadphase/detail/islands.h:2: ")));
+  std::filesystem::remove_all(root);
+}
+
+TEST(SourceRules, TheSolverHasFewFilesBesideItsFolders) {
+  const std::filesystem::path root = std::filesystem::path(testing::TempDir()) / "springtower_flat_solver";
+  std::filesystem::remove_all(root);
+  std::filesystem::create_directories(root / "solver");
+  for (int i = 0; i < kMaxFlatFiles; ++i) std::ofstream(root / ("solver/file" + std::to_string(i) + ".cpp")) << "\n";
+  EXPECT_THAT(brokenRulesInTree(root), IsEmpty());
+  std::ofstream(root / "solver/one_more.cpp") << "\n";
+  EXPECT_THAT(brokenRulesInTree(root), ElementsAre(HasSubstr("13 files")));
   std::filesystem::remove_all(root);
 }
 

@@ -1,8 +1,8 @@
 #include "tests/support/block_scenes.h"
 
-#include "solver/inertia.h"
-#include "solver/spring_force.h"
-#include "solver/stability.h"
+#include "solver/block/inertia.h"
+#include "solver/block/springs.h"
+#include "solver/explicit/stable_step.h"
 
 #include <Eigen/Eigenvalues>
 #include <cstdint>

@@ -1,0 +1,107 @@
+// The command line program. Exit codes: 0 done, 1 an answer differs (--check), 2 bad input or arguments, 3 diverged, 70 an error
+// of the program itself.
+#include "apps/commands/chart/command.h"
+#include "apps/commands/profile/command.h"
+#include "apps/commands/run/command.h"
+#include "apps/commands/statics/command.h"
+#include "apps/commands/validate/command.h"
+#include "apps/commands/verdict/verdict.h"
+#include "core/error.h"
+#include "core/version.h"
+
+#include <CLI/CLI.hpp>
+#include <exception>
+#include <fmt/format.h>
+#include <iostream>
+#include <new>
+
+namespace springtower {
+namespace {
+
+constexpr int kBadInput = 2;
+constexpr int kDiverged = 3;
+constexpr int kProgramError = 70;
+
+constexpr std::string_view kFooter = R"help(examples:
+  springtower run tower:18                          the full tower for 10 simulated seconds
+  springtower run "(010)-(010)-(011)" --seconds 5 --picture tower.png
+  springtower verdict towers.jsonl                  which towers of a list stand
+  springtower profile --quick                       how long a frame takes
+  springtower statics tower:18                      whether it can stand at all, and by what margin
+  springtower chart --quick                         speed against accuracy, every method
+  springtower validate --out validation             every claim about it, measured
+  springtower run --help                            all options of a command
+exit codes: 0 done, 1 an answer differs (--check), 2 bad input, 3 the simulation diverged)help";
+
+int complain(const std::string& message, int code) {
+  fmt::print(stderr, "springtower: {}\n", onOneLine(message));
+  return code;
+}
+
+// CLI11 has an exit code for each kind of mistake; here they are all bad arguments.
+int complainAboutArguments(const CLI::App& program, const CLI::ParseError& error) {
+  std::string hint = "springtower --help";
+  for (const CLI::App* command : program.get_subcommands()) hint = fmt::format("springtower {} --help", command->get_name());
+  const bool noCommand = program.get_subcommands().empty() && error.get_name() == "RequiredError";
+  complain(noCommand ? "found no command, allowed are run, verdict, profile, statics, chart and validate" : error.what(),
+           kBadInput);
+  fmt::print(stderr, "Try '{}'.\n", hint);
+  return kBadInput;
+}
+
+int run(int argc, char** argv) {
+  CLI::App program("Towers of spring blocks, simulated until they stand or fall.", "springtower");
+  program.set_help_flag("-h,--help", "prints this help");
+  program.set_version_flag("--version", fmt::format("springtower {} ({}, {})", kVersion, kGitCommit, kBuildType),
+                           "prints the version");
+  program.set_help_all_flag("--help-all", "prints the help of all commands");
+  program.require_subcommand(1);
+  program.footer(std::string(kFooter));
+  program.get_formatter()->column_width(34);
+  RunCommand runCommand;
+  VerdictCommand verdictCommand;
+  ProfileCommand profileCommand;
+  StaticsCommand staticsCommand;
+  ValidateCommand validateCommand;
+  const CLI::App* runApp = defineRun(program, runCommand);
+  defineVerdict(program, verdictCommand);
+  const CLI::App* profileApp = defineProfile(program, profileCommand);
+  const CLI::App* staticsApp = defineStatics(program, staticsCommand);
+  ChartCommand chartCommand;
+  const CLI::App* chartApp = defineChart(program, chartCommand);
+  const CLI::App* validateApp = defineValidate(program, validateCommand);
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return program.exit(error);
+    return complainAboutArguments(program, error);
+  }
+  if (profileApp->parsed()) return executeProfile(profileCommand);
+  if (staticsApp->parsed()) return executeStatics(staticsCommand);
+  if (chartApp->parsed()) return executeChart(chartCommand);
+  if (validateApp->parsed()) return executeValidate(validateCommand);
+  return runApp->parsed() ? executeRun(runCommand) : executeVerdict(verdictCommand);
+}
+
+}  // namespace
+}  // namespace springtower
+
+int main(int argc, char** argv) {
+  using springtower::complain;
+  try {
+    const int code = springtower::run(argc, argv);
+    // A full disk or a closed pipe behind standard output must not pass unseen.
+    if (std::fflush(stdout) != 0 || !std::cout.flush()) {
+      return complain("standard output: writing failed", springtower::kBadInput);
+    }
+    return code;
+  } catch (const springtower::InputError& error) {
+    return complain(error.what(), springtower::kBadInput);
+  } catch (const springtower::DivergenceError& error) {
+    return complain(error.what(), springtower::kDiverged);
+  } catch (const std::bad_alloc&) {
+    return complain("not enough memory for this scene", springtower::kBadInput);
+  } catch (const std::exception& error) {
+    return complain(error.what(), springtower::kProgramError);
+  }
+}

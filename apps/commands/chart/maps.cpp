@@ -1,0 +1,211 @@
+#include "apps/commands/chart/maps.h"
+
+#include "core/error.h"
+#include "core/processor_time.h"
+#include "core/scene/scene.h"
+#include "solver/metrics/measures.h"
+#include "solver/metrics/penetration.h"
+#include "solver/world/engine.h"
+#include "solver/world/simulation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/task_arena.h>
+
+namespace springtower {
+namespace {
+
+// The nudge: from it an unstable step grows, and a stable one stays below what counts as jitter.
+constexpr double kNudge_m_s = 5e-4;
+constexpr double kJitter_m_s = 1e-3;  // root mean square speed of all corners
+constexpr int kBisections = 5;
+
+constexpr std::array kMapped = {Method::semiImplicitEuler, Method::midpoint,      Method::rungeKutta4,
+                                Method::implicit,          Method::implicitEuler, Method::report,
+                                Method::rigidPgs,          Method::rigidLcp,      Method::xpbd};
+
+// Dashpots off, so that the step meets springs alone, as theory has it.
+Scene sceneOf(Method method, int rows, double tolerance_m, int steps) {
+  Scene scene = towerScene(rows);
+  scene.settings.method = method;
+  scene.settings.sleep = Sleep::off;
+  scene.settings.tolerance_m = tolerance_m;
+  scene.settings.substeps = steps;
+  scene.settings.forceUnstable = true;
+  scene.settings.dampingTime = 0.0;
+  return scene;
+}
+
+double largestOmega(const Simulation& simulation) {
+  double squared = 0.0;
+  for (const BlockClock& clock : simulation.engine->clock) squared = std::max(squared, clock.spectralRadius);
+  return std::sqrt(squared);
+}
+
+// What a second half of a run showed.
+struct Seen {
+  double speed_m_s = 0.0;
+  double move_m = 0.0;
+  double penetration_m = 0.0;
+  double sag_m = 0.0;  // of a row
+};
+
+MapVerdict verdictOf(const Seen& seen, double seconds) {
+  if (seen.speed_m_s > kJitter_m_s) return MapVerdict::jitters;
+  if (seen.move_m > kMapTolerance_m * seconds) return MapVerdict::creeps;
+  if (seen.penetration_m > kMapTolerance_m || seen.sag_m > kMapTolerance_m) return MapVerdict::sags;
+  return MapVerdict::stands;
+}
+
+MapPoint tried(Method method, int rows, double tolerance_m, int steps, const MapLimits& limits) {
+  const double begin_s = threadTime_s();
+  Simulation simulation(sceneOf(method, rows, tolerance_m, steps));
+  const double frame_s = simulation.scene.settings.frame_s;
+  MapPoint point;
+  point.steps = steps;
+  point.step_s = frame_s / steps;
+  point.rows = rows;
+  if (!isRigid(method)) point.stiffness = simulation.contactStiffness_n_m;
+  const std::vector<FittedBox> start = fittedBoxes(simulation.state.position);
+  std::vector<int> row;
+  for (const BlockSpec& block : simulation.scene.blocks) row.push_back(block.row);
+  const CornerArray closed = closedRows(simulation.state.position, row, true);
+  const long frames = std::max(4L, std::lround(limits.seconds / frame_s));
+  const long half = frames / 2;
+  CornerArray settled;
+  double squares = 0.0;
+  try {
+    for (long frame = 0; frame < frames; ++frame) {
+      stepFrame(simulation);
+      point.omega = std::max(point.omega, largestOmega(simulation));
+      if (frame == 0) kick(simulation, simulation.model.blockCount() - 1, Vec3(kNudge_m_s, 0.0, 0.0));
+      if (frame == half) settled = simulation.state.position;
+      const double speed = rootMeanSquareCornerSpeed(simulation.state.velocity);
+      if (frame > half) squares += speed * speed / static_cast<double>(frames - 1 - half);
+      if (!standing(simulation.model, start, simulation.state.position).stands) {
+        point.verdict = MapVerdict::blowsUp;
+        return point;
+      }
+      if (threadTime_s() - begin_s > limits.case_s) {
+        point.verdict = MapVerdict::timesOut;
+        return point;
+      }
+    }
+  } catch (const DivergenceError&) {
+    point.verdict = MapVerdict::blowsUp;
+    return point;
+  }
+  PenetrationWorkspace workspace;
+  const CornerArray& position = simulation.state.position;
+  point.verdict = verdictOf({std::sqrt(squares), largestCornerMove(settled, position),
+                             maxPenetration(position, true, workspace).depth, std::abs(topHeightError(closed, position)) / rows},
+                            0.5 * limits.seconds);
+  return point;
+}
+
+bool calm(const MapPoint& point) {
+  return point.verdict != MapVerdict::jitters && point.verdict != MapVerdict::blowsUp && point.verdict != MapVerdict::timesOut;
+}
+
+// One row of a map: all steps, then the boundary between the longest calm step and the next longer one.
+void lookAlong(StabilityMap& map, int rows, double tolerance_m, const MapLimits& limits) {
+  std::vector<MapPoint> line;
+  for (const int steps : limits.steps) {
+    if (!line.empty() && line.back().verdict == MapVerdict::timesOut) {  // shorter steps take longer still
+      line.push_back(line.back());
+      line.back().steps = steps;
+      line.back().step_s = line[0].step_s * line[0].steps / steps;
+    } else {
+      line.push_back(tried(map.method, rows, tolerance_m, steps, limits));
+    }
+  }
+  double omega = 0.0;  // of those that came through their first frame
+  for (const MapPoint& point : line) omega = std::max(omega, point.verdict == MapVerdict::blowsUp ? 0.0 : point.omega);
+  for (MapPoint& point : line) point.omega = omega;
+  map.points.insert(map.points.end(), line.begin(), line.end());
+  const auto first = std::find_if(line.begin(), line.end(), calm);
+  if (first == line.begin() || first == line.end()) return;
+  MapPoint last = *first;
+  int tooFew = (first - 1)->steps;
+  for (int i = 0; i < kBisections && last.steps - tooFew > 1; ++i) {
+    const int middle = static_cast<int>(std::lround(std::sqrt(static_cast<double>(tooFew) * last.steps)));
+    const MapPoint point = tried(map.method, rows, tolerance_m, std::clamp(middle, tooFew + 1, last.steps - 1), limits);
+    if (calm(point)) {
+      last = point;
+      last.omega = omega;
+    } else {
+      tooFew = point.steps;
+    }
+  }
+  map.boundary.push_back(last);
+}
+
+struct Row {
+  std::size_t map;
+  int rows;
+  double tolerance_m;
+};
+
+std::vector<StabilityMap> emptyMaps(const MapLimits& limits) {
+  std::vector<StabilityMap> maps;
+  for (const Method method : limits.methods.empty() ? mappedMethods() : limits.methods) {
+    if (!isRigid(method)) maps.push_back({method, MapAxis::stiffness, {}, {}});
+    maps.push_back({method, MapAxis::rows, {}, {}});
+  }
+  return maps;
+}
+
+std::vector<Row> rowsOf(const std::vector<StabilityMap>& maps, const MapLimits& limits) {
+  constexpr int kRowsOverStiffness = 3;
+  std::vector<Row> rows;
+  for (std::size_t m = 0; m < maps.size(); ++m) {
+    if (maps[m].axis == MapAxis::stiffness) {
+      for (const double tolerance_m : limits.tolerances_m) rows.push_back({m, kRowsOverStiffness, tolerance_m});
+    } else {
+      for (const int count : limits.rows) rows.push_back({m, count, kMapTolerance_m});
+    }
+  }
+  return rows;
+}
+
+}  // namespace
+
+std::vector<Method> mappedMethods() {
+  return {kMapped.begin(), kMapped.end()};
+}
+
+int mapRows(const MapLimits& limits) {
+  return static_cast<int>(rowsOf(emptyMaps(limits), limits).size());
+}
+
+std::vector<StabilityMap> measureMaps(const MapLimits& limits, const std::function<void(const StabilityMap&)>& progress) {
+  std::vector<StabilityMap> maps = emptyMaps(limits);
+  const std::vector<Row> rows = rowsOf(maps, limits);
+  std::vector<StabilityMap> found(rows.size());
+  std::mutex mutex;
+  tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t i) {
+    found[i].method = maps[rows[i].map].method;
+    found[i].axis = maps[rows[i].map].axis;
+    // Apart from the others, whose time a waiting thread would else count as this one's.
+    tbb::this_task_arena::isolate([&] { lookAlong(found[i], rows[i].rows, rows[i].tolerance_m, limits); });
+    const std::scoped_lock lock(mutex);
+    progress(found[i]);
+  });
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    StabilityMap& map = maps[rows[i].map];
+    map.points.insert(map.points.end(), found[i].points.begin(), found[i].points.end());
+    map.boundary.insert(map.boundary.end(), found[i].boundary.begin(), found[i].boundary.end());
+  }
+  return maps;
+}
+
+double longestStableStep(Method method, double omega) {
+  if (!(omega > 0.0)) return 0.0;
+  if (method == Method::semiImplicitEuler) return 2.0 / omega;
+  if (method == Method::rungeKutta4) return 2.0 * std::sqrt(2.0) / omega;
+  return 0.0;
+}
+
+}  // namespace springtower

@@ -1,0 +1,255 @@
+#include "apps/commands/profile/charts.h"
+
+#include "apps/plot/report_figures.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <map>
+#include <set>
+
+namespace springtower {
+namespace {
+
+constexpr double kScreenRate_hz = 60.0;
+constexpr int kReportStyle = 6;  // grey
+
+// A method with its tolerance and threads: one line of a chart.
+struct Series {
+  std::string method;
+  double tolerance_m;
+  int threads;
+  auto operator<=>(const Series&) const = default;
+};
+
+Series seriesOf(const ProfileResult& result) {
+  return {result.methodName, result.what.tolerance_m, result.what.threads};
+}
+
+// The series of a profile in the order of their first result, so that each has one colour in all charts.
+std::vector<Series> allSeries(const Profile& profile) {
+  std::vector<Series> all;
+  for (const ProfileResult& result : profile.results) {
+    if (std::find(all.begin(), all.end(), seriesOf(result)) == all.end()) all.push_back(seriesOf(result));
+  }
+  return all;
+}
+
+// Says only what differs between the series.
+std::string nameOf(const Series& series, const std::vector<Series>& all) {
+  std::string name = series.method;
+  const auto differs = [&](auto member) {
+    return std::any_of(all.begin(), all.end(), [&](const Series& other) { return other.*member != series.*member; });
+  };
+  if (differs(&Series::tolerance_m)) name += fmt::format(", {:g} mm", 1e3 * series.tolerance_m);
+  if (differs(&Series::threads)) name += fmt::format(", {} thread{}", series.threads, series.threads == 1 ? "" : "s");
+  return name;
+}
+
+std::string describe(ProfileScene scene) {
+  switch (scene) {
+    case ProfileScene::rest:
+      return "tower at rest, all blocks awake";
+    case ProfileScene::sway:
+      return "tower at rest while gravity sways by 0.1 degree at 1 Hz, all blocks awake";
+    case ProfileScene::heights:
+      return "tower at rest, heights varying by 0.2 mm, all blocks awake";
+    case ProfileScene::pull:
+      return "a block of the middle row pulled out at 4 cm/s, all blocks awake";
+    case ProfileScene::pullSleep:
+      return "a block of the middle row pulled out at 4 cm/s, with sleep";
+    case ProfileScene::collapse:
+      return "gravity tilted by 14.5 degrees";
+    case ProfileScene::asleep:
+      return "tower asleep";
+    case ProfileScene::towers:
+      return "many towers at rest, all blocks awake";
+    case ProfileScene::pile:
+      return "one stack of 108 blocks a row, landing after a fall of 10 cm";
+  }
+  return "";
+}
+
+// What all series have in common, for the line under the title.
+std::string commonOf(const std::vector<Series>& all) {
+  std::set<double> tolerances;
+  std::set<int> threads;
+  for (const Series& series : all) {
+    tolerances.insert(series.tolerance_m);
+    threads.insert(series.threads);
+  }
+  std::string text;
+  if (tolerances.size() == 1) text += fmt::format(", tolerance {:g} mm", 1e3 * *tolerances.begin());
+  if (threads.size() == 1) text += fmt::format(", {} thread{}", *threads.begin(), *threads.begin() == 1 ? "" : "s");
+  return text;
+}
+
+std::string costNote(const Profile& profile) {
+  return fmt::format(
+      "Frame cost: processor time on one thread, wall time on more; of each of up to {} frames the least of {} samples, then the "
+      "median. ",
+      profile.limits.frames, profile.limits.samples);
+}
+
+class Charts {
+ public:
+  explicit Charts(const Profile& profile) : profile_(profile), series_(allSeries(profile)) {
+    for (const ProfileResult& result : profile.results) {
+      if (result.failure.empty()) byScene_[result.what.scene].push_back(&result);
+    }
+  }
+
+  std::vector<NamedPlot> all() {
+    for (const auto& [scene, results] : byScene_) {
+      if (scene != ProfileScene::towers) rowsAgainstRate(scene, results);
+      stages(scene, results);
+      if (scene == ProfileScene::pull || scene == ProfileScene::pullSleep || scene == ProfileScene::collapse ||
+          scene == ProfileScene::pile) {
+        frameByFrame(scene, results);
+      }
+    }
+    if (const auto rest = byScene_.find(ProfileScene::rest); rest != byScene_.end()) figure623(rest->second);
+    if (const auto many = byScene_.find(ProfileScene::towers); many != byScene_.end()) manyTowers(many->second);
+    return std::move(charts_);
+  }
+
+ private:
+  using Results = std::vector<const ProfileResult*>;
+
+  Plot plot(std::string title, ProfileScene scene) {
+    Plot made;
+    made.title = std::move(title);
+    made.subtitle = describe(scene) + commonOf(series_);
+    made.footnote = costNote(profile_) + footnote(profile_.provenance);
+    return made;
+  }
+
+  // One line for each series that has results.
+  template <class Point>
+  void addLines(Plot& plot, const Results& results, const Point& point) {
+    for (std::size_t i = 0; i < series_.size(); ++i) {
+      PlotLine line;
+      line.name = nameOf(series_[i], series_);
+      line.style = static_cast<int>(i);
+      for (const ProfileResult* result : results) {
+        if (seriesOf(*result) == series_[i]) line.points.push_back(point(*result));
+      }
+      std::sort(line.points.begin(), line.points.end(), [](const PlotPoint& a, const PlotPoint& b) { return a.x < b.x; });
+      if (!line.points.empty()) plot.lines.push_back(std::move(line));
+    }
+  }
+
+  void rowsAgainstRate(ProfileScene scene, const Results& results) {
+    Plot chart = plot("Rows of the tower against frame rate", scene);
+    chart.x = {"rows", false, 0.0};
+    chart.y = {"frames a second", true};
+    addLines(chart, results, [](const ProfileResult& r) {
+      return PlotPoint{static_cast<double>(r.what.rows), r.framesPerSecond()};
+    });
+    chart.references = {{kReportRate_hz, "12: the report's real time"}, {kScreenRate_hz, "60: a screen's"}};
+    charts_.emplace_back(fmt::format("rows_{}", nameOf(scene)), std::move(chart));
+  }
+
+  // Stacked stage times over rows (or towers), a chart for each series.
+  void stages(ProfileScene scene, const Results& results) {
+    for (std::size_t i = 0; i < series_.size(); ++i) {
+      Plot chart = plot("Where the time of a frame goes", scene);
+      chart.subtitle = fmt::format("{}: {}{}", nameOf(series_[i], series_), describe(scene), commonOf(series_));
+      const bool many = scene == ProfileScene::towers;
+      chart.x.title = many ? "towers" : "rows";
+      chart.y = {"ms a frame, mean, wall time summed over threads", false, 0.0};
+      for (const std::string_view name : kStageNames) {
+        std::string label(name);
+        std::replace(label.begin(), label.end(), '_', ' ');
+        chart.bars.layers.push_back({label, {}});
+      }
+      double place = 0.0;
+      for (const ProfileResult* result : results) {
+        if (seriesOf(*result) != series_[i]) continue;
+        chart.bars.left.push_back(place - 0.38);
+        chart.bars.right.push_back(place + 0.38);
+        chart.x.labels.emplace_back(place, fmt::format("{}", many ? result->what.towers : result->what.rows));
+        for (std::size_t s = 0; s < kStages; ++s) chart.bars.layers[s].heights.push_back(result->stage_ms[s]);
+        place += 1.0;
+      }
+      if (place == 0.0) continue;
+      chart.x.least = -0.6;
+      chart.x.most = place - 0.4;
+      charts_.emplace_back(fmt::format("stages_{}_{}", nameOf(scene), fileNameOf(i)), std::move(chart));
+    }
+  }
+
+  // A logarithmic axis, or ours would be out of sight.
+  void figure623(const Results& results) {
+    Plot chart = plot("The report's Figure 6.23: frame rate against rows in tower", ProfileScene::rest);
+    chart.footnote = std::string(kFigure623Note) + " " + chart.footnote;
+    chart.x = {"rows", false, 0.0};
+    chart.y = {"frames a second", true};
+    PlotLine reported{"report, 2003", {}, Marker::hollow, false};
+    reported.style = kReportStyle;
+    for (const RatePoint& point : kFigure623) reported.points.push_back({point.rows, point.framesPerSecond});
+    addLines(chart, results, [](const ProfileResult& r) {
+      return PlotPoint{static_cast<double>(r.what.rows), r.framesPerSecond()};
+    });
+    chart.lines.push_back(std::move(reported));
+    chart.references = {{kReportRate_hz, "12: the report's real time"}, {kScreenRate_hz, "60: a screen's"}};
+    charts_.emplace_back("figure_6_23", std::move(chart));
+  }
+
+  void manyTowers(const Results& results) {
+    Plot chart = plot("Many towers: blocks against time", ProfileScene::towers);
+    chart.x = {"blocks", true};
+    chart.y = {"ms a frame", true};
+    addLines(chart, results, [](const ProfileResult& r) { return PlotPoint{static_cast<double>(r.blocks), r.cost().median}; });
+    chart.references = {{1e3 / kScreenRate_hz, "16.7 ms: a frame at 60 Hz"}};
+    charts_.emplace_back("towers", std::move(chart));
+  }
+
+  // Each frame of the tower nearest to the game's 18 rows, and how the frames are spread.
+  void frameByFrame(ProfileScene scene, const Results& results) {
+    const auto nearest = std::min_element(results.begin(), results.end(), [](const ProfileResult* a, const ProfileResult* b) {
+      return std::abs(a->what.rows - 18) < std::abs(b->what.rows - 18);
+    });
+    const int rows = (*nearest)->what.rows;
+    Plot chart = plot(fmt::format("Frame by frame, {} rows", rows), scene);
+    chart.x = {"frame", false, 0.0};
+    chart.y = {"ms", true};
+    for (const ProfileResult* result : results) {
+      if (result->what.rows != rows) continue;
+      const auto at = static_cast<std::size_t>(std::find(series_.begin(), series_.end(), seriesOf(*result)) - series_.begin());
+      PlotLine line{nameOf(series_[at], series_), {}, Marker::none};
+      line.style = static_cast<int>(at);
+      for (std::size_t i = 0; i < result->frame_ms.size(); ++i)
+        line.points.push_back({static_cast<double>(i + 1), result->frame_ms[i]});
+      chart.lines.push_back(std::move(line));
+
+      Plot spread = plot(fmt::format("How frames are spread, {} rows", rows), scene);
+      spread.subtitle = fmt::format("{}: {}{}", nameOf(series_[at], series_), describe(scene), commonOf(series_));
+      spread.x = {"ms a frame"};
+      spread.y = {"frames", false, 0.0};
+      spread.bars = histogram("frames", result->frame_ms, 24);
+      charts_.emplace_back(fmt::format("spread_{}_{}", nameOf(scene), fileNameOf(at)), std::move(spread));
+    }
+    chart.references = {{1e3 / kScreenRate_hz, "16.7 ms: a frame at 60 Hz"}};
+    charts_.emplace_back(fmt::format("frames_{}", nameOf(scene)), std::move(chart));
+  }
+
+  [[nodiscard]] std::string fileNameOf(std::size_t series) const {
+    std::string name = nameOf(series_[series], series_);
+    std::erase_if(name, [](char c) { return c == ','; });
+    std::replace(name.begin(), name.end(), ' ', '_');
+    return name;
+  }
+
+  const Profile& profile_;
+  std::vector<Series> series_;
+  std::map<ProfileScene, Results> byScene_;
+  std::vector<NamedPlot> charts_;
+};
+
+}  // namespace
+
+std::vector<NamedPlot> profileCharts(const Profile& profile) {
+  return Charts(profile).all();
+}
+
+}  // namespace springtower

@@ -1,0 +1,272 @@
+#include "apps/commands/profile/command.h"
+
+#include "apps/commands/profile/charts.h"
+#include "apps/commands/profile/files.h"
+#include "apps/commands/profile/measure.h"
+#include "apps/commands/profile/scene.h"
+#include "apps/common/options.h"
+#include "apps/common/output_file.h"
+#include "apps/common/progress.h"
+#include "apps/plot/report_figures.h"
+#include "core/error.h"
+#include "core/scene/limits.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fmt/format.h>
+#include <functional>
+#include <memory>
+
+namespace springtower {
+namespace {
+
+constexpr Range kProfileRowsRange{1, kMostRows, ""};
+constexpr Range kTowersRange{1, 2000, ""};
+constexpr Range kToleranceRange{1e-7, 1e-2, "m"};
+constexpr Range kProfileSamplesRange{1, 1000, ""};
+constexpr Range kFramesRange{2, 100000, ""};
+constexpr Range kLimitRange{0.0, 1e6, "s"};
+constexpr int kTowersRows = 18;
+
+constexpr std::string_view kProfileExamples =
+    R"help(what is timed: the state is kept once the scene has settled; each sample restores it, leaves out one frame and times the
+next ones; samples of all cases of a scene take turns. The frames of every sample are the same, so the least time of each
+frame counts, then their median, 99th percentile and largest. On one thread that is processor time, else wall time.
+
+scenes: rest (settled, awake), sway (gravity sways by 0.1 degree), heights (varying by 0.2 mm), pull (a block at 4 cm/s, all
+awake), pull-sleep (the same with sleep), collapse (gravity tilted by 14.5 degrees), asleep, towers (many of 18 rows, awake),
+pile (a connected stack of 108 blocks a row, dropped from 10 cm: its first frames on the floor)
+
+examples:
+  springtower profile --quick                                     a look at rest and collapse in a few seconds
+  springtower profile --out figures                               all default cases, with charts, CSV and JSON
+  springtower profile --rows 18 --scenes rest --tolerances 1e-5 --threads 1,2
+  springtower profile --rows 46 --scenes pile --tolerances 2e-4 --threads 1,2 --samples 1    some 5000 blocks; minutes
+  springtower profile --rows 18 --scenes pull --frames 60 --trace pull.json   then open pull.json at ui.perfetto.dev
+  springtower profile --from figures/profile.json --out figures   draws the charts again without timing anything)help";
+
+std::string offered(const auto& names) {
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+double numberFrom(const std::string& text, const Range& range, std::string_view option, bool whole) {
+  const std::optional<double> value = parseNumber(text);
+  if (value && isInside(*value, range) && (!whole || *value == std::floor(*value))) return *value;
+  throw InputError(fmt::format("{}: found {}, allowed are {}numbers with commas between, {}", option, inQuotes(text),
+                               whole ? "whole " : "", describe(range)));
+}
+
+// A list as given, or its default; no value twice.
+std::vector<double> numbers(const std::vector<std::string>& texts, const Range& range, std::string_view option, bool whole,
+                            std::vector<double> otherwise) {
+  if (texts.empty()) return otherwise;
+  std::vector<double> values;
+  for (const std::string& text : texts) {
+    const double value = numberFrom(text, range, option, whole);
+    if (std::find(values.begin(), values.end(), value) == values.end()) values.push_back(value);
+  }
+  return values;
+}
+
+std::vector<ProfileScene> scenesOf(const ProfileCommand& command) {
+  if (command.scenes.empty()) {
+    if (command.quick) return {ProfileScene::rest, ProfileScene::collapse};
+    return {ProfileScene::rest, ProfileScene::pull, ProfileScene::collapse, ProfileScene::asleep, ProfileScene::towers};
+  }
+  std::vector<ProfileScene> scenes;
+  for (const std::string& name : command.scenes) {
+    const auto* const found = std::find(kProfileSceneNames.begin(), kProfileSceneNames.end(), name);
+    if (found == kProfileSceneNames.end()) {
+      throw InputError(fmt::format("--scenes: found {}, allowed are {}", inQuotes(name), offered(kProfileSceneNames)));
+    }
+    const auto scene = static_cast<ProfileScene>(found - kProfileSceneNames.begin());
+    if (std::find(scenes.begin(), scenes.end(), scene) == scenes.end()) scenes.push_back(scene);
+  }
+  return scenes;
+}
+
+// As given, or the usual method, beside which a tower at rest also shows the report's for comparison.
+std::vector<Method> methodsOf(const ProfileCommand& command, ProfileScene scene) {
+  if (command.methods.empty()) {
+    std::vector<Method> methods = {Settings{}.method};
+    if (scene == ProfileScene::rest) methods.push_back(Method::report);
+    return methods;
+  }
+  std::vector<Method> methods;
+  for (const std::string& name : command.methods) {
+    const Method method = methodFromName(name, "--methods");
+    if (std::find(methods.begin(), methods.end(), method) == methods.end()) methods.push_back(method);
+  }
+  return methods;
+}
+
+ProfileLimits limitsOf(const ProfileCommand& command) {
+  ProfileLimits limits;
+  if (command.quick) limits = {2, 20, 1.0, 2.0, 0.3};
+  if (command.samples) limits.samples = static_cast<int>(*command.samples);
+  if (command.frames) limits.frames = static_cast<int>(*command.frames);
+  if (command.settle_s) limits.settle_s = *command.settle_s;
+  if (command.prepare_s) limits.prepare_s = *command.prepare_s;
+  if (command.sample_s) limits.sample_s = *command.sample_s;
+  return limits;
+}
+
+// All combinations, scene by scene; threads vary fastest, so that they share their preparation.
+std::vector<ProfileCase> casesOf(const ProfileCommand& command) {
+  const std::vector<double> usualRows =
+      command.quick ? std::vector<double>{3, 6, 9, 18} : std::vector<double>{3, 6, 9, 12, 18, 24, 36, 54, 72};
+  const std::vector<double> rows = numbers(command.rows, kProfileRowsRange, "--rows", true, usualRows);
+  const std::vector<double> towers = numbers(command.towers, kTowersRange, "--towers", true, {1, 4, 16, 64});
+  const std::vector<double> tolerances =
+      numbers(command.tolerances_m, kToleranceRange, "--tolerances", false, {kBlockTolerance_m});
+  const std::vector<double> threads = numbers(command.threads, kThreadsRange, "--threads", true, {1});
+  const Inertia inertia = command.inertia ? inertiaFromName(*command.inertia, "--inertia") : Settings{}.inertia;
+  std::vector<ProfileCase> cases;
+  for (const ProfileScene scene : scenesOf(command)) {
+    const bool many = scene == ProfileScene::towers;
+    const std::vector<Method> methods = methodsOf(command, scene);
+    for (const double size : many ? towers : rows) {
+      for (const Method method : methods) {
+        for (const double tolerance : tolerances) {
+          for (const double count : threads) {
+            const int whole = static_cast<int>(size);
+            cases.push_back(
+                {scene, many ? kTowersRows : whole, many ? whole : 1, method, inertia, tolerance, static_cast<int>(count)});
+          }
+        }
+      }
+    }
+  }
+  return cases;
+}
+
+std::string sizeOf(const ProfileCase& what) {
+  return what.scene == ProfileScene::towers ? fmt::format("{}x{}", what.towers, what.rows) : fmt::format("{}", what.rows);
+}
+
+// A frame shows 1/60 s: whether it takes less.
+std::string remarkOn(const ProfileResult& result) {
+  const std::string pace = result.framesPerSecond() * Settings{}.frame_s >= 1.0 ? "real time" : "slower";
+  return result.stands ? pace : pace + ", fallen";
+}
+
+void printTable(const Profile& profile) {
+  fmt::print("{}\n\n", footnote(profile.provenance));
+  fmt::print("{:<11}{:>7}{:>7} {:<22}{:>9}{:>8}{:>9}{:>10}{:>10}{:>10}{:>11}{:>10}{:>9}{:>11}  {}\n", "scene", "rows", "blocks",
+             "method", "tol. mm", "threads", "steps", "ms median", "p99", "max", "frames/s", "us/block", "kN/m", "depth mm", "");
+  for (const ProfileResult& result : profile.results) {
+    fmt::print("{:<11}{:>7}{:>7} {:<22}{:>9.3g}{:>8}", nameOf(result.what.scene), sizeOf(result.what), result.blocks,
+               result.methodName, 1e3 * result.what.tolerance_m, result.what.threads);
+    if (!result.failure.empty()) {
+      fmt::print("  {}\n", result.failure);
+      continue;
+    }
+    const FrameCost& cost = result.cost();
+    fmt::print("{:>9.4g}{:>10.4g}{:>10.4g}{:>10.4g}{:>11.4g}{:>10.3g}{:>9.4g}{:>11.3g}  {}\n", result.substeps, cost.median,
+               cost.p99, cost.max, result.framesPerSecond(), 1e3 * cost.median / static_cast<double>(result.blocks),
+               1e-3 * result.stiffness_n_m, result.penetration_mm, remarkOn(result));
+  }
+  fmt::print("\nms a frame in each stage, mean, summed over threads\n{:<11}{:>7} {:<22}{:>9}{:>8}", "scene", "rows", "method",
+             "tol. mm", "threads");
+  for (const std::string_view name : kStageNames) fmt::print("{:>18}", name);
+  fmt::print("\n");
+  for (const ProfileResult& result : profile.results) {
+    if (!result.failure.empty()) continue;
+    fmt::print("{:<11}{:>7} {:<22}{:>9.3g}{:>8}", nameOf(result.what.scene), sizeOf(result.what), result.methodName,
+               1e3 * result.what.tolerance_m, result.what.threads);
+    for (const double value : result.stage_ms) fmt::print("{:>18.4g}", value);
+    fmt::print("\n");
+  }
+  fmt::print("\nbytes a block: state, contacts, all with springs and working space\n");
+  for (const ProfileResult& result : profile.results) {
+    if (!result.failure.empty() || result.what.threads != profile.results.front().what.threads) continue;
+    fmt::print("{:<11}{:>7} {:<22}{:>9.3g}{:>9.0f}{:>9.0f}{:>9.0f}\n", nameOf(result.what.scene), sizeOf(result.what),
+               result.methodName, 1e3 * result.what.tolerance_m, result.stateBytes, result.contactBytes, result.allBytes);
+  }
+}
+
+void writeFolder(const std::string& folder, const Profile& profile, bool measured) {
+  if (measured) writeOutputFile(folder, "profile.json", [&](std::ostream& stream) { writeProfileJson(stream, profile); });
+  writeOutputFile(folder, "profile.csv", [&](std::ostream& stream) { writeProfileCsv(stream, profile); });
+  writeOutputFile(folder, "culling.csv", [&](std::ostream& stream) { writeCulling(stream, profile); });
+  const std::vector<NamedPlot> charts = profileCharts(profile);
+  for (const NamedPlot& chart : charts) {
+    writeOutputFile(folder, chart.first + ".svg", [&](std::ostream& stream) { writeSvg(stream, chart.second); });
+    writeOutputFile(folder, chart.first + ".png", [&](std::ostream& stream) { writePng(stream, chart.second); });
+  }
+  fmt::print("\n{} charts (SVG and PNG), profile.csv, culling.csv{} in {}\n", charts.size(), measured ? ", profile.json" : "",
+             onOneLine(folder));
+}
+
+}  // namespace
+
+CLI::App* defineProfile(CLI::App& program, ProfileCommand& command) {
+  CLI::App* profile = program.add_subcommand("profile", "times frames of towers of many sizes and draws charts");
+  const auto list = [&](const std::string& name, std::vector<std::string>& target, const std::string& type,
+                        const std::string& description) {
+    profile->add_option(name, target, description)->delimiter(',')->type_name(type);
+  };
+  list("--rows", command.rows, "N,N,...", "rows of the tower (default 3,6,9,12,18,24,36,54,72)");
+  list("--scenes", command.scenes, "NAME,...", "what the blocks do (default rest,pull,collapse,asleep,towers; see below)");
+  list("--methods", command.methods, "NAME,...", "as in `run` (default: its default; at rest also report, for comparison)");
+  list("--tolerances", command.tolerances_m, "METRES,...", "as in `run` (default 5e-05)");
+  list("--threads", command.threads, "N,N,...", "threads to use (default 1)");
+  list("--towers", command.towers, "N,N,...", "how many towers scene `towers` has (default 1,4,16,64)");
+  profile->add_option("--inertia", command.inertia, "cuboid (default) or lumped")->type_name("NAME");
+  addWholeNumber(*profile, "--samples", command.samples, kProfileSamplesRange, "of each case, taken by turns (default 5)");
+  addWholeNumber(*profile, "--frames", command.frames, kFramesRange, "timed in a sample (default 120)");
+  addNumber(*profile, "--settle", command.settle_s, kLimitRange, "S", "simulated before timing (default 5)");
+  addNumber(*profile, "--prepare-limit", command.prepare_s, kLimitRange, "S",
+            "wall time after which a scene has settled enough, and as much again for a pull to begin (default 10)");
+  addNumber(*profile, "--sample-limit", command.sample_s, kLimitRange, "S",
+            "wall time after which a sample ends, with fewer frames (default 1)");
+  profile->add_flag("--quick", command.quick, "fewer cases, shorter samples: seconds instead of minutes");
+  profile->add_option("--out", command.out, "writes CSV, JSON and the charts into this folder")->type_name("DIR");
+  profile->add_option("--trace", command.trace, "writes the frames of the last samples for Perfetto or chrome://tracing")
+      ->type_name("FILE.json");
+  profile->add_option("--from", command.from, "draws the charts of an earlier profile.json; nothing is timed")
+      ->type_name("FILE.json")
+      ->needs("--out")
+      ->excludes("--trace");
+  wrapDescriptions(*profile);
+  profile->footer(std::string(kProfileExamples));
+  return profile;
+}
+
+int executeProfile(const ProfileCommand& command) {
+  if (command.from) {
+    const Profile profile = readProfileJson(*command.from);
+    makeOutputFolder(*command.out);
+    printTable(profile);
+    writeFolder(*command.out, profile, false);
+    return 0;
+  }
+  const std::vector<ProfileCase> cases = casesOf(command);
+  for (const ProfileCase& what : cases) checkScene(sceneOf(what), "profile");
+  if (command.out) makeOutputFolder(*command.out);
+  const auto traceFile = command.trace ? std::make_unique<OutputFile>(*command.trace, "--trace") : nullptr;
+
+  Profile profile;
+  profile.provenance = provenanceNow();
+  profile.limits = limitsOf(command);
+  std::vector<TracedCase> traced;
+  std::unique_ptr<Progress> progress;
+  profile.results =
+      measureProfile(cases, profile.limits, traceFile ? &traced : nullptr, [&](int done, int all, const ProfileCase& next) {
+        if (!progress) progress = std::make_unique<Progress>(all, "steps");
+        progress->update(done, fmt::format("{}, {} rows, {}", nameOf(next.scene), sizeOf(next), nameOf(next.method)));
+      });
+  progress.reset();
+  printTable(profile);
+  printCulling(profile);
+  if (command.out) writeFolder(*command.out, profile, true);
+  if (traceFile) {
+    writeTrace(traceFile->stream(), profile.provenance, traced);
+    traceFile->commit();
+  }
+  return 0;
+}
+
+}  // namespace springtower

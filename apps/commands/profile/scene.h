@@ -1,0 +1,42 @@
+#pragma once
+
+#include "apps/commands/profile/profile.h"
+#include "core/scene/scene.h"
+#include "solver/hand/grip.h"
+#include "solver/world/simulation.h"
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace springtower {
+
+/// The scene of a case. Throws InputError for a tower that is not allowed.
+Scene sceneOf(const ProfileCase& what);
+
+/// A simulation on the brink of what is to be timed, and the state to come back to before each sample.
+struct PreparedScene {
+  explicit PreparedScene(const ProfileCase& what) : simulation(sceneOf(what)) {}
+
+  Simulation simulation;
+  Draw hand;  ///< that pulls a block; it holds none in other scenes
+  std::shared_ptr<const Snapshot> snapshot;
+  Draw handKept;                      ///< the hand of the snapshot
+  std::vector<std::uint8_t> leftOut;  ///< 1 for blocks that need not stand: the pulled one, a pile's; [blocks] or empty
+  std::string failure;                ///< why the scene does not come to what is to be timed; empty when it does
+
+  /// Back to the kept state.
+  void restore() {
+    restoreSnapshot(simulation, *snapshot);
+    hand = handKept;
+  }
+  /// One frame, the hand included.
+  void step();
+};
+
+/// Runs a new scene up to what is to be timed and keeps its state: settles it, starts to pull, or lets it fall asleep. Divergence
+/// ends in `failure`.
+std::unique_ptr<PreparedScene> prepareScene(const ProfileCase& what, const ProfileLimits& limits);
+
+}  // namespace springtower

@@ -1,0 +1,152 @@
+#include "apps/commands/run/command.h"
+
+#include "apps/commands/run/forces_report.h"
+#include "apps/commands/run/report.h"
+#include "apps/common/output_file.h"
+#include "apps/common/poses.h"
+#include "apps/common/progress.h"
+#include "apps/picture/picture.h"
+#include "core/error.h"
+#include "solver/runner/run.h"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <initializer_list>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <oneapi/tbb/global_control.h>
+
+namespace springtower {
+namespace {
+
+constexpr Range kPosesEveryRange{1e-6, 1e7, "s"};
+
+constexpr std::string_view kRunExamples = R"help(examples:
+  springtower run tower:18                               the full tower for 10 s
+  springtower run tower:18 --seconds 60 --no-sleep       all blocks simulated to the end
+  springtower run "(010)-(010)-(011)" --picture a.png    a bit code: rows from the bottom, 1 present, 0 absent, L loose
+  springtower run tower:18 --gravity-tilt 14.5 --report collapse.json --poses collapse.csv --poses-every 0.05
+  springtower run tower:18 --heights-sigma 0.0002 --seed 3
+  springtower run tower:18 --method semi-implicit-euler --substeps 50
+                                                         prints the tolerance that 50 steps a frame allow)help";
+
+Gravity withOptions(Gravity gravity, const RunCommand& command) {
+  if (command.tilt_deg) gravity.tilt_deg = *command.tilt_deg;
+  if (command.direction_deg) gravity.direction_deg = *command.direction_deg;
+  if (!command.sway) return gravity;
+  const std::string_view sway = *command.sway;
+  const std::size_t colon = sway.find(':');
+  const std::optional<double> degrees = parseNumber(sway.substr(0, colon));
+  const std::optional<double> hertz = colon == std::string::npos ? std::nullopt : parseNumber(sway.substr(colon + 1));
+  if (!degrees || !hertz || !isInside(*degrees, kTiltRange) || !isInside(*hertz, kFrequencyRange)) {
+    throw InputError(fmt::format("--gravity-sway: found {}, allowed is DEG:HZ, {} and {}, such as 0.1:1", inQuotes(sway),
+                                 describe(kTiltRange), describe(kFrequencyRange)));
+  }
+  gravity.sway_deg = *degrees;
+  gravity.sway_hz = *hertz;
+  return gravity;
+}
+
+// Two outputs of one name would overwrite each other.
+void checkNames(std::initializer_list<std::pair<std::string_view, const std::optional<std::string>*>> files) {
+  for (const auto* a = files.begin(); a != files.end(); ++a) {
+    for (const auto* b = files.begin(); b != a; ++b) {
+      if (!*a->second || *a->second != *b->second) continue;
+      throw InputError(
+          fmt::format("{} and {}: found {} for both, allowed are two names", b->first, a->first, inQuotes(**a->second)));
+    }
+  }
+}
+
+std::unique_ptr<OutputFile> open(const std::optional<std::string>& path, const std::string& option) {
+  return path ? std::make_unique<OutputFile>(*path, option) : nullptr;
+}
+
+}  // namespace
+
+CLI::App* defineRun(CLI::App& program, RunCommand& command) {
+  CLI::App* run = program.add_subcommand("run", "simulates a scene, measures it and prints a table");
+  run->add_option("SCENE", command.scene, "tower:R with R rows of three, a bit code such as (010)-(010)-(011), or a .toml file")
+      ->type_name("")
+      ->required();
+  addNumber(*run, "--seconds", command.seconds, kSecondsRange, "S", "simulated time (default 10, or what the scene file says)");
+  addPhysicsOptions(*run, command.physics);
+  addNumber(*run, "--heights-sigma", command.heightsSigma_m, kHeightsSigmaRange, "METRES",
+            "standard deviation of the heights of a tower's blocks");
+  addNumber(*run, "--mass-sigma", command.massSigma_kg, kMassSigmaRange, "KG", "standard deviation of their masses");
+  addWholeNumber(*run, "--seed", command.seed, kSeedRange, "of these two (default 1); the same towers on every machine");
+  addNumber(*run, "--start-gap", command.startGap_m, kStartGapRange, "METRES", "rows start this far apart and drop");
+  addNumber(*run, "--gravity-tilt", command.tilt_deg, kTiltRange, "DEG", "gravity leans this far from straight down");
+  addNumber(*run, "--gravity-direction", command.direction_deg, kDirectionRange, "DEG",
+            "towards which side, from +x over +y (default 0)");
+  run->add_option("--gravity-sway", command.sway, "and swings by DEG about that, HZ times a second")->type_name("DEG:HZ");
+  run->add_option("--report", command.report, "writes all figures as JSON")->type_name("FILE.json");
+  run->add_flag("--forces", command.forces, "adds every contact point's force at the end to the report")->needs("--report");
+  run->add_option("--poses", command.poses, "writes the corners of all blocks as CSV: time_s,block,x0,y0,z0,...,x7,y7,z7, metres")
+      ->type_name("FILE.csv");
+  addNumber(*run, "--poses-every", command.posesEvery_s, kPosesEveryRange, "S", "time between poses (default: every frame)")
+      ->needs("--poses");
+  run->add_option("--picture", command.picture, "draws the last frame")->type_name("FILE.png");
+  wrapDescriptions(*run);
+  run->footer(std::string(kRunExamples));
+  return run;
+}
+
+Scene sceneOf(const RunCommand& command) {
+  TowerOptions options;
+  options.heightsSigma_m = command.heightsSigma_m;
+  options.massSigma_kg = command.massSigma_kg;
+  if (command.seed) options.seed = static_cast<std::uint64_t>(*command.seed);
+  options.startGap_m = command.startGap_m;
+  Scene scene = sceneFromName(command.scene, options);
+  if (command.seconds) scene.seconds = *command.seconds;
+  scene.gravity = withOptions(scene.gravity, command);
+  applyPhysicsOptions(command.physics, scene.settings);
+  return scene;
+}
+
+int executeRun(const RunCommand& command) {
+  if (command.picture && !command.picture->ends_with(".png")) {
+    throw InputError(fmt::format("--picture: found {}, allowed is a name that ends with .png", inQuotes(*command.picture)));
+  }
+  checkNames({{"--report", &command.report}, {"--poses", &command.poses}, {"--picture", &command.picture}});
+  const Scene scene = sceneOf(command);
+  const auto report = open(command.report, "--report");
+  const auto poses = open(command.poses, "--poses");
+  const auto picture = open(command.picture, "--picture");
+  const int threads = threadCount(command.physics);
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+
+  Simulation simulation(scene);
+  RunOptions options;
+  options.seconds = scene.seconds;
+  std::optional<PoseWriter> writer;
+  if (poses) writer.emplace(poses->stream(), command.posesEvery_s.value_or(scene.settings.frame_s), scene.settings.frame_s);
+  Progress progress(scene.seconds, "s simulated");
+  RunResult result;
+  try {
+    result = runScene(simulation, options, [&](const Simulation& now) {
+      if (writer) writer->frame(now);
+      progress.update(now.time_s);
+    });
+  } catch (const DivergenceError&) {
+    if (poses) poses->commit();
+    throw;
+  }
+  progress.clear();
+  if (poses) poses->commit();
+  if (report) {
+    nlohmann::ordered_json json = reportJson(simulation, result, threads);
+    if (command.forces) json["forces"] = forcesJson(simulation);
+    report->stream() << json.dump(2) << '\n';
+    report->commit();
+  }
+  if (picture) {
+    writePicture(picture->stream(), simulation.state.position, scene.floor);
+    picture->commit();
+  }
+  printResult(simulation, result, threads);
+  return 0;
+}
+
+}  // namespace springtower

@@ -1,0 +1,45 @@
+#pragma once
+
+#include "apps/common/options.h"
+#include "core/scene/scene.h"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace CLI {
+class App;
+}  // namespace CLI
+
+namespace springtower {
+
+/// What `springtower run` was asked for. Empty options leave what the scene says.
+struct RunCommand {
+  std::string scene;
+  std::optional<double> seconds;
+  PhysicsOptions physics;
+  std::optional<double> heightsSigma_m;
+  std::optional<double> massSigma_kg;
+  std::optional<std::int64_t> seed;
+  std::optional<double> startGap_m;
+  std::optional<double> tilt_deg;
+  std::optional<double> direction_deg;
+  std::optional<std::string> sway;  ///< DEG:HZ
+  std::optional<std::string> report;
+  bool forces = false;  ///< in the report
+  std::optional<std::string> poses;
+  std::optional<double> posesEvery_s;
+  std::optional<std::string> picture;
+};
+
+/// Adds the command to the program.
+CLI::App* defineRun(CLI::App& program, RunCommand& command);
+
+/// The scene with what the command line says put over it. Throws InputError.
+Scene sceneOf(const RunCommand& command);
+
+/// Simulates, writes the files asked for and prints a table. Returns the exit code. Throws InputError for what is wrong with the
+/// input or the names of the files, before anything is simulated, and DivergenceError; poses up to then are kept.
+int executeRun(const RunCommand& command);
+
+}  // namespace springtower

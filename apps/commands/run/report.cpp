@@ -1,0 +1,171 @@
+#include "apps/commands/run/report.h"
+
+#include "apps/commands/run/moves_report.h"
+#include "apps/common/json_values.h"
+#include "core/scene/limits.h"
+#include "core/version.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+
+namespace springtower {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json orNull(const std::optional<double>& value, double scale = 1.0) {
+  return value ? Json(scale * *value) : Json(nullptr);
+}
+
+Json timesJson(const FrameTimes& times) {
+  return {{"median", times.median}, {"p99", times.p99}, {"max", times.max}, {"cpu_median", times.cpuMedian}};
+}
+
+Json stagesJson(const RunResult& result) {
+  Json stages = Json::object();
+  for (std::size_t i = 0; i < kStages; ++i) stages[std::string(kStageNames[i])] = result.stage_ms[i];
+  return stages;
+}
+
+Json energyJson(const Energy& energy) {
+  return {{"kinetic", energy.kinetic}, {"gravity", energy.gravity}, {"springs", energy.springs}, {"contacts", energy.contacts}};
+}
+
+Json countersJson(const Counters& counters) {
+  return {{"replayed_frames", counters.replayedFrames},
+          {"block_pairs", counters.blockPairs},
+          {"candidate_tests", counters.candidateTests},
+          {"box_overlaps", counters.boxOverlaps},
+          {"plane_crossings", counters.planeCrossings},
+          {"cubic_tests", counters.cubicTests},
+          {"cubic_hits", counters.cubicHits},
+          {"contacts_born", counters.contactsBorn},
+          {"contacts_born_penetrating", counters.contactsBornPenetrating},
+          {"manifold_refreshes", counters.manifoldRefreshes},
+          {"spring_evaluations", counters.springEvaluations},
+          {"implicit_steps", counters.implicitSteps},
+          {"implicit_iterations", counters.implicitIterations},
+          {"factorisations", counters.factorisations},
+          {"handed_over", counters.handedOver},
+          {"margins_spent", counters.marginsSpent},
+          {"response_iterations", counters.responseIterations}};
+}
+
+// Blocks count from 0, as everywhere.
+std::string placeOf(const Penetration& penetration) {
+  if (penetration.second == kFloor) return fmt::format("block {}, floor", index(penetration.first));
+  return fmt::format("blocks {} and {}", index(penetration.first), index(penetration.second));
+}
+
+Json deepestJson(const RunResult& result) {
+  if (result.deepest.depth <= 0.0) return nullptr;
+  return {{"depth_mm", kMillimetres * result.deepest.depth},
+          {"block", index(result.deepest.first)},
+          {"other", result.deepest.second == kFloor ? Json("floor") : Json(index(result.deepest.second))},
+          {"time_s", result.deepestTime_s}};
+}
+
+std::string millimetres(const std::optional<double>& metres, std::string_view otherwise) {
+  return metres ? fmt::format("{:.3g} mm", kMillimetres * *metres) : std::string(otherwise);
+}
+
+void row(std::string_view name, std::string_view value) {
+  fmt::print("  {:<26}{}\n", name, value);
+}
+
+}  // namespace
+
+Json reportJson(const Simulation& simulation, const RunResult& result, int threads) {
+  const Settings& settings = simulation.scene.settings;
+  Json report;
+  report["version"] = kVersion;
+  report["commit"] = kGitCommit;
+  report["compiler"] = fmt::format("{}, {}, {}", kCompiler, kBuildType, kCompilerFlags);
+  report["scene"] = simulation.scene.name;
+  report["blocks"] = simulation.model.blockCount();
+  report["method"] = nameOf(settings.method);
+  report["inertia"] = nameOf(settings.inertia);
+  report["sleep"] = nameOf(settings.sleep);
+  report["tolerance_m"] = simulation.tolerance_m;
+  report["stiffness_n_m"] = simulation.contactStiffness_n_m;
+  report["spring_stiffness_n_m"] = simulation.springStiffness_n_m;
+  report["substeps"] = result.substeps;
+  report["threads"] = threads;
+
+  report["stands"] = result.standing.stands;
+  report["fall"] = result.standing.stands ? Json(nullptr) : Json(describe(result.standing));
+  report["fall_time_s"] = orNull(result.fallTime_s);
+  report["t_rest_s"] = orNull(result.restTime_s);
+  report["simulated_s"] = result.simulated_s;
+  report["wall_s"] = result.wall_s;
+  report["frames"] = result.frames;
+  report["steps"] = result.counters.steps;
+  report["contact_evaluations"] = result.counters.contactEvaluations;
+  report["cubic_tests"] = result.counters.cubicTests;
+  report["contacts_born_penetrating"] = result.counters.contactsBornPenetrating;
+  report["ms_per_frame"] = timesJson(result.frameTimes);
+  report["stage_ms"] = stagesJson(result);
+
+  report["max_penetration_mm"] = orNull(result.maxPenetration_m, kMillimetres);
+  report["max_penetration_all_mm"] = kMillimetres * result.deepest.depth;
+  report["deepest_penetration"] = deepestJson(result);
+  report["bottom_row_compression_mm"] = kMillimetres * result.bottomRowCompression_m;
+  report["max_strain"] = result.maxStrain;
+  report["creep_mm"] = orNull(result.creep_m, kMillimetres);
+  report["jitter_mm_s"] = kMillimetres * result.jitter_m_s;
+  report["top_height_error_mm"] = kMillimetres * result.topHeightError_m;
+  report["energy_start_j"] = result.energyStart.total();
+  report["energy_end_j"] = result.energyEnd.total();
+  report["energy_end_parts_j"] = energyJson(result.energyEnd);
+  report["max_energy_rise"] = orNull(result.maxEnergyRise);
+  report["max_force_imbalance"] = result.imbalance.force;
+  report["max_torque_imbalance"] = result.imbalance.torque;
+  report["max_outside_cone_n"] = result.outsideCone_n;
+  report["asleep_blocks"] = result.asleepBlocks;
+  report["awake_blocks"] = result.awakeBlocks;
+  report["counters"] = countersJson(result.counters);
+  if (!simulation.scene.moves.empty()) report["moves"] = movesJson(simulation, result);
+  report["state_hash"] = fmt::format("{:016x}", result.stateHash);
+  return report;
+}
+
+void printResult(const Simulation& simulation, const RunResult& result, int threads) {
+  const Settings& settings = simulation.scene.settings;
+  const FrameTimes& times = result.frameTimes;
+  fmt::print("{}, {} blocks\n", onOneLine(simulation.scene.name), simulation.model.blockCount());
+  row("method",
+      fmt::format("{}, {} inertia, sleep {}", nameOf(settings.method), nameOf(settings.inertia), nameOf(settings.sleep)));
+  row("tolerance", fmt::format("{:.4g} mm{}", kMillimetres * simulation.tolerance_m,
+                               simulation.fixedSubsteps > 0 && !settings.tolerance_m ? ", as the substeps allow" : ""));
+  row("contact stiffness", fmt::format("{:.4g} kN/m", 1e-3 * simulation.contactStiffness_n_m));
+  row("substeps", fmt::format("{} in the last awake frame, {} in all", result.substeps, result.counters.steps));
+  if (result.standing.stands) {
+    row("stands", "yes");
+  } else {
+    row("stands", fmt::format("no: from {:.3f} s on {}", result.fallTime_s.value_or(0.0), describe(result.standing)));
+  }
+  row("at rest", result.restTime_s ? fmt::format("from {:.2f} s on", *result.restTime_s) : "no");
+  row("asleep", fmt::format("{} of {} blocks", result.asleepBlocks, result.asleepBlocks + result.awakeBlocks));
+  row("penetration, settled", millimetres(result.maxPenetration_m, "not settled"));
+  row("penetration, whole run", result.deepest.depth > 0.0
+                                    ? fmt::format("{}, {} at {:.3f} s", millimetres(result.deepest.depth, ""),
+                                                  placeOf(result.deepest), result.deepestTime_s)
+                                    : "none");
+  row("bottom row compressed", millimetres(result.bottomRowCompression_m, ""));
+  row("creep", millimetres(result.creep_m, "not settled"));
+  row("jitter, last second", fmt::format("{:.3g} mm/s", kMillimetres * result.jitter_m_s));
+  row("top against rigid blocks", fmt::format("{:+.3g} mm", kMillimetres * result.topHeightError_m));
+  row("largest rise of energy",
+      result.maxEnergyRise ? fmt::format("{:.2g} of the energy at the start", *result.maxEnergyRise) : "unknown");
+  row("simulated",
+      fmt::format("{:.4g} s in {:.3g} s, {} thread{}", result.simulated_s, result.wall_s, threads, threads == 1 ? "" : "s"));
+  row("frame, processor time", fmt::format("{:.3g} ms median", times.cpuMedian));
+  row("frame, wall time",
+      fmt::format("{:.3g} ms median, {:.3g} ms 99th percentile, {:.3g} ms longest", times.median, times.p99, times.max));
+  row("state", fmt::format("{:016x}", result.stateHash));
+  printMoves(simulation, result);
+}
+
+}  // namespace springtower

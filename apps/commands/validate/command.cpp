@@ -1,0 +1,119 @@
+#include "apps/commands/validate/command.h"
+
+#include "apps/commands/validate/page.h"
+#include "apps/common/options.h"
+#include "apps/common/output_file.h"
+#include "core/error.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <fmt/format.h>
+#include <functional>
+#include <oneapi/tbb/global_control.h>
+#include <system_error>
+
+namespace springtower {
+namespace {
+
+constexpr Range kValidateThreads{1.0, 1024.0, ""};
+
+constexpr std::string_view kValidateExamples = R"help(examples:
+  springtower validate --out validation                 the short form, in less than two minutes
+  springtower validate --out validation --long          every tower of every set
+  springtower validate --out validation --only pull,tilt --check
+parts: verdicts, forces, pull, tilt, loose, scale, sleep, moves. A claim that fails is reported and is no error of the program; with
+--check the exit code is then 1.)help";
+
+std::vector<ValidationPart> partsOf(const ValidateCommand& command) {
+  std::string names;
+  for (const ValidationPart& part : validationParts()) names += fmt::format("{}{}", names.empty() ? "" : ", ", part.name);
+  for (const std::string& name : command.only) {
+    const bool known = std::any_of(validationParts().begin(), validationParts().end(),
+                                   [&](const ValidationPart& part) { return part.name == name; });
+    if (!known) throw InputError(fmt::format("--only: found {}, allowed are {}", inQuotes(name), names));
+  }
+  std::vector<ValidationPart> parts;
+  for (const ValidationPart& part : validationParts()) {
+    const bool wanted =
+        command.only.empty() || std::find(command.only.begin(), command.only.end(), part.name) != command.only.end();
+    if (wanted) parts.push_back(part);
+  }
+  return parts;
+}
+
+void print(const ValidationSection& section) {
+  fmt::print("{} ({:.1f} s)\n", section.title, section.wall_s);
+  for (const Claim& claim : section.claims) {
+    fmt::print("  {:<5}{}: {} (allowed: {})\n", resultOf(claim), claim.what, claim.measured, claim.tolerance);
+  }
+  for (const std::string& note : section.notes) fmt::print("       {}\n", note);
+  std::fflush(stdout);
+}
+
+}  // namespace
+
+const std::vector<ValidationPart>& validationParts() {
+  static const std::vector<ValidationPart> parts = {
+      {"verdicts", validateVerdicts}, {"forces", validateForces}, {"pull", validatePulls},  {"tilt", validateTilts},
+      {"loose", validateLoose},       {"scale", validateScale},   {"sleep", validateSleep}, {"moves", validateMoves}};
+  return parts;
+}
+
+CLI::App* defineValidate(CLI::App& program, ValidateCommand& command) {
+  CLI::App* validate =
+      program.add_subcommand("validate", "holds the simulation against statics and closed forms, claim by claim");
+  validate->add_option("--out", command.out, "writes validation.md, validation.json and the figures into this folder")
+      ->type_name("DIR")
+      ->required();
+  validate->add_flag("--long", command.longForm, "every tower of every set, more seeds: many minutes");
+  validate->add_option("--only", command.only, "some parts only (see below)")->delimiter(',')->type_name("NAME,...");
+  validate->add_option("--oracle", command.oracle, "folder of the reference sets (default tests/data/oracle)")->type_name("DIR");
+  validate->add_option("--scenes", command.scenes, "folder of the scene files (default scenes)")->type_name("DIR");
+  validate->add_flag("--check", command.check, "exit code 1 if a claim fails");
+  addWholeNumber(*validate, "--threads", command.threads, kValidateThreads, "threads to use (default: one for each processor)");
+  wrapDescriptions(*validate);
+  validate->footer(std::string(kValidateExamples));
+  return validate;
+}
+
+int executeValidate(const ValidateCommand& command) {
+  const std::vector<ValidationPart> parts = partsOf(command);
+  const ValidationPlan plan{command.longForm, command.oracle, command.scenes};
+  if (!std::filesystem::is_regular_file(std::filesystem::path(plan.oracle) / "shift.jsonl")) {
+    throw InputError(fmt::format("--oracle: found {}, allowed is the folder that holds shift.jsonl", inQuotes(plan.oracle)));
+  }
+  if (!std::filesystem::is_regular_file(std::filesystem::path(plan.scenes) / "moves.toml")) {
+    throw InputError(fmt::format("--scenes: found {}, allowed is the folder that holds moves.toml", inQuotes(plan.scenes)));
+  }
+  makeOutputFolder(command.out);
+  PhysicsOptions options;
+  options.threads = command.threads;
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threadCount(options)));
+  std::vector<ValidationSection> sections;
+  for (const ValidationPart& part : parts) {
+    const auto start = std::chrono::steady_clock::now();
+    sections.push_back(part.run(plan));
+    sections.back().wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    print(sections.back());
+  }
+  const Provenance provenance = provenanceNow();
+  for (ValidationSection& section : sections) {
+    for (ValidationFigure& figure : section.figures) {
+      figure.plot.footnote = footnote(provenance);
+      writeOutputFile(command.out, figure.name + ".svg", [&](std::ostream& stream) { writeSvg(stream, figure.plot); });
+      writeOutputFile(command.out, figure.name + ".png", [&](std::ostream& stream) { writePng(stream, figure.plot); });
+    }
+  }
+  writeOutputFile(command.out, "validation.md",
+                  [&](std::ostream& stream) { writeValidationPage(stream, sections, plan, provenance); });
+  writeOutputFile(command.out, "validation.json",
+                  [&](std::ostream& stream) { writeValidationJson(stream, sections, plan, provenance); });
+  const ClaimCounts counts = countClaims(sections);
+  fmt::print("{} claims hold, {} fail, {} figures are only reported; validation.md in {}\n", counts.passed, counts.failed,
+             counts.reported, onOneLine(command.out));
+  return command.check && counts.failed > 0 ? 1 : 0;
+}
+
+}  // namespace springtower

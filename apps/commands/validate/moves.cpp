@@ -1,0 +1,265 @@
+#include "apps/commands/run/moves_report.h"
+#include "apps/commands/validate/validate.h"
+#include "core/error.h"
+#include "solver/statics/statics.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/task_arena.h>
+#include <optional>
+
+namespace springtower {
+namespace {
+
+constexpr double kLongest_s = 600.0;
+constexpr double kStrongHand_n = 20.0;  // a block that bears the whole tower has to come as well
+// A block is jerked out where friction holds it by more than this share of what the tower bears: a slow hand, or one at 0.4 m/s,
+// draws such towers over, and statics alone does not see it.
+constexpr double kSlowShare = 2.0 / 3.0;
+constexpr double kJerk_m_s = 1.5;
+constexpr std::size_t kShortRemovals = 3;  // of the first sequence
+
+struct Played {
+  RunResult result;
+  std::vector<Vec3> places;  // m, centres of all blocks in the end
+};
+
+Played play(const Scene& scene) {
+  RunOptions options;
+  options.seconds = kLongest_s;
+  options.measureEveryFrame = false;
+  Simulation simulation(scene);
+  Played played{runScene(simulation, options), {}};
+  for (std::size_t b = 0; b < scene.blocks.size(); ++b) played.places.push_back(centre(simulation.state.position, b));
+  return played;
+}
+
+// Heights that differ by all of the 0.02 mm within which blocks that are not loose count as equal, m, standard deviation.
+constexpr double kUnequalHeightsSigma_m = 3.3e-6;
+// How far places in the end may be apart with sleep and without, m.
+constexpr double kSamePlace_m = 1e-4;
+
+// The report's sequence, played once a seed.
+struct PlayedSequence {
+  std::vector<Move> moves;
+  std::vector<Played> seeds;
+};
+
+PlayedSequence playSequence(const ValidationPlan& plan, Sleep sleep, std::optional<double> heightsSigma_m) {
+  const std::size_t seeds = plan.longForm ? 10 : 1;
+  std::vector<Scene> scenes;
+  for (std::size_t seed = 1; seed <= seeds; ++seed) {
+    TowerOptions options;
+    options.seed = seed;
+    options.heightsSigma_m = heightsSigma_m;
+    scenes.push_back(sceneFromName(plan.scenes + "/moves.toml", options));
+    scenes.back().settings.sleep = sleep;
+  }
+  PlayedSequence played{scenes.front().moves, std::vector<Played>(seeds)};
+  tbb::parallel_for(std::size_t{0}, seeds,
+                    [&](std::size_t i) { tbb::this_task_arena::isolate([&] { played.seeds[i] = play(scenes[i]); }); });
+  return played;
+}
+
+// How others moved in a step of a sequence: the most over the seeds, and in how many it was within its bound.
+struct StepResult {
+  std::size_t within = 0;
+  double worst_m = 0.0;
+  double slide_m = 0.0;
+};
+
+StepResult stepOf(const PlayedSequence& played, std::size_t step) {
+  StepResult of;
+  for (const Played& seed : played.seeds) {
+    if (step >= seed.result.moves.size()) continue;
+    const MoveResult& move = seed.result.moves[step];
+    of.within += isWithin(played.moves[step], move) ? 1 : 0;
+    of.worst_m = std::max(of.worst_m, move.moved_m - move.settlement_m);
+    of.slide_m = std::max(of.slide_m, move.slide_m);
+  }
+  return of;
+}
+
+// One claim that the sequence comes to its end, and one a step.
+void addSequence(const PlayedSequence& played, std::string_view setting, ValidationSection& section) {
+  const std::vector<Move>& moves = played.moves;
+  const std::size_t seeds = played.seeds.size();
+  const auto finished = std::count_if(played.seeds.begin(), played.seeds.end(), [&](const Played& seed) {
+    const RunResult& result = seed.result;
+    return result.standing.stands && result.moves.size() == moves.size() && result.moves.back().done &&
+           result.moves.back().rested;
+  });
+  section.claims.push_back({fmt::format("the report's sequence, {}, is played to its end and the tower stands", setting),
+                            fmt::format("all {}", seeds), fmt::format("{} of {}", finished, seeds),
+                            finished == static_cast<std::ptrdiff_t>(seeds)});
+  for (std::size_t step = 0; step < moves.size(); ++step) {
+    const StepResult of = stepOf(played, step);
+    std::string measured = fmt::format("{:.3f} mm at most, {} of {} seeds", 1e3 * of.worst_m, of.within, seeds);
+    if (moves[step].kind == MoveKind::put) measured += fmt::format("; the block itself {:.2f} mm", 1e3 * of.slide_m);
+    section.claims.push_back({fmt::format("step {}, {}, {}: other blocks move", step + 1, describe(moves[step]), setting),
+                              fmt::format("{:g} mm beyond rigid settlement", 1e3 * moves[step].allowed_m.value_or(0.0)), measured,
+                              of.within == seeds});
+  }
+}
+
+// How far a sequence ends from where it does with nothing asleep, m.
+double apart_m(const PlayedSequence& asleep, const PlayedSequence& awake) {
+  double apart = 0.0;
+  for (std::size_t seed = 0; seed < asleep.seeds.size(); ++seed) {
+    for (std::size_t b = 0; b < asleep.seeds[seed].places.size(); ++b) {
+      apart = std::max(apart, (asleep.seeds[seed].places[b] - awake.seeds[seed].places[b]).norm());
+    }
+  }
+  return apart;
+}
+
+// The steps that are not within their bounds.
+void addReported(const PlayedSequence& played, std::string_view setting, ValidationSection& section) {
+  std::string measured;
+  for (std::size_t step = 0; step < played.moves.size(); ++step) {
+    const StepResult of = stepOf(played, step);
+    if (of.within == played.seeds.size()) continue;
+    measured += fmt::format("{}step {}: {:.3f} mm at most, {} of {} seeds within {:g} mm", measured.empty() ? "" : "; ", step + 1,
+                            1e3 * of.worst_m, of.within, played.seeds.size(), 1e3 * played.moves[step].allowed_m.value_or(0.0));
+  }
+  section.claims.push_back(
+      {fmt::format("{}: steps beyond their bounds", setting), "reported", measured.empty() ? "none" : measured});
+}
+
+// One sequence of removals by pulling: middle blocks along their length, outer ones sideways, the shorter way, as along their
+// length they drag round what lies on their end. Slowly, or with a jerk.
+struct RemovalSequence {
+  std::string id;
+  Scene scene;
+  std::vector<bool> standsAfter;  // the first of them before any removal
+  std::size_t statesRight = 0;    // of those after a removal
+  std::string note;
+};
+
+// Whether friction holds a block too hard for its being drawn slowly.
+bool holdsTooHard(const Scene& scene, BlockId block, const Vec3& towards) {
+  const StaticScene statics = staticScene(scene);
+  double normal_n = 0.0;
+  for (const ContactLoad& load : contactLoads(statics).contacts) {
+    if (load.upper == block || load.lower == block) normal_n += load.normal_n;
+  }
+  const std::optional<double> limit_n = pullLimit(statics, block, towards);
+  return limit_n && kSlowShare * *limit_n < scene.staticFriction * normal_n;
+}
+
+std::vector<RemovalSequence> removalSequences(const ValidationPlan& plan) {
+  const std::string path = plan.oracle + "/removal.jsonl";
+  std::ifstream file(path);
+  if (!file) throw InputError(fmt::format("--oracle: found no file {}, allowed is the folder of the reference sets", path));
+  std::vector<RemovalSequence> sequences;
+  for (std::string text; std::getline(file, text);) {
+    if (text.empty()) continue;
+    const nlohmann::json line = nlohmann::json::parse(text);
+    RemovalSequence sequence;
+    sequence.id = line.at("id").get<std::string>();
+    sequence.scene = bitCodeScene(line.at("config").get<std::string>());
+    sequence.standsAfter = line.at("stands_after").get<std::vector<bool>>();
+    Scene left = sequence.scene;
+    for (const nlohmann::json& place : line.at("remove")) {
+      if (!plan.longForm && sequence.scene.moves.size() >= 2 * kShortRemovals) break;
+      Move take;
+      take.row = place.at("row").get<int>();
+      take.position = place.at("position").get<int>();
+      const bool alongX = take.row % 2 == 0;
+      const Vec3 length = alongX ? Vec3::UnitX() : Vec3::UnitY();
+      const Vec3 outwards = (take.position - 2) * (alongX ? Vec3::UnitY() : Vec3::UnitX());
+      take.towards = take.position == 2 ? length : outwards;
+      const auto block = std::find_if(left.blocks.begin(), left.blocks.end(), [&](const BlockSpec& spec) {
+        return spec.row == take.row && spec.position == take.position;
+      });
+      if (block == left.blocks.end())
+        throw InputError(fmt::format("--oracle: {} takes a block from row {}, position {}, where none is left", sequence.id,
+                                     take.row, take.position));
+      const auto id = blockId(static_cast<std::size_t>(block - left.blocks.begin()));
+      if (holdsTooHard(left, id, take.towards)) take.speed_m_s = kJerk_m_s;
+      left.blocks.erase(block);
+      Move away;
+      away.kind = MoveKind::putAside;
+      take.limit_n = away.limit_n = kStrongHand_n;
+      sequence.scene.moves.insert(sequence.scene.moves.end(), {take, away});
+    }
+    sequences.push_back(sequence);
+    if (!plan.longForm) break;
+  }
+  return sequences;
+}
+
+// After each removal the tower stands or not as statics says, the product's and the reference's.
+void pullAll(RemovalSequence& sequence) {
+  const RunResult result = play(sequence.scene).result;
+  const std::size_t removals = sequence.scene.moves.size() / 2;
+  for (std::size_t i = 0; i < removals; ++i) {
+    const bool expected = sequence.standsAfter[i + 1];
+    const bool played = 2 * i + 1 < result.moves.size() && result.moves[2 * i + 1].done;
+    const bool right = expected ? played && result.moves[2 * i].statics != Rest::falls
+                                : !result.standing.stands && (result.moves.size() == 2 * i || result.moves.size() == 2 * i + 1);
+    if (!right) {
+      const Move& move = sequence.scene.moves[2 * i];
+      sequence.note = fmt::format("{}: removal {} ({}): statics says it {}; {}", sequence.id, i + 1, describe(move),
+                                  expected ? "stands" : "falls", describe(result.standing));
+      return;
+    }
+    ++sequence.statesRight;
+  }
+}
+
+void addRemovalsByPulling(std::vector<RemovalSequence> sequences, Sleep sleep, ValidationSection& section) {
+  for (RemovalSequence& sequence : sequences) sequence.scene.settings.sleep = sleep;
+  tbb::parallel_for(std::size_t{0}, sequences.size(),
+                    [&](std::size_t i) { tbb::this_task_arena::isolate([&] { pullAll(sequences[i]); }); });
+  std::size_t right = 0;
+  std::size_t all = 0;
+  for (const RemovalSequence& sequence : sequences) {
+    right += sequence.statesRight;
+    all += sequence.scene.moves.size() / 2;
+    if (!sequence.note.empty()) section.notes.push_back(sequence.note);
+  }
+  section.claims.push_back(
+      {fmt::format("blocks pulled out of 18 rows one by one, sleep {}: simulation and statics agree after each",
+                   sleep == Sleep::off ? "off" : "on"),
+       "all", fmt::format("{} of {}", right, all), right == all});
+}
+
+}  // namespace
+
+ValidationSection validateMoves(const ValidationPlan& plan) {
+  ValidationSection section{
+      "Moves",
+      "The report's sequence of moves (its section 6.1.2, scenes/moves.toml) by a hand of at most 5 N, slow at "
+      "4 cm/s and quick at 40 cm/s; allowed is what the real tower did. Blocks that are not loose have heights within 0.006 mm "
+      "of "
+      "one another. Then with heights that differ by all of the 0.02 mm within which they count as equal: in some seeds 3-1, "
+      "which step 3 draws, then bears so much that friction asks for nearly the force at which the tower goes over its edge "
+      "(0.80 N, with 1-1 loose), and the tower rocks: that is reported. "
+      "Then blocks are pulled out of a full tower of 18 rows one by one and put aside, middle blocks along their length and "
+      "outer ones sideways, at 4 cm/s, or at 1.5 m/s where friction asks for more than two thirds of the pull that the tower "
+      "bears by statics; both ways again. "
+      "After a state that differs a sequence is not counted further."};
+  const PlayedSequence asleep = playSequence(plan, Sleep::on, std::nullopt);
+  const PlayedSequence awake = playSequence(plan, Sleep::off, std::nullopt);
+  addSequence(asleep, "sleep on", section);
+  addSequence(awake, "sleep off", section);
+  const double apart = apart_m(asleep, awake);
+  section.claims.push_back({"the report's sequence: places in the end with sleep and without", "within 0.1 mm",
+                            fmt::format("{:.3f} mm apart at most", 1e3 * apart), apart <= kSamePlace_m});
+  const PlayedSequence unequalAsleep = playSequence(plan, Sleep::on, kUnequalHeightsSigma_m);
+  const PlayedSequence unequalAwake = playSequence(plan, Sleep::off, kUnequalHeightsSigma_m);
+  addReported(unequalAsleep, "heights that differ by 0.02 mm, sleep on", section);
+  addReported(unequalAwake, "heights that differ by 0.02 mm, sleep off", section);
+  section.claims.push_back({"heights that differ by 0.02 mm: places in the end with sleep and without", "reported",
+                            fmt::format("{:.3f} mm apart at most", 1e3 * apart_m(unequalAsleep, unequalAwake))});
+  const std::vector<RemovalSequence> sequences = removalSequences(plan);
+  addRemovalsByPulling(sequences, Sleep::on, section);
+  addRemovalsByPulling(sequences, Sleep::off, section);
+  return section;
+}
+
+}  // namespace springtower

@@ -1,0 +1,66 @@
+#include "apps/common/provenance.h"
+
+#include "core/version.h"
+
+#include <chrono>
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <oneapi/tbb/info.h>
+
+namespace springtower {
+namespace {
+
+std::string processorName() {
+  std::ifstream file("/proc/cpuinfo");
+  for (std::string line; std::getline(file, line);) {
+    const std::size_t colon = line.find(": ");
+    if (line.starts_with("model name") && colon != std::string::npos) return line.substr(colon + 2);
+  }
+  return "unknown";
+}
+
+}  // namespace
+
+Provenance provenanceNow() {
+  Provenance now;
+  now.version = kVersion;
+  now.commit = kGitCommit;
+  now.compiler = kCompiler;
+  now.flags = kCompilerFlags;
+  now.buildType = kBuildType;
+  now.processor = processorName();
+  now.processors = static_cast<unsigned>(tbb::info::default_concurrency());
+  now.date =
+      fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::to_time_t(std::chrono::system_clock::now())));
+  return now;
+}
+
+nlohmann::ordered_json provenanceJson(const Provenance& provenance) {
+  return {{"version", provenance.version},       {"commit", provenance.commit},
+          {"compiler", provenance.compiler},     {"flags", provenance.flags},
+          {"build_type", provenance.buildType},  {"cpu", provenance.processor},
+          {"processors", provenance.processors}, {"date", provenance.date}};
+}
+
+Provenance provenanceFromJson(const nlohmann::ordered_json& json) {
+  Provenance provenance;
+  json.at("version").get_to(provenance.version);
+  json.at("commit").get_to(provenance.commit);
+  json.at("compiler").get_to(provenance.compiler);
+  json.at("flags").get_to(provenance.flags);
+  json.at("build_type").get_to(provenance.buildType);
+  json.at("cpu").get_to(provenance.processor);
+  json.at("processors").get_to(provenance.processors);
+  json.at("date").get_to(provenance.date);
+  return provenance;
+}
+
+std::string footnote(const Provenance& provenance) {
+  return fmt::format("springtower {}, commit {}, {}; {}, {} processor{}; {}, {} {}", provenance.version, provenance.commit,
+                     provenance.date, provenance.processor, provenance.processors, provenance.processors == 1 ? "" : "s",
+                     provenance.compiler, provenance.buildType, provenance.flags);
+}
+
+}  // namespace springtower

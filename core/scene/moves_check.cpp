@@ -1,0 +1,61 @@
+#include "core/error.h"
+#include "core/scene/limits.h"
+#include "core/scene/scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <set>
+#include <utility>
+
+namespace springtower {
+namespace {
+
+void checkNumbers(const Move& move, const std::string& where) {
+  requireInRange(move.speed_m_s, kMoveSpeedRange, where + ": speed");
+  requireInRange(move.drop_m, kDropRange, where + ": drop");
+  requireInRange(move.limit_n, kHandForceRange, where + ": force");
+  if (move.allowed_m) requireInRange(*move.allowed_m, kAllowedMoveRange, where + ": allowed");
+  requireInRange(move.row, {0.0, kMostRows - 1.0, ""}, where + ": row");
+  requireInRange(move.position, {1.0, 3.0, ""}, where + ": position");
+  if (move.towards.cwiseAbs() == Vec3::UnitX() || move.towards.cwiseAbs() == Vec3::UnitY()) return;
+  throw InputError(where + ": found another direction, allowed +x, -x, +y, -y");
+}
+
+}  // namespace
+
+void checkMoves(const Scene& scene, std::string_view source) {
+  std::set<std::pair<int, int>> taken;  // places with a block
+  for (const BlockSpec& block : scene.blocks) {
+    if (block.row >= 0) taken.emplace(block.row, block.position);
+  }
+  bool held = false;
+  for (std::size_t i = 0; i < scene.moves.size(); ++i) {
+    const Move& move = scene.moves[i];
+    const std::string where = fmt::format("{}: moves[{}]", source, i);
+    const std::string place = fmt::format("row {}, position {}", move.row, move.position);
+    checkNumbers(move, where);
+    if (move.kind == MoveKind::take) {
+      if (held) throw InputError(where + ": found a block to take with another in the hand, allowed after put or put-aside");
+      if (taken.erase({move.row, move.position}) == 0) {
+        throw InputError(fmt::format("{}: found {} without a block, allowed a place of the tower that has one", where, place));
+      }
+      held = true;
+      continue;
+    }
+    if (!held) throw InputError(where + ": found nothing in the hand to put, allowed after take");
+    held = false;
+    if (move.kind == MoveKind::putAside) {
+      if (!scene.floor) throw InputError(where + ": found no floor to put a block on, allowed with a floor");
+      continue;
+    }
+    const bool carried =
+        move.row == 0 || std::any_of(taken.begin(), taken.end(), [&](const auto& other) { return other.first == move.row - 1; });
+    if (!carried || !taken.emplace(move.row, move.position).second) {
+      throw InputError(
+          fmt::format("{}: found {} {}, allowed a free place on a row", where, place, carried ? "with a block" : "on no row"));
+    }
+  }
+}
+
+}  // namespace springtower

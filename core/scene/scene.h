@@ -1,0 +1,154 @@
+#pragma once
+
+#include "core/settings.h"
+#include "core/vector.h"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace springtower {
+
+// The game's block, means of the report's Table 3.1 (whose printed mean width 2.6 is its samples' 2.67 truncated).
+inline constexpr double kBlockLength_m = 0.081;
+inline constexpr double kBlockWidth_m = 0.0267;
+inline constexpr double kBlockHeight_m = 0.0182;
+inline constexpr double kBlockMass_kg = 0.0196;
+inline constexpr double kStandardGravity_m_s2 = 9.81;
+/// The default tolerance for these blocks, m; others have it in proportion to their height.
+inline constexpr double kBlockTolerance_m = 5e-5;
+
+/// One block as it starts.
+struct BlockSpec {
+  Vec3 centre = Vec3::Zero();                                       ///< m
+  Vec3 dimensions{kBlockLength_m, kBlockWidth_m, kBlockHeight_m};   ///< m, along its own x, y, z
+  Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();  ///< from its own axes to the world's; unit
+  Vec3 velocity = Vec3::Zero();                                     ///< m/s, of its centre
+  Vec3 spin = Vec3::Zero();                                         ///< rad/s, angular velocity in the world's axes
+  double mass = kBlockMass_kg;                                      ///< kg
+  int row = -1;                                                     ///< row of the tower from 0, or -1
+  int position = 0;                                                 ///< 1, 2, 3 in its row, or 0
+};
+
+/// A force on one block over a time, applied at the centre (spread over its corners) or at one corner.
+struct UserForce {
+  int block = 0;              ///< counted from 0
+  int corner = -1;            ///< 0..7, or -1 for the centre
+  Vec3 force = Vec3::Zero();  ///< N, world axes, constant
+  double start_s = 0.0;       ///< s
+  double end_s = 0.0;         ///< s
+};
+
+/// What a scripted hand does in a move: draws a block of the tower out, lays down or drops the block it holds on a place of the
+/// tower, or lays it on the floor beside the tower.
+enum class MoveKind : std::uint8_t { take, put, putAside };
+
+/// One move of a scripted sequence (solver/hand/moves.h). Places are those of a bit code: rows from 0, positions from 1.
+struct Move {
+  MoveKind kind = MoveKind::take;
+  int row = 0;                   ///< take: where the block lies; put: where it goes
+  int position = 1;              ///< 1, 2, 3
+  Vec3 towards = Vec3::UnitX();  ///< take: the level direction it is drawn in, unit, along one of the world's axes
+  double speed_m_s = 0.04;       ///< take: how fast it is drawn
+  double drop_m = 0.0;           ///< put: the height above its place at which it is let go; 0 lays it down
+  double limit_n = 5.0;          ///< N, most force of the hand
+  std::optional<double> allowed_m =
+      {};  ///< m, how far the move may shift any other block beyond rigid settlement; judged if given
+};
+
+/// Gravity: a magnitude, tilted from straight down by an angle towards a direction, and perhaps swaying. Tilting a scene means
+/// turning gravity; the floor stays.
+struct Gravity {
+  double magnitude = kStandardGravity_m_s2;  ///< m/s2
+  double tilt_deg = 0.0;                     ///< from straight down
+  double direction_deg = 0.0;                ///< towards which side it leans, from +x over +y
+  double sway_deg = 0.0;                     ///< amplitude of a sinus added to the tilt
+  double sway_hz = 0.0;                      ///< its frequency
+
+  /// Acceleration at a time (s), m/s2.
+  [[nodiscard]] Vec3 at(double time_s) const;
+};
+
+/// A whole scene: what there is, how it starts, what acts on it, and how it is to be simulated.
+struct Scene {
+  std::string name;
+  std::vector<BlockSpec> blocks;
+  std::vector<UserForce> forces;
+  std::vector<Move> moves;  ///< one after the other; empty: nobody touches the tower
+  Gravity gravity;
+  bool floor = true;             ///< the plane z = 0
+  bool plane = false;            ///< all that moves stays in the plane y = 0: a scene of rectangles (see checkScene)
+  double staticFriction = 0.4;   ///< Coulomb's coefficient for contacts that stick
+  double kineticFriction = 0.4;  ///< and for contacts that slide; equal unless a scene gives two
+  double seconds = 10.0;         ///< s; how long to simulate unless the command line says otherwise
+  Settings settings;
+};
+
+/// A block of a row set off from its nominal place; rows count from 0, positions from 1.
+struct BlockOffset {
+  int row = 0;
+  int position = 1;
+  double dx = 0.0;  ///< m
+  double dy = 0.0;  ///< m
+};
+
+/// A block that is lower than the others of its row, so that it carries little.
+struct LooseBlock {
+  int row = 0;
+  int position = 1;
+  double by = 0.0003;  ///< m lower than the others; for a block the bit code marks L, instead of its 0.3 mm
+};
+
+/// What varies from tower to tower, beside its bit code. A number that is not given is 0 (the seed 1), or what the scene file
+/// says.
+struct TowerOptions {
+  std::optional<double> heightsSigma_m = {};  ///< m, standard deviation of the heights; cut off at three of them
+  std::optional<double> massSigma_kg = {};    ///< kg, standard deviation of the masses; cut off at three of them
+  std::optional<std::uint64_t> seed = {};     ///< of the heights and masses, each with a random stream of its own
+  std::optional<double> startGap_m = {};      ///< m; rows start this far apart and drop, the lowest stands on the floor
+  std::vector<BlockOffset> offsets = {};
+  std::vector<LooseBlock> loose = {};
+};
+
+/// The full tower of `rows` rows of three. Throws InputError unless 1 <= rows <= 2000 and the options are within limits.
+Scene towerScene(int rows, const TowerOptions& options = {});
+
+/// A tower from a bit code such as (010)-(010)-(011) (report 6.1.1): rows from the bottom, 1 present, 0 absent, L present and 0.3
+/// mm lower. Even rows lie along x with positions 1, 2, 3 at y = -0.02715, 0, +0.02715; odd rows along y with positions at x
+/// likewise: the block's own x axis is its length, so odd rows are turned a quarter turn about z. All blocks of a row stand at
+/// the height of the highest block below, which they touch. The height and mass of a place depend on the seed and the place
+/// alone, not on which other blocks are present. Throws InputError naming the place of a typo, an offset or loose block that is
+/// absent, and blocks that start inside each other.
+Scene bitCodeScene(std::string_view code, const TowerOptions& options = {});
+
+/// A scene from a TOML file; scenes/annotated.toml shows every key. The file may describe a tower, single blocks or both. Options
+/// that are given replace those of the file's tower. Throws InputError naming the file, the place in it, the key, what was found
+/// and what is allowed; options for a file without a tower are an error too.
+Scene sceneFromToml(const std::string& path, const TowerOptions& options = {});
+
+/// A scene from what the command line names: `tower:R`, a bit code, or a TOML file. Throws InputError.
+Scene sceneFromName(const std::string& name, const TowerOptions& options = {});
+
+/// The height h in which thresholds and the default tolerance are measured, m: the least side of any block. Where heights vary
+/// it is that of the lowest, the block that a fault of one size matters most to. Precondition: there is a block.
+double blockHeightOf(const Scene& scene);
+
+/// The tolerance that a scene asks for, m: as its settings give it, else kBlockTolerance_m in proportion to blockHeightOf.
+/// Precondition: there is a block, or the settings give one.
+double toleranceOf(const Scene& scene);
+
+/// Checks the scene's moves as a sequence: a block is taken where there is one and with an empty hand, put where there is none,
+/// and all numbers are within limits. Throws InputError naming `source`, the move, what was found and what is allowed.
+void checkMoves(const Scene& scene, std::string_view source);
+
+/// Checks what every scene must obey: values within the limits of core/scene/limits.h and `settingTable`, unit orientations,
+/// forces on blocks that exist, moves that can be made (checkMoves), no block inside another or in the floor by more than a
+/// millionth of the least dimension of the blocks concerned (touching is fine); in a plane: blocks whose centres and gravity lie
+/// in y = 0, with an axis along y, that neither move nor are pushed out of it. The scenes above have been checked; check again
+/// after changing one. Throws InputError naming `source`, the block (or both blocks and how deep they overlap), what was found
+/// and what is allowed.
+void checkScene(const Scene& scene, std::string_view source);
+
+}  // namespace springtower

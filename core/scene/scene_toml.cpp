@@ -1,0 +1,246 @@
+#include "core/error.h"
+#include "core/scene/limits.h"
+#include "core/scene/scene.h"
+#include "core/scene/toml_keys.h"
+#include "core/scene/toml_moves.h"
+#include "core/scene/toml_table.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <fmt/format.h>
+#include <fstream>
+#include <limits>
+#include <numbers>
+#include <toml++/toml.h>
+#include <utility>
+
+namespace springtower {
+namespace {
+
+constexpr std::uintmax_t kMostBytes = 256U << 20U;
+constexpr std::int64_t kMostWhole = std::numeric_limits<std::int64_t>::max();
+
+BlockSpec readBlock(const Table& table) {
+  BlockSpec block;
+  table.require("centre_m");
+  table.read("centre_m", block.centre, kPlaceRange);
+  table.read("dimensions_m", block.dimensions, kDimensionRange);
+  table.read("mass_kg", block.mass, kMassRange);
+  table.read("velocity_m_s", block.velocity, kVelocityRange);
+  table.read("spin_rad_s", block.spin, kSpinRange);
+  Vec3 rotation_deg = Vec3::Zero();
+  table.read("rotation_deg", rotation_deg, kDirectionRange);
+  const Vec3 rotation = rotation_deg * (std::numbers::pi / 180.0);
+  const double angle = rotation.norm();
+  if (angle > 0.0) block.orientation = Eigen::AngleAxisd(angle, rotation / angle);
+  return block;
+}
+
+UserForce readForce(const Table& table, const Scene& scene) {
+  UserForce force;
+  if (table.has("block") == (table.has("row") || table.has("position"))) {
+    throw InputError(table.where() + ": found both or neither of block and row with position, allowed either");
+  }
+  const auto blocks = static_cast<std::int64_t>(scene.blocks.size());
+  if (table.has("block")) {
+    table.readWhole("block", force.block, 0, blocks - 1);
+  } else {
+    int row = 0;
+    int position = 0;
+    table.require("row");
+    table.require("position");
+    table.readWhole("row", row, 0, kMostRows - 1);
+    table.readWhole("position", position, 1, 3);
+    const auto block = std::find_if(scene.blocks.begin(), scene.blocks.end(), [&](const BlockSpec& candidate) {
+      return candidate.row == row && candidate.position == position;
+    });
+    if (block == scene.blocks.end()) {
+      throw InputError(fmt::format("{}: found row {}, position {}, allowed a block of the tower", table.where(), row, position));
+    }
+    force.block = static_cast<int>(block - scene.blocks.begin());
+  }
+  table.readWhole("corner", force.corner, 0, 7);
+  for (const std::string_view key : {"force_n", "end_s"}) table.require(key);
+  table.read("force_n", force.force, kForceRange);
+  table.read("start_s", force.start_s, kTimeRange);
+  table.read("end_s", force.end_s, {force.start_s, kTimeRange.most, kTimeRange.unit});
+  return force;
+}
+
+void readFriction(const Table& table, Scene& scene) {
+  if (table.has("coefficient") == (table.has("static") || table.has("kinetic"))) {
+    throw InputError(table.where() + ": found both or neither of coefficient and static with kinetic, allowed either");
+  }
+  if (table.has("coefficient")) {
+    table.read("coefficient", scene.staticFriction, kFrictionRange);
+    scene.kineticFriction = scene.staticFriction;
+    return;
+  }
+  table.require("static");
+  table.require("kinetic");
+  table.read("static", scene.staticFriction, kFrictionRange);
+  table.read("kinetic", scene.kineticFriction, {0.0, scene.staticFriction, "(the static one)"});
+}
+
+void readGravity(const Table& table, Gravity& gravity) {
+  table.read("magnitude_m_s2", gravity.magnitude, kGravityRange);
+  table.read("tilt_deg", gravity.tilt_deg, kTiltRange);
+  table.read("direction_deg", gravity.direction_deg, kDirectionRange);
+  table.read("sway_deg", gravity.sway_deg, kTiltRange);
+  table.read("sway_hz", gravity.sway_hz, kFrequencyRange);
+}
+
+// Method, inertia and sleep by their names.
+template <class T>
+void readNamed(const Table& table, std::string_view key, T& target, T (*fromName)(std::string_view, std::string_view)) {
+  if (!table.has(key)) return;
+  std::string name;
+  table.read(key, name);
+  target = fromName(name, table.where(key));
+}
+
+void readSettings(const Table& table, Settings& settings) {
+  readNamed(table, "method", settings.method, methodFromName);
+  readNamed(table, "inertia", settings.inertia, inertiaFromName);
+  readNamed(table, "sleep", settings.sleep, sleepFromName);
+  for (const SettingRow& row : settingTable()) {
+    if (const auto* number = std::get_if<double Settings::*>(&row.member)) {
+      table.read(row.key, settings.**number, {row.least, row.most, row.unit});
+    } else if (const auto* optional = std::get_if<std::optional<double> Settings::*>(&row.member)) {
+      table.read(row.key, settings.**optional, {row.least, row.most, row.unit});
+    } else if (const auto* whole = std::get_if<int Settings::*>(&row.member)) {
+      table.readWhole(row.key, settings.**whole, static_cast<std::int64_t>(row.least), static_cast<std::int64_t>(row.most));
+    } else {
+      table.read(row.key, settings.*std::get<bool Settings::*>(row.member));
+    }
+  }
+}
+
+std::vector<std::string_view> settingKeys() {
+  std::vector<std::string_view> keys = {"method", "inertia", "sleep"};
+  for (const SettingRow& row : settingTable()) keys.push_back(row.key);
+  return keys;
+}
+
+// The file's tower; options that are given go before those of the file.
+std::vector<BlockSpec> readTower(const Table& table, const TowerOptions& given) {
+  TowerOptions options;
+  table.read("heights_sigma_m", options.heightsSigma_m, kHeightsSigmaRange);
+  table.read("mass_sigma_kg", options.massSigma_kg, kMassSigmaRange);
+  table.readWhole("seed", options.seed.emplace(1), 0, kMostWhole);
+  table.read("start_gap_m", options.startGap_m, kStartGapRange);
+  table.readTables("offset", {"row", "position", "dx_m", "dy_m"}, [&](const Table& item) {
+    BlockOffset& offset = options.offsets.emplace_back();
+    for (const std::string_view key : {"row", "position"}) item.require(key);
+    item.readWhole("row", offset.row, 0, kMostRows - 1);
+    item.readWhole("position", offset.position, 1, 3);
+    item.read("dx_m", offset.dx, kOffsetRange);
+    item.read("dy_m", offset.dy, kOffsetRange);
+  });
+  table.readTables("loose", {"row", "position", "by_m"}, [&](const Table& item) {
+    LooseBlock& loose = options.loose.emplace_back();
+    for (const std::string_view key : {"row", "position"}) item.require(key);
+    item.readWhole("row", loose.row, 0, kMostRows - 1);
+    item.readWhole("position", loose.position, 1, 3);
+    item.read("by_m", loose.by, kLooseRange);
+  });
+  if (given.heightsSigma_m) options.heightsSigma_m = given.heightsSigma_m;
+  if (given.massSigma_kg) options.massSigma_kg = given.massSigma_kg;
+  if (given.seed) options.seed = given.seed;
+  if (given.startGap_m) options.startGap_m = given.startGap_m;
+  if (!given.offsets.empty()) options.offsets = given.offsets;
+  if (!given.loose.empty()) options.loose = given.loose;
+
+  if (table.has("rows") == table.has("code")) {
+    throw InputError(table.where() + ": found both or neither of rows and code, allowed either");
+  }
+  int rows = 0;
+  std::string code;
+  table.readWhole("rows", rows, 1, kMostRows);
+  table.read("code", code);
+  try {
+    return (table.has("rows") ? towerScene(rows, options) : bitCodeScene(code, options)).blocks;
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: {}", table.where(), error.what()));
+  }
+}
+
+void refuseTowerOptions(const TowerOptions& given, const std::string& file) {
+  const std::pair<bool, std::string_view> options[] = {{given.heightsSigma_m.has_value(), "a variation of heights"},
+                                                       {given.massSigma_kg.has_value(), "a variation of masses"},
+                                                       {given.seed.has_value(), "a seed"},
+                                                       {given.startGap_m.has_value(), "a start gap"},
+                                                       {!given.offsets.empty(), "offsets"},
+                                                       {!given.loose.empty(), "loose blocks"}};
+  for (const auto& [isGiven, name] : options) {
+    if (isGiven) throw InputError(fmt::format("{}: found {} for a scene without [tower], allowed for towers only", file, name));
+  }
+}
+
+Scene readScene(const Table& top, const TowerOptions& given, const std::string& file) {
+  Scene scene;
+  scene.name = file;
+  top.read("name", scene.name);
+  top.read("seconds", scene.seconds, kSecondsRange);
+  top.read("plane", scene.plane);
+  if (!top.has("tower")) refuseTowerOptions(given, file);
+  top.readTable("tower", {"rows", "code", "heights_sigma_m", "mass_sigma_kg", "seed", "start_gap_m", "offset", "loose"},
+                [&](const Table& table) { scene.blocks = readTower(table, given); });
+  top.readTables("block", {"centre_m", "dimensions_m", "mass_kg", "rotation_deg", "velocity_m_s", "spin_rad_s"},
+                 [&](const Table& table) { scene.blocks.push_back(readBlock(table)); });
+  if (scene.blocks.empty()) throw InputError(file + ": found no blocks, allowed a [tower], [[block]]s or both");
+  top.readTables("force", {"block", "row", "position", "corner", "force_n", "start_s", "end_s"},
+                 [&](const Table& table) { scene.forces.push_back(readForce(table, scene)); });
+  top.readTables("moves", kMoveKeys, [&](const Table& table) { scene.moves.push_back(readMove(table)); });
+  top.readTable("floor", {"present"}, [&](const Table& table) { table.read("present", scene.floor); });
+  top.readTable("friction", {"coefficient", "static", "kinetic"}, [&](const Table& table) { readFriction(table, scene); });
+  top.readTable("gravity", {"magnitude_m_s2", "tilt_deg", "direction_deg", "sway_deg", "sway_hz"},
+                [&](const Table& table) { readGravity(table, scene.gravity); });
+  top.readTable("settings", settingKeys(), [&](const Table& table) { readSettings(table, scene.settings); });
+  return scene;
+}
+
+std::string textOf(const std::string& path, const std::string& file) {
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error)) throw InputError(file + ": found a folder, allowed a scene file");
+  if (!std::filesystem::exists(path, error)) {
+    throw InputError(file + ": found no such file, allowed a scene file, tower:R with R rows, or a bit code such as (010)-(111)");
+  }
+  std::ifstream stream(path, std::ios::binary);
+  std::string text;
+  constexpr std::size_t kChunk = std::size_t{1} << 16U;
+  for (std::streamsize got = 1; stream && got > 0;) {
+    const std::size_t size = text.size();
+    if (size > kMostBytes) throw InputError(fmt::format("{}: found more than {} bytes, allowed fewer", file, kMostBytes));
+    text.resize(size + kChunk);
+    got = stream.read(text.data() + size, static_cast<std::streamsize>(kChunk)).gcount();
+    text.resize(size + static_cast<std::size_t>(got));
+  }
+  if (!stream.eof()) throw InputError(file + ": found a file that cannot be read, allowed a scene file");
+  return text;
+}
+
+}  // namespace
+
+Scene sceneFromToml(const std::string& path, const TowerOptions& options) {
+  const std::string file = onOneLine(path);
+  const std::string text = textOf(path, file);
+  refuseLongKeys(text, file);
+  toml::table parsed;
+  try {
+    parsed = toml::parse(text, path);
+  } catch (const toml::parse_error& error) {
+    const toml::source_position& place = error.source().begin;
+    throw InputError(fmt::format("{}:{}:{}: {}", file, place.line, place.column, onOneLine(error.description())));
+  }
+  Scene scene = readScene(
+      Table(parsed, "", file,
+            {"name", "seconds", "plane", "tower", "block", "force", "moves", "floor", "friction", "gravity", "settings"}),
+      options, file);
+  checkScene(scene, file);
+  return scene;
+}
+
+}  // namespace springtower

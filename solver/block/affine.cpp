@@ -1,0 +1,81 @@
+#include "solver/block/affine.h"
+
+#include "core/lanes.h"
+
+namespace springtower {
+
+namespace {
+
+SPRINGTOWER_INLINE void affine(const CornerArray& values, std::size_t block, AffineField& field) {
+  for (std::size_t a = 0; a < 3; ++a) {
+    const double* p = values.values(a, block);
+    Lanes low, high;
+    load(p, low);
+    load(p + 4, high);
+    const Lanes both = low + high;
+    const Lanes up = high - low;
+    const double even = both[0] + both[2];
+    const double odd = both[1] + both[3];
+    field.centre[a] = 0.125 * (even + odd);
+    field.side[0][a] = 0.25 * (odd - even);
+    field.side[1][a] = 0.25 * ((both[2] + both[3]) - (both[0] + both[1]));
+    field.side[2][a] = 0.25 * sum(up);
+  }
+}
+
+SPRINGTOWER_INLINE void cross(const std::array<double, 3>& p, const std::array<double, 3>& q, std::array<double, 3>& result) {
+  result[0] = p[1] * q[2] - p[2] * q[1];
+  result[1] = p[2] * q[0] - p[0] * q[2];
+  result[2] = p[0] * q[1] - p[1] * q[0];
+}
+
+SPRINGTOWER_INLINE void frame(const CornerArray& position, std::size_t block, BlockFrame& result) {
+  affine(position, block, result.place);
+  const auto& side = result.place.side;
+  cross(side[1], side[2], result.dual[0]);
+  cross(side[2], side[0], result.dual[1]);
+  cross(side[0], side[1], result.dual[2]);
+  const double volume = side[0][0] * result.dual[0][0] + side[0][1] * result.dual[0][1] + side[0][2] * result.dual[0][2];
+  const double inverse = 1.0 / volume;
+  for (std::size_t a = 0; a < 3; ++a) {
+    auto& dual = result.dual[a];
+    const double length = __builtin_sqrt(dual[0] * dual[0] + dual[1] * dual[1] + dual[2] * dual[2]);
+    const double inverseLength = 1.0 / length;
+    for (std::size_t k = 0; k < 3; ++k) {
+      result.normal[a][k] = dual[k] * inverseLength;
+      dual[k] *= inverse;
+    }
+  }
+}
+
+}  // namespace
+
+AffineField affineField(const CornerArray& values, std::size_t block) {
+  AffineField field;
+  affine(values, block, field);
+  return field;
+}
+
+BlockFrame blockFrame(const CornerArray& position, std::size_t block) {
+  BlockFrame result;
+  frame(position, block, result);
+  return result;
+}
+
+SPRINGTOWER_KERNEL
+void computeFrames(const CornerArray& position, std::span<const std::int32_t> blocks, std::vector<BlockFrame>& frames) {
+  for (const std::int32_t block : blocks) {
+    const auto b = static_cast<std::size_t>(block);
+    frame(position, b, frames[b]);
+  }
+}
+
+SPRINGTOWER_KERNEL
+void computeMotions(const CornerArray& velocity, std::span<const std::int32_t> blocks, std::vector<AffineField>& motions) {
+  for (const std::int32_t block : blocks) {
+    const auto b = static_cast<std::size_t>(block);
+    affine(velocity, b, motions[b]);
+  }
+}
+
+}  // namespace springtower

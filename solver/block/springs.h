@@ -1,0 +1,31 @@
+#pragma once
+
+#include "core/state.h"
+#include "solver/block/affine.h"
+
+#include <cstdint>
+#include <span>
+
+namespace springtower {
+
+/// Forces of the 28 springs of each listed block on its corners (report Eq. 4.1 to 4.3: linear in the change of length, and a
+/// dashpot along the spring), on top of what contacts put on the blocks' affine parts, N; `force` of these blocks is overwritten.
+/// Springs go group by group, four at a time.
+void springForces(const BlockModel& model, const MotionState& state, std::span<const std::int32_t> blocks,
+                  std::span<const AffineField> contactForce, CornerArray& force);
+
+/// Energy stored in the springs of one block, J.
+double springEnergy(const BlockModel& model, const CornerArray& position, std::size_t block);
+
+/// Largest relative change of length of any spring of one block.
+double springStrain(const BlockModel& model, const CornerArray& position, std::size_t block);
+
+/// Sets a block's springs: rest lengths from its dimensions, stiffness so that an upright edge of length `referenceLength_m` has
+/// `stiffness_n_m` and every other spring in inverse proportion to its length (equal Young's modulus and section), and dashpots
+/// that are `dampingTime_s` times the stiffness.
+void setSprings(BlockModel& model, std::size_t block, double stiffness_n_m, double referenceLength_m, double dampingTime_s);
+
+/// Stiffness of a block's springs at rest, in its own frame, N/m: 24 x 24, by corner and component.
+Eigen::Matrix<double, 24, 24> springStiffnessMatrix(const BlockModel& model, std::size_t block);
+
+}  // namespace springtower

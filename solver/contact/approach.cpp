@@ -1,0 +1,273 @@
+#include "solver/contact/approach.h"
+
+#include "solver/contact/births.h"
+#include "solver/world/checkpoint.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace springtower {
+
+namespace {
+
+// Distance that blocks may be about to close in an implicit step that makes them meet, in tolerances.
+constexpr double kMostClosing = 0.5;
+// By how much blocks may overlap at the end of a step that knew of no contact between them, in tolerances.
+constexpr double kMostOverlap = 0.5;
+
+// Gap of a pair along a direction from b to a, m; to the floor along its normal.
+double gapOf(const NearPair& pair, const Vec3& direction, const CornerArray& position) {
+  const CornerView a = cornersOf(position, static_cast<std::size_t>(pair.a));
+  if (pair.b >= 0) return gapAlong(direction, a, cornersOf(position, static_cast<std::size_t>(pair.b)));
+  return *std::min_element(a.z, a.z + kCorners);
+}
+
+// How fast the gap of a pair that is apart closes along what separates it, m/s; and the gap, m.
+struct Closing {
+  double gap;
+  double speed;
+};
+
+Closing closingOf(const Simulation& simulation, const NearPair& pair) {
+  const auto a = static_cast<std::size_t>(pair.a);
+  const CornerArray& x = simulation.state.position;
+  const CornerArray& v = simulation.state.velocity;
+  double least = 1e300;
+  double leastSoon = 1e300;
+  const double soon = simulation.scene.settings.frame_s;
+  for (std::size_t c = 0; c < kCorners; ++c) {
+    const double along = pair.witness.dot(x.at(a, c));
+    least = std::min(least, along);
+    leastSoon = std::min(leastSoon, along + soon * pair.witness.dot(v.at(a, c)));
+  }
+  double most = 0.0;
+  double mostSoon = 0.0;
+  if (pair.b >= 0) {
+    const auto b = static_cast<std::size_t>(pair.b);
+    most = mostSoon = -1e300;
+    for (std::size_t c = 0; c < kCorners; ++c) {
+      const double along = pair.witness.dot(x.at(b, c));
+      most = std::max(most, along);
+      mostSoon = std::max(mostSoon, along + soon * pair.witness.dot(v.at(b, c)));
+    }
+  }
+  const double gap = least - most;
+  const double gapSoon = leastSoon - mostSoon;
+  return {gap, (gap - gapSoon) / soon};
+}
+
+// The same by what separates the blocks best, now and when their corners have moved on for a frame: a direction that stands still
+// closes as blocks turn that lie side by side and go over together.
+Closing closingOfShapes(const Simulation& simulation, const NearPair& pair) {
+  const auto a = static_cast<std::size_t>(pair.a);
+  const auto b = static_cast<std::size_t>(pair.b);
+  const CornerArray& x = simulation.state.position;
+  const double soon = simulation.scene.settings.frame_s;
+  double moved[2][3][kCorners];
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double* xa = x.values(axis, a);
+    const double* xb = x.values(axis, b);
+    const double* va = simulation.state.velocity.values(axis, a);
+    const double* vb = simulation.state.velocity.values(axis, b);
+    for (std::size_t c = 0; c < kCorners; ++c) {
+      moved[0][axis][c] = xa[c] + soon * va[c];
+      moved[1][axis][c] = xb[c] + soon * vb[c];
+    }
+  }
+  const double gap = findSeparation(cornersOf(x, a), cornersOf(x, b)).best();
+  const double gapSoon = findSeparation({moved[0][0], moved[0][1], moved[0][2]}, {moved[1][0], moved[1][1], moved[1][2]}).best();
+  return {gap, (gap - gapSoon) / soon};
+}
+
+// The longest way of a corner of a block in the step just found, m, or a little more; the floor and what sleeps go none.
+double wayOf(const IslandStep& step, std::int32_t block) {
+  if (sleeps(step.simulation, block)) return 0.0;
+  const auto b = static_cast<std::size_t>(block);
+  double largest = 0.0;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const double* now = step.simulation.state.position.values(a, b);
+    const double* before = step.engine.previous.values(a, b);
+    for (std::size_t c = 0; c < kCorners; ++c) largest = std::max(largest, std::abs(now[c] - before[c]));
+  }
+  return std::sqrt(3.0) * largest;
+}
+
+// How far a pair may close in the step in which it meets, m: at a quarter of the speed that contacts as stiff as at rest stop
+// within the depth aimed at in an impact.
+double bearableClosing(const IslandStep& step, const NearPair& pair) {
+  const auto& mass = step.simulation.model.mass;
+  const double massA = mass[static_cast<std::size_t>(pair.a)];
+  const double massB = pair.b < 0 ? 0.0 : mass[static_cast<std::size_t>(pair.b)];
+  const double reduced = pair.b < 0 ? massA : massA * massB / (massA + massB);
+  const double stiffness = pair.b < 0 ? step.law.floorStiffness_n_m : step.law.stiffness_n_m;
+  return 0.25 * step.law.impactPenetration_m * std::sqrt(stiffness / reduced) * step.drift_s;
+}
+
+// How a pair that was apart has met in the step just found: by how much its blocks overlap now, m, negative where they do not,
+// and by how much they closed, m. `way`: by how much they may have closed.
+struct Meeting {
+  double overlap = -1.0;
+  double closed = 0.0;
+};
+
+Meeting meetingOf(const IslandStep& step, const NearPair& pair, double way) {
+  const Engine& engine = step.engine;
+  if (travelOf(engine, pair) - pair.checkedTravel + way < pair.margin) return {};
+  const CornerArray& now = step.simulation.state.position;
+  Vec3 direction = pair.b >= 0 ? pair.witness : Vec3::UnitZ();
+  if (gapOf(pair, direction, now) > 0.0) return {};
+  if (pair.b >= 0) {  // another direction may separate them still
+    direction = findSeparation(cornersOf(engine.previous, static_cast<std::size_t>(pair.a)),
+                               cornersOf(engine.previous, static_cast<std::size_t>(pair.b)))
+                    .bestNormal();
+  }
+  const double gap = gapOf(pair, direction, now);
+  return {-gap, gapOf(pair, direction, engine.previous) - gap};
+}
+
+// Depth of every point of a manifold with the blocks where these positions have them, m.
+std::array<double, kManifoldPoints> depthsAt(const IslandStep& step, const Manifold& manifold, const CornerArray& position) {
+  const AffineField still{};
+  const BlockFrame upper = blockFrame(position, static_cast<std::size_t>(manifold.upper));
+  const BlockFrame lower = manifold.lower < 0 ? upper : blockFrame(position, static_cast<std::size_t>(manifold.lower));
+  return pointForces(manifold, {&upper, &still, &still}, {manifold.lower < 0 ? nullptr : &lower, &still, &still}, step.law).depth;
+}
+
+// Whether a touching pair has met anew in the step just found: points that push only since closed at speed, or the blocks overlap
+// otherwise than their points know by more than `most`. `way`: how far they went together, m.
+bool metAnew(const IslandStep& step, const NearPair& pair, const PointMemory& trial, double way, double most) {
+  const Manifold& manifold = pair.manifold;
+  const auto count = static_cast<std::size_t>(manifold.count);
+  bool begins = false;
+  bool touches = false;
+  for (std::size_t i = 0; i < count; ++i) {
+    touches = touches || trial.live[i] != 0.0;
+    begins = begins || (trial.live[i] != 0.0 && manifold.live[i] == 0.0);
+  }
+  const bool late = pair.b >= 0 && (!touches || way > refreshTravel(step.simulation));
+  if (!begins && !late) return false;
+  const CornerArray& now = step.simulation.state.position;
+  const std::array<double, kManifoldPoints> depth = depthsAt(step, manifold, now);
+  if (begins) {
+    const std::array<double, kManifoldPoints> before = depthsAt(step, manifold, step.engine.previous);
+    const double bearable = bearableClosing(step, pair);
+    for (std::size_t i = 0; i < count; ++i) {
+      if (trial.live[i] != 0.0 && manifold.live[i] == 0.0 && depth[i] - before[i] > bearable) return true;
+    }
+  }
+  if (!late) return false;
+  const double known = std::max(0.0, *std::max_element(depth.begin(), depth.begin() + manifold.count));
+  return -findSeparation(cornersOf(now, static_cast<std::size_t>(pair.a)), cornersOf(now, static_cast<std::size_t>(pair.b)))
+              .best() > known + most;
+}
+
+// Velocity of a place on a block, m/s.
+Vec3 velocityAt(const BlockFrame& frame, const AffineField& motion, const Vec3& place) {
+  Vec3 velocity(motion.centre[0], motion.centre[1], motion.centre[2]);
+  const Vec3 arm = place - Vec3(frame.place.centre[0], frame.place.centre[1], frame.place.centre[2]);
+  for (std::size_t a = 0; a < 3; ++a) {
+    const double share = frame.dual[a][0] * arm[0] + frame.dual[a][1] * arm[1] + frame.dual[a][2] * arm[2];
+    velocity += share * Vec3(motion.side[a][0], motion.side[a][1], motion.side[a][2]);
+  }
+  return velocity;
+}
+
+// How fast the points of a manifold open or close, the slowest of them, m/s; of those that pushed last, where any did. What is
+// open and opens further has parted, as where the end of a block that is drawn out leaves its support; but what explicit steps
+// brought here rebounds.
+double slowestRate(const IslandStep& step, const Manifold& manifold) {
+  const MotionState& state = step.simulation.state;
+  const auto u = static_cast<std::size_t>(manifold.upper);
+  const auto l = static_cast<std::size_t>(std::max(manifold.lower, 0));
+  const AffineField still{};
+  const BlockFrame upper = blockFrame(state.position, u);
+  const BlockFrame lower = blockFrame(state.position, l);
+  const AffineField upperMotion = affineField(state.velocity, u);
+  const AffineField lowerMotion = manifold.lower < 0 ? still : affineField(state.velocity, l);
+  const PointForces points =
+      pointForces(manifold, {&upper, &still, &still}, {manifold.lower < 0 ? nullptr : &lower, &still, &still}, step.law);
+  const bool any = anyPointTouches(manifold);
+  const bool rebounds = step.engine.clock[u].explicitLast || (manifold.lower >= 0 && step.engine.clock[l].explicitLast);
+  double slowest = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < static_cast<std::size_t>(manifold.count); ++i) {
+    if (any && manifold.live[i] == 0.0) continue;
+    const Vec3 apart = velocityAt(upper, upperMotion, points.place[i]) - velocityAt(lower, lowerMotion, points.lowerPlace[i]);
+    const double opening = points.direction.dot(apart);
+    const bool parted = !rebounds && points.depth[i] <= 0.0 && opening > 0.0;
+    slowest = std::min(slowest, parted ? 0.0 : std::abs(opening));
+  }
+  return slowest;
+}
+
+double speedOf(const IslandStep& step, std::int32_t block) {
+  if (sleeps(step.simulation, block)) return 0.0;
+  return fastestCorner(step.simulation.state.velocity, static_cast<std::size_t>(block), Vec3::Zero());
+}
+
+}  // namespace
+
+double fastestCorner(const CornerArray& velocity, std::size_t block, const Vec3& against) {
+  double squared = 0.0;
+  for (std::size_t c = 0; c < kCorners; ++c) squared = std::max(squared, (velocity.at(block, c) - against).squaredNorm());
+  return std::sqrt(squared);
+}
+
+bool bounces(const IslandStep& step, double step_s) {
+  const double most = kMostClosing * step.simulation.tolerance_m / step_s;
+  double fastest = 0.0;
+  for (const std::int32_t block : step.blocks) fastest = std::max(fastest, speedOf(step, block));
+  if (2.0 * fastest <= most) return false;
+  return std::any_of(step.pairs.begin(), step.pairs.end(), [&](std::int32_t at) {
+    const NearPair& pair = step.engine.pairs[static_cast<std::size_t>(at)];
+    if (pair.manifold.touch == Touch::apart) return false;
+    if (speedOf(step, pair.a) + speedOf(step, pair.b) <= most) return false;
+    return slowestRate(step, pair.manifold) > most;
+  });
+}
+
+bool meetsSoon(const IslandStep& step, double step_s) {
+  const Simulation& simulation = step.simulation;
+  const double frame_s = simulation.scene.settings.frame_s;
+  const auto soon = [&](const Closing& closing) {
+    const double reach = frame_s * (std::max(0.0, closing.speed) + 0.5 * frame_s * simulation.scene.gravity.magnitude);
+    return closing.gap < reach && closing.speed * step_s > kMostClosing * simulation.tolerance_m;
+  };
+  return std::any_of(step.pairs.begin(), step.pairs.end(), [&](std::int32_t at) {
+    const NearPair& pair = step.engine.pairs[static_cast<std::size_t>(at)];
+    if (pair.manifold.touch != Touch::apart) return false;
+    return soon(closingOf(simulation, pair)) && (pair.b < 0 || soon(closingOfShapes(simulation, pair)));
+  });
+}
+
+Meetings meetingsIn(IslandStep& step) {
+  const double most = kMostOverlap * step.simulation.tolerance_m;
+  double longest = 0.0;
+  for (const std::int32_t block : step.blocks) longest = std::max(longest, wayOf(step, block));
+  if (2.0 * longest <= most) return Meetings::none;
+  Meetings found = Meetings::none;
+  for (const std::int32_t at : step.pairs) {
+    NearPair& pair = step.engine.pairs[static_cast<std::size_t>(at)];
+    const double way = wayOf(step, pair.a) + wayOf(step, pair.b);
+    if (way <= most) continue;
+    if (pair.manifold.touch != Touch::apart) {
+      if (metAnew(step, pair, step.engine.trial[static_cast<std::size_t>(at)], way, most)) return Meetings::atSpeed;
+      continue;
+    }
+    const Meeting meeting = meetingOf(step, pair, way);
+    if (meeting.overlap <= 0.0) continue;
+    if (meeting.closed > bearableClosing(step, pair)) return Meetings::atSpeed;
+    if (meeting.overlap <= most) continue;
+    keepPair(step.engine, static_cast<std::size_t>(at));
+    pair.checkedTravel = travelOf(step.engine, pair);
+    watchApart(step, pair, step.counters, step.times);
+    if (pair.manifold.touch == Touch::apart) {
+      pair.margin = 0.0;  // of where this step ends, which may be solved again
+    } else {
+      found = Meetings::broughtIn;
+    }
+  }
+  return found;
+}
+
+}  // namespace springtower

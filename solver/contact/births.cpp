@@ -1,0 +1,279 @@
+#include "solver/contact/births.h"
+
+#include "narrowphase/turning_face.h"
+#include "solver/contact/persistence.h"
+#include "solver/contact/update.h"
+#include "solver/law/tolerances.h"
+#include "solver/world/stage_clock.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace springtower {
+
+namespace {
+
+// Faces within this of parallel touch as such: an edge direction that separates slightly tilted crossed blocks a little better
+// would turn four points into one (cosine of 18 degrees).
+constexpr double kFaceCosine = 0.951;
+
+ManifoldLimits limitsOf(const Simulation& simulation) {
+  const double h = simulation.lengths.blockHeight_m;
+  return {kMergeRadius * h, kManifoldReach * h};
+}
+
+double edgeSlackOf(const Simulation& simulation) {
+  return kEdgeSlack * simulation.lengths.blockHeight_m;
+}
+
+// The overlap of the faces along the normal of one of them: b's if `referenceIsB`, else a's.
+void faceManifold(const Separation& separation, const CornerView& a, const CornerView& b, const ManifoldLimits& limits,
+                  const NearPair& pair, bool referenceIsB, Manifold& fresh) {
+  const CornerView& incidentBlock = referenceIsB ? a : b;
+  const Vec3 towardsIncident = referenceIsB ? separation.normalFaceB : Vec3(-separation.normalFaceA);
+  fresh.upper = referenceIsB ? pair.a : pair.b;
+  fresh.lower = referenceIsB ? pair.b : pair.a;
+  buildFaceManifold(incidentBlock, referenceIsB ? b : a, incidentFaceOf(incidentBlock, towardsIncident),
+                    referenceIsB ? separation.faceOfB : separation.faceOfA, limits, fresh);
+}
+
+// How deep the deepest point of a face manifold lies, m, and how many lie as deep within `slack`.
+struct Deepest {
+  double depth = -std::numeric_limits<double>::infinity();
+  int count = 0;
+};
+
+Deepest deepestPoints(const Manifold& manifold, const CornerView& upper, const CornerView& lower, double slack) {
+  const FaceFrame face = faceFrame(lower, manifold.referenceFace);
+  std::array<double, kManifoldPoints> depth{};
+  const auto end = depth.begin() + manifold.count;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(manifold.count); ++i) {
+    depth[i] = -face.normal.dot(pointOnIncidentFace(manifold, upper, i) - face.centre);
+  }
+  Deepest deepest;
+  for (auto d = depth.begin(); d != end; ++d) deepest.depth = std::max(deepest.depth, *d);
+  deepest.count = static_cast<int>(std::count_if(depth.begin(), end, [&](double d) { return d > deepest.depth - slack; }));
+  return deepest;
+}
+
+void edgeManifold(const Separation& separation, const NearPair& pair, Manifold& fresh) {
+  fresh = Manifold{};
+  fresh.upper = pair.a;
+  fresh.lower = pair.b;
+  fresh.touch = Touch::edge;
+  fresh.incidentFace = static_cast<std::int8_t>(separation.edgeOfA);
+  fresh.referenceFace = static_cast<std::int8_t>(separation.edgeOfB);
+  fresh.count = 1;
+  fresh.scale.fill(1.0);
+}
+
+// Whether faces touch although edges separate better: at more than a point, which lies as deep as the edges do. A crossing that
+// runs along both edges would be a new point of the outline each time, and sink unresisted. Faces far from parallel touch along
+// a line at most, and then separate as well as the edges.
+bool sharesOutline(const Separation& separation, double face, const CornerView& upper, const CornerView& lower, double slack,
+                   const Manifold& fresh) {
+  if (fresh.count < 2) return false;
+  const Deepest deepest = deepestPoints(fresh, upper, lower, slack);
+  if (deepest.count < 2 || deepest.depth > slack - separation.edge) return false;
+  const Vec3 incident = faceFrame(upper, fresh.incidentFace).normal;
+  const Vec3 reference = faceFrame(lower, fresh.referenceFace).normal;
+  return std::abs(incident.dot(reference)) >= kFaceCosine ||
+         (face > separation.edge - slack && deepest.depth > -separation.edge - slack);
+}
+
+// The faces or edges that touch, given what separates the blocks best. A face that was the reference stays so until the other is
+// clearly better. Faces are preferred to edges that separate better where they touch as well. Where they share nothing the next
+// best direction is taken.
+void chooseManifold(const Separation& separation, const CornerView& a, const CornerView& b, const ManifoldLimits& limits,
+                    double slack, double edgeSlack, const NearPair& pair, Manifold& fresh) {
+  const bool wasA = pair.manifold.touch == Touch::face && pair.manifold.lower == pair.a;
+  const bool wasB = pair.manifold.touch == Touch::face && pair.manifold.lower == pair.b;
+  const bool referenceIsB = separation.faceB + (wasB ? slack : 0.0) >= separation.faceA + (wasA ? slack : 0.0);
+  const double face = referenceIsB ? separation.faceB : separation.faceA;
+  const bool crossed = separation.edge > face + slack;
+  faceManifold(separation, a, b, limits, pair, referenceIsB, fresh);
+  const bool upperIsA = fresh.upper == pair.a;
+  if (crossed && !sharesOutline(separation, face, upperIsA ? a : b, upperIsA ? b : a, edgeSlack, fresh)) {
+    edgeManifold(separation, pair, fresh);
+    return;
+  }
+  if (fresh.count == 0) faceManifold(separation, a, b, limits, pair, !referenceIsB, fresh);
+  if (fresh.count == 0 && std::isfinite(separation.edge)) edgeManifold(separation, pair, fresh);
+}
+
+void part(NearPair& pair, const Vec3& witness, double margin) {
+  pair.manifold = Manifold{};
+  pair.witness = witness;
+  pair.margin = margin;
+}
+
+// How far a block's corners are from its affine part, m. The separating axes of two blocks are exact for those parts, from which
+// corners and faces both may differ by this: an overlap by them of up to twice both warps may be none of the faces.
+double warp(const CornerArray& position, std::size_t block) {
+  const AffineField field = affineField(position, block);
+  double largest = 0.0;
+  for (std::size_t c = 0; c < kCorners; ++c) {
+    double squared = 0.0;
+    for (std::size_t a = 0; a < 3; ++a) {
+      double place = field.centre[a];
+      for (std::size_t k = 0; k < 3; ++k) place += 0.5 * cornerSide(c, k) * field.side[k][a];
+      const double apart = position.values(a, block)[c] - place;
+      squared += apart * apart;
+    }
+    largest = std::max(largest, squared);
+  }
+  return std::sqrt(largest);
+}
+
+// Gap up to which blocks touch, m: none, but for those that start apart by no more than rounding.
+double touchingGap(const Simulation& simulation) {
+  return simulation.frame == 0 ? simulation.lengths.contactError_m : 0.0;
+}
+
+double lowestCorner(const CornerView& block) {
+  return *std::min_element(block.z, block.z + kCorners);
+}
+
+void watchFloor(IslandStep& step, NearPair& pair, Counters& counters) {
+  const auto block = static_cast<std::size_t>(pair.a);
+  const CornerView now = cornersOf(step.simulation.state.position, block);
+  const double gap = lowestCorner(now);
+  if (gap > touchingGap(step.simulation)) {
+    pair.margin = gap;
+    return;
+  }
+  // Against a plane the cubic is linear: a corner that was above it and is not any more has met it in between.
+  ++counters.cubicTests;
+  pair.margin = 0.0;
+  if (!step.simulation.scene.settings.continuousTests) return;
+  ++counters.cubicHits;
+  const double before = lowestCorner(cornersOf(step.engine.previous, block));
+  if (step.simulation.frame > 0 && before < -step.simulation.lengths.contactError_m) ++counters.contactsBornPenetrating;
+  ++counters.contactsBorn;
+  pair.manifold.upper = pair.a;
+  pair.manifold.lower = -1;
+  buildFloorManifold(now, limitsOf(step.simulation), pair.manifold);
+  pair.manifold.rigid = step.rigid;
+}
+
+// Whether the face nearest to a direction separates the blocks all through a step, turning with one of them; renews the margin.
+bool turnsApart(const Vec3& normal, const MovingBlock& a, const MovingBlock& b, double touching, NearPair& pair) {
+  const TurningGap turning = gapAlongTurningFace(normal, a, b);
+  if (!(turning.least > touching)) return false;
+  pair.witness = turning.normalAtEnd;
+  pair.margin = std::max(0.0, gapAlong(pair.witness, a.end, b.end));
+  return true;
+}
+
+}  // namespace
+
+double refreshTravel(const Simulation& simulation) {
+  return kRefreshTravel * simulation.lengths.blockHeight_m;
+}
+
+RenewalTravel renewalOfExplicitSteps(const Simulation& simulation) {
+  const double travel_m = refreshTravel(simulation);
+  return {travel_m, travel_m, kRollingRefreshTravel * simulation.lengths.blockHeight_m};
+}
+
+RenewalTravel renewalOfImplicitSteps(const Simulation& simulation) {
+  const double travel_m = refreshTravel(simulation);
+  return {travel_m, kSlidingRefreshTravel * simulation.lengths.blockHeight_m, travel_m};
+}
+
+void watchApart(IslandStep& step, NearPair& pair, Counters& counters, StageTimes& times) {
+  if (pair.b < 0) {
+    watchFloor(step, pair, counters);
+    return;
+  }
+  const auto a = static_cast<std::size_t>(pair.a);
+  const auto b = static_cast<std::size_t>(pair.b);
+  const MovingBlock movingA{cornersOf(step.engine.previous, a), cornersOf(step.simulation.state.position, a)};
+  const MovingBlock movingB{cornersOf(step.engine.previous, b), cornersOf(step.simulation.state.position, b)};
+
+  // The margin is the gap at the step's end: along a fixed direction no pair of points can close it with less travel.
+  const double touching = touchingGap(step.simulation);
+  const double gap = gapAlong(pair.witness, movingA.end, movingB.end);
+  if (gap > touching && gapAlong(pair.witness, movingA.start, movingB.start) > touching) {
+    pair.margin = gap;
+    return;
+  }
+  if (turnsApart(pair.witness, movingA, movingB, touching, pair)) return;
+  const Separation before = findSeparation(movingA.start, movingB.start);
+  const Vec3& witness = before.bestNormal();
+  const double newGap = gapAlong(witness, movingA.end, movingB.end);
+  pair.margin = std::max(0.0, newGap);
+  pair.witness = witness;
+  if (before.best() > touching && newGap > touching) return;
+  const Vec3& face = before.faceA > before.faceB ? before.normalFaceA : before.normalFaceB;
+  if (turnsApart(face, movingA, movingB, touching, pair)) return;
+  // Features that nothing has moved need not share a point where blocks touch: rounding may have put them inside by a bit.
+  const bool laidTogether = step.simulation.frame == 0 && before.best() <= touching;
+  bool meet = false;
+  if (step.simulation.scene.settings.continuousTests) {
+    StageClock clock(times);
+    meet = featuresMeet(movingA, movingB, counters) || laidTogether;
+    clock.lap(Stage::cubicTests);
+  }
+  if (!meet) {
+    pair.margin = 0.0;
+    return;
+  }
+  const double unsure =
+      step.simulation.lengths.contactError_m + 2.0 * (warp(step.engine.previous, a) + warp(step.engine.previous, b));
+  if (step.simulation.frame > 0 && before.best() < -unsure) ++counters.contactsBornPenetrating;
+  Manifold fresh;
+  chooseManifold(before, movingA.end, movingB.end, limitsOf(step.simulation), 0.0, edgeSlackOf(step.simulation), pair, fresh);
+  pair.margin = 0.0;
+  if (fresh.count == 0) return;
+  ++counters.contactsBorn;
+  fresh.rigid = step.rigid;
+  pair.manifold = fresh;
+}
+
+double marginNow(const Simulation& simulation, const NearPair& pair) {
+  const CornerView a = cornersOf(simulation.state.position, static_cast<std::size_t>(pair.a));
+  if (pair.b < 0) return std::max(0.0, lowestCorner(a));
+  return std::max(0.0, gapAlong(pair.witness, a, cornersOf(simulation.state.position, static_cast<std::size_t>(pair.b))));
+}
+
+void renewManifold(IslandStep& step, NearPair& pair, Counters& counters) {
+  const Simulation& simulation = step.simulation;
+  const CornerArray& position = simulation.state.position;
+  const ManifoldLimits limits = limitsOf(simulation);
+  const double partingGap = simulation.lengths.partingGap_m;
+  const double radius = kCarryRadius * simulation.lengths.blockHeight_m;
+  ++counters.manifoldRefreshes;
+  Manifold fresh;
+  if (pair.b < 0) {
+    const CornerView block = cornersOf(position, static_cast<std::size_t>(pair.a));
+    const double gap = lowestCorner(block);
+    if (gap > partingGap && !anyPointTouches(pair.manifold)) {
+      part(pair, Vec3::UnitZ(), gap);
+      return;
+    }
+    fresh.upper = pair.a;
+    buildFloorManifold(block, limits, fresh);
+  } else {
+    const CornerView a = cornersOf(position, static_cast<std::size_t>(pair.a));
+    const CornerView b = cornersOf(position, static_cast<std::size_t>(pair.b));
+    const Separation separation = findSeparation(a, b);
+    if (separation.best() > partingGap && !anyPointTouches(pair.manifold)) {
+      part(pair, separation.bestNormal(), separation.best());
+      return;
+    }
+    chooseManifold(separation, a, b, limits, kReferenceSlack * simulation.lengths.blockHeight_m, edgeSlackOf(simulation), pair,
+                   fresh);
+    if (fresh.count == 0) {
+      part(pair, separation.bestNormal(), std::max(0.0, separation.best()));
+      return;
+    }
+  }
+  fresh.rigid = pair.manifold.rigid;
+  keepContactMemory(pair.manifold, position, step.law, radius, fresh);
+  pair.manifold = fresh;
+}
+
+}  // namespace springtower

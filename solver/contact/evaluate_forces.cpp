@@ -1,0 +1,186 @@
+#include "solver/contact/evaluate_forces.h"
+
+#include "solver/block/inertia.h"
+#include "solver/block/springs.h"
+#include "solver/world/island_step.h"
+#include "solver/world/stage_clock.h"
+
+#include <algorithm>
+#include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/parallel_for.h>
+
+namespace springtower {
+
+namespace {
+
+using Range = tbb::blocked_range<std::size_t>;
+
+constexpr std::size_t kBlockGrain = 64;
+constexpr std::size_t kPairGrain = 128;
+
+// Runs a kernel over the island's blocks: at once, or in ranges on many threads.
+template <class Kernel>
+void overBlocks(const IslandStep& step, bool parallel, const Kernel& kernel) {
+  if (!parallel) {
+    kernel(step.blocks);
+    return;
+  }
+  tbb::parallel_for(Range(0, step.blocks.size(), kBlockGrain),
+                    [&](const Range& range) { kernel(step.blocks.subspan(range.begin(), range.size())); });
+}
+
+ContactSide sideOf(const Engine& engine, std::int32_t block, bool sameMotion) {
+  if (block < 0) return {};
+  const auto b = static_cast<std::size_t>(block);
+  const AffineField* motion = &engine.motion[b];
+  return {&engine.frames[b], motion, sameMotion ? motion : &engine.carriedMotion[b]};
+}
+
+struct Evaluation {
+  ContactStep contactStep;
+  bool sameMotion;
+  Memory memory;
+};
+
+void evaluatePair(IslandStep& step, const Evaluation& evaluation, std::size_t at, PairForce& force) {
+  Manifold& manifold = step.engine.pairs[at].manifold;
+  PointMemory* keep = nullptr;
+  if (evaluation.memory == Memory::advance) keep = &manifold;
+  if (evaluation.memory == Memory::trial) keep = &step.engine.trial[at];
+  const ContactSide upper = sideOf(step.engine, manifold.upper, evaluation.sameMotion);
+  const ContactSide lower = sideOf(step.engine, manifold.lower, evaluation.sameMotion);
+  manifoldForces(manifold, upper, lower, step.law, evaluation.contactStep, reducedMass(step.simulation.model, manifold), keep,
+                 force);
+}
+
+void contactsInOrder(IslandStep& step, const Evaluation& evaluation) {
+  Engine& engine = step.engine;
+  const std::vector<std::uint8_t>& asleep = step.simulation.asleep;
+  for (const std::int32_t block : step.blocks) engine.contactForce[static_cast<std::size_t>(block)] = AffineField{};
+  for (const std::int32_t at : step.watched) {
+    const Manifold& manifold = engine.pairs[static_cast<std::size_t>(at)].manifold;
+    if (manifold.touch == Touch::apart) continue;
+    PairForce force;
+    evaluatePair(step, evaluation, static_cast<std::size_t>(at), force);
+    const auto upper = static_cast<std::size_t>(manifold.upper);
+    if (asleep[upper] == 0) addForce(force.upper, engine.contactForce[upper]);
+    if (manifold.lower < 0) continue;
+    const auto lower = static_cast<std::size_t>(manifold.lower);
+    if (asleep[lower] == 0) addForce(force.lower, engine.contactForce[lower]);
+  }
+}
+
+// The same sums in the same order: first all pairs, then each block gathers its own.
+void contactsInParallel(IslandStep& step, const Evaluation& evaluation) {
+  Engine& engine = step.engine;
+  tbb::parallel_for(Range(0, step.watched.size(), kPairGrain), [&](const Range& range) {
+    for (std::size_t i = range.begin(); i < range.end(); ++i) {
+      const auto at = static_cast<std::size_t>(step.watched[i]);
+      if (engine.pairs[at].manifold.touch != Touch::apart) evaluatePair(step, evaluation, at, engine.pairForce[at]);
+    }
+  });
+  tbb::parallel_for(Range(0, step.blocks.size(), kBlockGrain), [&](const Range& range) {
+    for (std::size_t i = range.begin(); i < range.end(); ++i) {
+      const std::int32_t block = step.blocks[i];
+      const auto b = static_cast<std::size_t>(block);
+      AffineField sum{};
+      for (std::int32_t k = engine.blockPairStart[b]; k < engine.blockPairStart[b + 1]; ++k) {
+        const auto at = static_cast<std::size_t>(engine.blockPairs[static_cast<std::size_t>(k)]);
+        const Manifold& manifold = engine.pairs[at].manifold;
+        if (manifold.touch == Touch::apart) continue;
+        addForce(manifold.upper == block ? engine.pairForce[at].upper : engine.pairForce[at].lower, sum);
+      }
+      engine.contactForce[b] = sum;
+    }
+  });
+}
+
+void addUserForces(IslandStep& step) {
+  for (const UserForce& user : step.simulation.scene.forces) {
+    if (step.time_s < user.start_s || step.time_s >= user.end_s) continue;
+    const auto block = static_cast<std::size_t>(user.block);
+    const std::int32_t island = step.engine.islands.islandOf[block];
+    if (island < 0 || island != step.engine.islands.islandOf[static_cast<std::size_t>(step.blocks.front())]) continue;
+    if (user.corner >= 0) {
+      step.engine.force.add(block, static_cast<std::size_t>(user.corner), user.force);
+    } else {
+      for (std::size_t c = 0; c < kCorners; ++c) step.engine.force.add(block, c, user.force / static_cast<double>(kCorners));
+    }
+  }
+}
+
+void addTether(IslandStep& step, const MotionState& state, double time_s) {
+  if (!holdsTether(step)) return;
+  const Tether& tether = step.simulation.tether;
+  std::array<Vec3, kCorners> corner;
+  step.engine.tetherNow = tetherForces(tether, step.simulation.model, state, time_s, corner);
+  for (std::size_t c = 0; c < kCorners; ++c) step.engine.force.add(index(tether.block), c, corner[c]);
+}
+
+std::uint64_t pointsOf(const IslandStep& step) {
+  std::uint64_t points = 0;
+  for (const std::int32_t at : step.watched)
+    points += static_cast<std::uint64_t>(step.engine.pairs[static_cast<std::size_t>(at)].manifold.count);
+  return points;
+}
+
+}  // namespace
+
+void evaluateForces(IslandStep& step, const MotionState& state, const CornerArray& carried, double advance_s, Memory memory) {
+  StageClock clock(step.times);
+  Engine& engine = step.engine;
+  const bool parallel = step.blocks.size() >= kParallelBlocks;
+  const bool sameMotion = &carried == &state.velocity;
+  const double kick_s = sameMotion && memory == Memory::advance ? step.kick_s : 0.0;
+  const Evaluation evaluation{{advance_s, step.scaleMost, memory == Memory::trial ? 0.0 : 1.0, kick_s}, sameMotion, memory};
+  using Blocks = std::span<const std::int32_t>;
+  overBlocks(step, parallel, [&](Blocks blocks) {
+    computeFrames(state.position, blocks, engine.frames);
+    computeMotions(state.velocity, blocks, engine.motion);
+    if (!evaluation.sameMotion) computeMotions(carried, blocks, engine.carriedMotion);
+  });
+  if (parallel) {
+    contactsInParallel(step, evaluation);
+  } else {
+    contactsInOrder(step, evaluation);
+  }
+  clock.lap(Stage::contacts);
+  overBlocks(step, parallel,
+             [&](Blocks blocks) { springForces(step.simulation.model, state, blocks, engine.contactForce, engine.force); });
+  if (!step.unforced) addUserForces(step);
+  // Implicit steps ask for the forces at their end.
+  addTether(step, state, step.time_s + (memory == Memory::trial ? advance_s : 0.0));
+  clock.lap(Stage::springs);
+  step.counters.springEvaluations += kSprings * step.blocks.size();
+  step.counters.contactEvaluations += pointsOf(step);
+}
+
+bool isPushed(const IslandStep& step) {
+  const std::vector<std::int32_t>& islandOf = step.engine.islands.islandOf;
+  const double end_s = step.simulation.time_s + step.simulation.scene.settings.frame_s;
+  return std::any_of(step.simulation.scene.forces.begin(), step.simulation.scene.forces.end(), [&](const UserForce& user) {
+    return user.start_s < end_s && user.end_s > step.simulation.time_s &&
+           islandOf[static_cast<std::size_t>(user.block)] == islandOf[static_cast<std::size_t>(step.blocks.front())];
+  });
+}
+
+bool holdsTether(const IslandStep& step) {
+  const BlockId held = step.simulation.tether.block;
+  if (held == kFloor || step.unforced) return false;
+  const std::vector<std::int32_t>& islandOf = step.engine.islands.islandOf;
+  return islandOf[index(held)] >= 0 && islandOf[index(held)] == islandOf[static_cast<std::size_t>(step.blocks.front())];
+}
+
+void accelerate(const IslandStep& step, std::size_t block, double (&acceleration)[3][kCorners]) {
+  const InverseMass inverse = inverseMass(step.simulation.scene.settings.inertia);
+  const double own = inverse.own / step.simulation.model.mass[block];
+  const double shared = inverse.shared / step.simulation.model.mass[block];
+  for (std::size_t a = 0; a < 3; ++a) {
+    const double* f = step.engine.force.values(a, block);
+    const double sum = ((f[0] + f[1]) + (f[2] + f[3])) + ((f[4] + f[5]) + (f[6] + f[7]));
+    const double uniform = step.gravity[static_cast<Eigen::Index>(a)] - shared * sum;
+    for (std::size_t c = 0; c < kCorners; ++c) acceleration[a][c] = own * f[c] + uniform;
+  }
+}
+
+}  // namespace springtower

@@ -1,0 +1,111 @@
+#include "solver/contact/persistence.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace springtower {
+
+namespace {
+
+// Depth of every point of a manifold at the blocks' present places, m.
+std::array<double, kManifoldPoints> depthsOf(const Manifold& manifold, const BlockFrame& a, const BlockFrame& b, bool upperIsA,
+                                             const ContactLaw& law) {
+  const AffineField still{};
+  const ContactSide upper{upperIsA ? &a : &b, &still, &still};
+  const ContactSide lower{manifold.lower < 0 ? nullptr : (upperIsA ? &b : &a), &still, &still};
+  return pointForces(manifold, upper, lower, law).depth;
+}
+
+double elasticOf(const Manifold& manifold, std::size_t point, double depth) {
+  return manifold.live[point] != 0.0 ? std::max(0.0, depth - manifold.offset[point]) : 0.0;
+}
+
+// Normal energy of one point over half its resting stiffness, m2.
+double energyOf(const Manifold& manifold, std::size_t point, double elastic, const ContactLaw& law) {
+  const double lag = std::max(0.0, elastic - manifold.relaxed[point]);
+  return manifold.scale[point] * (elastic * elastic + law.relaxingRatio * lag * lag);
+}
+
+// Lets points that are new and already below the surface start at one common depth, so that together they store `budget`.
+void shareAmongNew(const std::array<double, kManifoldPoints>& depth, double scale, double budget, const ContactLaw& law,
+                   Manifold& fresh) {
+  std::array<double, kManifoldPoints> found{};
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(fresh.count); ++i) {
+    if (fresh.live[i] != 0.0 || depth[i] <= 0.0) continue;
+    std::size_t at = count++;  // deepest first
+    for (; at > 0 && found[at - 1] < depth[i]; --at) found[at] = found[at - 1];
+    found[at] = depth[i];
+  }
+  if (count == 0) return;
+  const double target = budget / (scale * (1.0 + law.relaxingRatio));  // sum of (depth - surface)^2 over those below it
+  double surface = 0.0;
+  double sum = 0.0;
+  double squares = 0.0;
+  for (std::size_t n = 1; n <= count; ++n) {
+    sum += found[n - 1];
+    squares += found[n - 1] * found[n - 1];
+    const auto number = static_cast<double>(n);
+    // n s^2 - 2 sum s + squares = target, the smaller root; the n deepest hold it where the next one lies above that surface.
+    const double root = sum * sum - number * (squares - target);
+    surface = (sum - std::sqrt(std::max(0.0, root))) / number;
+    if (n == count || found[n] <= surface) break;
+  }
+  surface = std::max(0.0, surface);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(fresh.count); ++i) {
+    if (fresh.live[i] != 0.0 || depth[i] <= 0.0) continue;
+    fresh.live[i] = 1.0;
+    fresh.offset[i] = std::min(surface, depth[i]);
+    fresh.scale[i] = scale;
+  }
+}
+
+void keepEdge(const Manifold& old, Manifold& fresh) {
+  const std::int8_t incident = fresh.incidentFace;
+  const std::int8_t reference = fresh.referenceFace;
+  fresh = old;
+  fresh.incidentFace = incident;
+  fresh.referenceFace = reference;
+}
+
+}  // namespace
+
+void keepContactMemory(const Manifold& old, const CornerArray& position, const ContactLaw& law, double radius, Manifold& fresh) {
+  const auto oldUpper = static_cast<std::size_t>(old.upper);
+  const auto freshUpper = static_cast<std::size_t>(fresh.upper);
+  if (old.touch == Touch::edge && fresh.touch == Touch::edge) {
+    keepEdge(old, fresh);
+    if (fresh.incidentFace == old.incidentFace && fresh.referenceFace == old.referenceFace) return;
+  } else {
+    carryMemory(old, cornersOf(position, oldUpper), fresh, cornersOf(position, freshUpper), radius);
+  }
+  if (!anyPointTouches(old)) return;
+
+  const BlockFrame a = blockFrame(position, oldUpper);
+  const BlockFrame b = old.lower < 0 ? a : blockFrame(position, static_cast<std::size_t>(old.lower));
+  const std::array<double, kManifoldPoints> depthBefore = depthsOf(old, a, b, true, law);
+  const std::array<double, kManifoldPoints> depth = depthsOf(fresh, a, b, oldUpper == freshUpper, law);
+
+  double stored = 0.0;
+  double scale = 1.0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(old.count); ++i) {
+    stored += energyOf(old, i, elasticOf(old, i, depthBefore[i]), law);
+    if (old.live[i] != 0.0) scale = std::max(scale, old.scale[i]);
+  }
+  double kept = 0.0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(fresh.count); ++i)
+    kept += energyOf(fresh, i, elasticOf(fresh, i, depth[i]), law);
+  if (kept <= stored) {
+    shareAmongNew(depth, scale, stored - kept, law, fresh);
+    return;
+  }
+  const double share = std::sqrt(stored / kept);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(fresh.count); ++i) {
+    const double elastic = elasticOf(fresh, i, depth[i]);
+    if (elastic <= 0.0) continue;
+    fresh.offset[i] = depth[i] - share * elastic;
+    fresh.relaxed[i] *= share;
+  }
+}
+
+}  // namespace springtower

@@ -1,0 +1,312 @@
+#include "solver/contact/update.h"
+
+#include "core/error.h"
+#include "core/lanes.h"
+#include "solver/contact/births.h"
+#include "solver/world/checkpoint.h"
+#include "solver/world/island_step.h"
+#include "solver/world/stage_clock.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <limits>
+#include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/parallel_for.h>
+
+namespace springtower {
+
+namespace {
+
+// How a block moved in a step.
+struct BlockTravel {
+  double path;      // m, of its fastest corner
+  double deformed;  // m2, squares of the corners' moves against their mean, summed
+};
+
+SPRINGTOWER_INLINE BlockTravel blockTravel(const CornerArray& now, const CornerArray& before, std::size_t b) {
+  Lanes squared[2] = {};
+  Lanes deformed = {};
+  for (std::size_t a = 0; a < 3; ++a) {
+    Lanes moved[2];
+    for (std::size_t half = 0; half < 2; ++half) {
+      Lanes from;
+      load(now.values(a, b) + 4 * half, moved[half]);
+      load(before.values(a, b) + 4 * half, from);
+      moved[half] -= from;
+      squared[half] += moved[half] * moved[half];
+    }
+    const double mean = sum(moved[0] + moved[1]) / static_cast<double>(kCorners);
+    for (const Lanes& corners : moved) deformed += (corners - mean) * (corners - mean);
+  }
+  const Lanes most = squared[0] > squared[1] ? squared[0] : squared[1];
+  return {std::sqrt(std::max(std::max(most[0], most[1]), std::max(most[2], most[3]))), sum(deformed)};
+}
+
+// A path longer than its box reaches need not lead out of it.
+bool isInSweptBox(const IslandStep& step, std::size_t block) {
+  const SweptBoxes& boxes = step.engine.boxes;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const double* x = step.simulation.state.position.values(a, block);
+    const auto [least, most] = std::minmax_element(x, x + kCorners);
+    if (*least < boxes.lower[a][block] || *most > boxes.upper[a][block]) return false;
+  }
+  return true;
+}
+
+// Steps for which a list of watched pairs is made, and by how much faster than in the last step a block may become meanwhile.
+constexpr int kListedSteps = 16;
+constexpr double kFaster = 1.5;
+
+// Adds up the path of each block's fastest corner; `inside` tells whether all are in their swept boxes. A block whose corners
+// move apart by half its least side in one step has diverged: free flight is as fast as it likes, but nothing sound deforms like
+// that. NaN fails every comparison, so what is sound is asked for. Returns the first block that has diverged, or -1.
+SPRINGTOWER_KERNEL
+std::int32_t addPaths(IslandStep& step, bool& inside) {
+  inside = true;
+  for (const std::int32_t block : step.blocks) {
+    const auto b = static_cast<std::size_t>(block);
+    const auto [path, deformed] = blockTravel(step.simulation.state.position, step.engine.previous, b);
+    const double most = kMostTravelPerStep * step.simulation.model.dimensions[b].minCoeff();
+    if (!(deformed < static_cast<double>(kCorners) * most * most)) return block;
+    BlockClock& clock = step.engine.clock[b];
+    clock.travel += path;
+    step.engine.path[b] = path;
+    if (path > step.engine.foreseenPath[b]) step.listedFor = 0;
+    if (clock.travel - step.engine.travelAtSweep[b] > step.engine.reach[b]) inside = inside && isInSweptBox(step, b);
+  }
+  return -1;
+}
+
+}  // namespace
+
+bool addTravel(IslandStep& step) {
+  bool inside = true;
+  const std::int32_t diverged = addPaths(step, inside);
+  if (diverged < 0) return inside;
+  const double deformed =
+      blockTravel(step.simulation.state.position, step.engine.previous, static_cast<std::size_t>(diverged)).deformed;
+  const double time = step.time_s + step.drift_s;
+  throw DivergenceError(
+      fmt::format("block {} diverged at {:.6f} s: {}", diverged, time,
+                  std::isfinite(deformed) ? fmt::format("its corners moved apart by {:.3g} m in one step of {:.3g} s",
+                                                        std::sqrt(deformed / static_cast<double>(kCorners)), step.drift_s)
+                                          : std::string("its positions are no longer finite")),
+      diverged, time);
+}
+
+namespace {
+
+bool slides(const Manifold& manifold) {
+  return std::any_of(manifold.sliding.begin(), manifold.sliding.begin() + manifold.count,
+                     [](double share) { return share != 0.0; });
+}
+
+// Whether blocks touch at a corner or along a line only, where one rolls on the other.
+bool rolls(const Manifold& manifold) {
+  const auto live =
+      std::count_if(manifold.live.begin(), manifold.live.begin() + manifold.count, [](double point) { return point != 0.0; });
+  return live == 1 || live == 2;
+}
+
+// Path after which a pair's manifold is renewed, m.
+double renewalTravel(const Manifold& manifold, const RenewalTravel& travel) {
+  if (slides(manifold)) return travel.sliding_m;
+  return rolls(manifold) ? travel.rolling_m : travel.resting_m;
+}
+
+constexpr double kNever = std::numeric_limits<double>::infinity();
+
+// Share of the path to a renewal by which blocks have stayed where they are to one another.
+constexpr double kStayed = 0.9;
+
+// How one block of a pair lies to the other: b's centre and sides along a's edges, or a's own where b is the floor, m.
+RelativePose poseOf(const IslandStep& step, const NearPair& pair) {
+  const auto a = static_cast<std::size_t>(pair.a);
+  const BlockFrame& frame = step.engine.frames[a];
+  RelativePose pose;
+  if (pair.b < 0) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      pose[k] = static_cast<float>(frame.place.centre[k]);
+      for (std::size_t i = 0; i < 3; ++i) pose[3 + 3 * i + k] = static_cast<float>(frame.place.side[i][k]);
+    }
+    return pose;
+  }
+  const AffineField& other = step.engine.frames[static_cast<std::size_t>(pair.b)].place;
+  const Vec3& lengths = step.simulation.model.dimensions[a];
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double length = lengths[static_cast<Eigen::Index>(k)];
+    const auto along = [&](double x, double y, double z) {
+      return static_cast<float>(length * (frame.dual[k][0] * x + frame.dual[k][1] * y + frame.dual[k][2] * z));
+    };
+    const std::array<double, 3>& from = frame.place.centre;
+    pose[k] = along(other.centre[0] - from[0], other.centre[1] - from[1], other.centre[2] - from[2]);
+    for (std::size_t i = 0; i < 3; ++i) pose[3 + 3 * i + k] = along(other.side[i][0], other.side[i][1], other.side[i][2]);
+  }
+  return pose;
+}
+
+// How far a point of one block can have moved against the other between two poses, m.
+double movedBetween(const RelativePose& before, const RelativePose& now) {
+  double moved = 0.0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    double squared = 0.0;
+    for (std::size_t k = 3 * i; k < 3 * i + 3; ++k) {
+      const double change = static_cast<double>(now[k]) - static_cast<double>(before[k]);
+      squared += change * change;
+    }
+    moved += (i == 0 ? 1.0 : 0.5) * std::sqrt(squared);
+  }
+  return moved;
+}
+
+// Whether the blocks of a pair lie to one another much as when their manifold was renewed: those that go over together travel
+// far.
+bool hasStayed(IslandStep& step, std::int32_t at, double travel, double most) {
+  NearPair& pair = step.engine.pairs[static_cast<std::size_t>(at)];
+  RelativePose& known = step.engine.pose[static_cast<std::size_t>(at)];
+  const RelativePose pose = poseOf(step, pair);
+  const double moved = movedBetween(known, pose);
+  if (moved < kStayed * most) {
+    pair.checkedTravel = travel - moved;
+    return true;
+  }
+  known = pose;
+  return false;
+}
+
+// A manifold that is made otherwise than by a renewal in rigid steps is renewed by the next of these that looks at it.
+void forgetPose(Engine& engine, std::int32_t at) {
+  if (static_cast<std::size_t>(at) < engine.pose.size()) engine.pose[static_cast<std::size_t>(at)] = RelativePose{};
+}
+
+void updatePair(IslandStep& step, std::int32_t at, const RenewalTravel& renewal, Counters& counters, StageTimes& times) {
+  NearPair& pair = step.engine.pairs[static_cast<std::size_t>(at)];
+  const double travel = travelOf(step.engine, pair);
+  const double used = travel - pair.checkedTravel;
+  if (pair.manifold.touch == Touch::apart) {
+    if (used < pair.margin) return;
+    ++counters.marginsSpent;
+    keepPair(step.engine, static_cast<std::size_t>(at));
+    pair.checkedTravel = travel;
+    watchApart(step, pair, counters, times);
+    forgetPose(step.engine, at);
+  } else if (const double most = renewalTravel(pair.manifold, renewal); used > most) {
+    keepPair(step.engine, static_cast<std::size_t>(at));
+    if (step.rigid && hasStayed(step, at, travel, most)) return;
+    if (!step.rigid) forgetPose(step.engine, at);
+    pair.checkedTravel = travel;
+    renewManifold(step, pair, counters);
+  }
+}
+
+// Lists the pairs that touch, and those that may use up their margin in the steps to come unless a block becomes faster than is
+// foreseen here.
+void listWatched(IslandStep& step) {
+  Engine& engine = step.engine;
+  const double falling_m = kListedSteps * step.simulation.scene.gravity.magnitude * step.drift_s * step.drift_s;
+  for (const std::int32_t block : step.blocks) {
+    const auto b = static_cast<std::size_t>(block);
+    engine.foreseenPath[b] = kFaster * (engine.path[b] + falling_m);
+  }
+  const auto pathOf = [&](std::int32_t block) {
+    return block < 0 || sleeps(step.simulation, block) ? 0.0 : engine.foreseenPath[static_cast<std::size_t>(block)];
+  };
+  const std::size_t first = static_cast<std::size_t>(step.pairs.data() - engine.islandPairs.data());
+  std::size_t count = 0;
+  for (const std::int32_t at : step.pairs) {
+    const NearPair& pair = engine.pairs[static_cast<std::size_t>(at)];
+    const double left = pair.margin - (travelOf(engine, pair) - pair.checkedTravel);
+    if (pair.manifold.touch == Touch::apart && left > kListedSteps * (pathOf(pair.a) + pathOf(pair.b))) continue;
+    engine.watchedPairs[first + count++] = at;
+  }
+  step.watched = std::span<const std::int32_t>(engine.watchedPairs).subspan(first, count);
+  step.listedFor = kListedSteps;
+}
+
+}  // namespace
+
+void findTouching(IslandStep& step) {
+  for (const std::int32_t at : step.pairs) {
+    NearPair& pair = step.engine.pairs[static_cast<std::size_t>(at)];
+    keepPair(step.engine, static_cast<std::size_t>(at));
+    if (pair.manifold.touch == Touch::apart) watchApart(step, pair, step.counters, step.times);
+  }
+}
+
+bool findContacts(IslandStep& step) {
+  return updateContacts(step, {kNever, kNever, kNever});
+}
+
+void measureAgain(IslandStep& step) {
+  const bool listed = step.listedFor == kListedSteps;
+  for (const std::int32_t at : listed ? step.pairs : step.watched) {
+    NearPair& pair = step.engine.pairs[static_cast<std::size_t>(at)];
+    const double travel = travelOf(step.engine, pair);
+    if (pair.checkedTravel <= travel) continue;
+    const bool apart = pair.manifold.touch == Touch::apart;
+    pair.checkedTravel = apart ? travel : -kNever;
+    if (apart) pair.margin = marginNow(step.simulation, pair);
+  }
+  if (step.listedFor > 0) --step.listedFor;  // from where the step began it is farther to where the list was made for
+}
+
+void renewContacts(IslandStep& step, const RenewalTravel& renewal) {
+  StageClock clock(step.times);
+  for (const std::int32_t at : step.watched) {
+    if (step.engine.pairs[static_cast<std::size_t>(at)].manifold.touch != Touch::apart)
+      updatePair(step, at, renewal, step.counters, step.times);
+  }
+  clock.lap(Stage::candidates);
+}
+
+bool updateContacts(IslandStep& step, const RenewalTravel& renewal) {
+  StageClock clock(step.times);
+  double& candidates_s = step.times.seconds[static_cast<std::size_t>(Stage::candidates)];
+  double& cubicTests_s = step.times.seconds[static_cast<std::size_t>(Stage::cubicTests)];
+  const double cubicBefore_s = cubicTests_s;
+  if (step.listedFor > 0) --step.listedFor;
+  const bool inside = addTravel(step);
+  const bool list = step.lists && step.listedFor == 0;
+  if (step.listedFor == 0) step.watched = step.pairs;
+  if (step.blocks.size() < kParallelBlocks) {
+    for (const std::int32_t at : step.watched) updatePair(step, at, renewal, step.counters, step.times);
+    if (list) listWatched(step);
+    clock.lap(Stage::candidates);
+    candidates_s -= cubicTests_s - cubicBefore_s;  // they were timed inside
+    return inside;
+  }
+
+  constexpr std::size_t kChunk = 256;
+  const std::size_t chunks = (step.watched.size() + kChunk - 1) / kChunk;
+  std::vector<Counters>& counted = step.engine.chunkCounters;
+  std::vector<StageTimes>& timed = step.engine.chunkTimes;
+  if (counted.size() < chunks) counted.resize(chunks);
+  if (timed.size() < chunks) timed.resize(chunks);
+  tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t chunk) {
+    counted[chunk] = Counters{};
+    timed[chunk] = StageTimes{};
+    StageClock all(timed[chunk]);
+    const std::size_t last = std::min(step.watched.size(), (chunk + 1) * kChunk);
+    for (std::size_t i = chunk * kChunk; i < last; ++i) {
+      updatePair(step, step.watched[i], renewal, counted[chunk], timed[chunk]);
+    }
+    all.lap(Stage::candidates);
+  });
+  StageTimes sum;
+  for (std::size_t chunk = 0; chunk < chunks; ++chunk) {
+    step.counters += counted[chunk];
+    sum += timed[chunk];
+  }
+  if (list) listWatched(step);
+  // On many threads the cubic tests take their share of the time that passed.
+  const double before_s = candidates_s;
+  clock.lap(Stage::candidates);
+  const double all_s = sum.seconds[static_cast<std::size_t>(Stage::candidates)];
+  const double share = all_s > 0.0 ? sum.seconds[static_cast<std::size_t>(Stage::cubicTests)] / all_s : 0.0;
+  cubicTests_s += share * (candidates_s - before_s);
+  candidates_s -= share * (candidates_s - before_s);
+  return inside;
+}
+
+}  // namespace springtower

@@ -1,0 +1,154 @@
+#include "solver/frame/island_modes.h"
+
+#include "solver/contact/approach.h"
+#include "solver/contact/evaluate_forces.h"
+#include "solver/contact/query.h"
+#include "solver/contact/rigid_contacts.h"
+#include "solver/implicit/bdf2.h"
+#include "solver/rigid/run.h"
+#include "solver/world/checkpoint.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace springtower {
+
+namespace {
+
+// Speed at which an island begins to fall, and below which implicit steps are tried again, in sqrt(g h).
+constexpr double kFallSpeed = 0.45;
+constexpr double kFallenSpeed = 0.05;
+// Blocks of an island that begins to fall, at least.
+constexpr std::size_t kFewest = 3;
+// Steps of a frame, at least; and farthest that a corner may go in one, in block heights.
+constexpr int kFallSteps = 20;
+constexpr double kMostWay = 0.06;
+constexpr int kMostFallSteps = 6000;
+
+// Whether the root of the blocks' mean squared speed, by mass, is above this one, in sqrt(g h).
+bool isFasterThan(const IslandStep& step, double speed) {
+  const Simulation& simulation = step.simulation;
+  double mass = 0.0;
+  double motion = 0.0;
+  for (const std::int32_t block : step.blocks) {
+    const auto b = static_cast<std::size_t>(block);
+    mass += simulation.model.mass[b];
+    motion += simulation.model.mass[b] * centre(simulation.state.velocity, b).squaredNorm();
+  }
+  const double least = speed * simulation.lengths.blockHeight_m / simulation.lengths.fallTime_s;
+  return motion > mass * least * least;
+}
+
+bool hasAny(const IslandStep& step, bool BlockClock::*flag) {
+  return std::any_of(step.blocks.begin(), step.blocks.end(),
+                     [&](std::int32_t block) { return step.engine.clock[static_cast<std::size_t>(block)].*flag; });
+}
+
+bool isLeftAlone(const IslandStep& step) {
+  return step.blocks.size() < kParallelBlocks && !holdsTether(step) && !isPushed(step);
+}
+
+// What a point's springs do becomes the force that its impulses start from.
+void rememberForces(const IslandStep& step, Manifold& manifold) {
+  const PointForces points = forcesNow(step.simulation, manifold);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(manifold.count); ++i) {
+    manifold.relaxed[i] = points.normal[i];
+    manifold.stretchX[i] = points.friction[i][0];
+    manifold.stretchY[i] = points.friction[i][1];
+    manifold.stretchZ[i] = points.friction[i][2];
+    manifold.offset[i] = manifold.live[i] != 0.0 ? std::max(0.0, manifold.offset[i]) : 0.0;
+    manifold.live[i] = 0.0;
+  }
+  manifold.rigid = true;
+}
+
+// The other way round: springs that push as the impulses did last.
+void rememberSprings(const IslandStep& step, Manifold& manifold) {
+  const PointForces points = forcesNow(step.simulation, manifold);
+  const double stiffness = manifold.lower < 0 ? step.law.floorStiffness_n_m : step.law.stiffness_n_m;
+  const double tangential = step.law.tangentialRatio * stiffness;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(manifold.count); ++i) {
+    const bool touches = points.depth[i] > 0.0;
+    const double pressed = pressedDepth(step.simulation, manifold, i);
+    const double elastic = touches ? std::min(pressed, points.depth[i]) : 0.0;
+    const double share = elastic > 0.0 ? -elastic * stiffness / (manifold.relaxed[i] * tangential) : 0.0;
+    manifold.live[i] = elastic > 0.0 ? 1.0 : (touches ? kUnpressed : 0.0);
+    manifold.scale[i] = 1.0;
+    manifold.offset[i] = touches ? points.depth[i] - elastic : 0.0;
+    manifold.relaxed[i] = elastic;
+    manifold.stretchX[i] *= share;
+    manifold.stretchY[i] *= share;
+    manifold.stretchZ[i] *= share;
+  }
+  manifold.rigid = false;
+}
+
+}  // namespace
+
+bool mayFall(std::size_t blocks) {
+  return blocks >= kFewest && blocks < kParallelBlocks;
+}
+
+bool falls(const IslandStep& step) {
+  if (!isLeftAlone(step)) return false;
+  if (hasAny(step, &BlockClock::falls)) {
+    const bool handedOver = std::any_of(step.blocks.begin(), step.blocks.end(), [&](std::int32_t block) {
+      return step.engine.clock[static_cast<std::size_t>(block)].explicitFrames > 0;
+    });
+    return handedOver || isFasterThan(step, kFallenSpeed);
+  }
+  return mayFall(step.blocks.size()) && isFasterThan(step, kFallSpeed);
+}
+
+bool isHeap(const IslandStep& step) {
+  const auto fallen = std::count_if(step.blocks.begin(), step.blocks.end(), [&](std::int32_t block) {
+    return step.engine.clock[static_cast<std::size_t>(block)].hasFallen;
+  });
+  return isLeftAlone(step) && 2 * static_cast<std::size_t>(fallen) > step.blocks.size();
+}
+
+void setFalling(IslandStep& step, bool falling) {
+  std::vector<BlockClock>& clock = step.engine.clock;
+  const auto forEachManifold = [&](bool rigid, const auto& change) {
+    for (const std::int32_t at : step.pairs) {
+      Manifold& manifold = step.engine.pairs[static_cast<std::size_t>(at)].manifold;
+      if (manifold.touch == Touch::apart || manifold.rigid != rigid) continue;
+      keepPair(step.engine, static_cast<std::size_t>(at));
+      change(step, manifold);
+    }
+  };
+  const bool all = std::all_of(step.blocks.begin(), step.blocks.end(),
+                               [&](std::int32_t block) { return clock[static_cast<std::size_t>(block)].falls; });
+  if (falling && all) {
+    forEachManifold(false, rememberForces);  // of blocks that slept while a neighbour went back to springs
+    return;
+  }
+  forEachManifold(true, rememberSprings);
+  for (const std::int32_t block : step.blocks) clock[static_cast<std::size_t>(block)].falls = falling;
+  if (!falling) return;
+  for (const std::int32_t block : step.blocks) clock[static_cast<std::size_t>(block)].hasFallen = true;
+  step.gravity = step.simulation.scene.gravity.at(step.simulation.time_s);
+  synchronise(step);
+  forEachManifold(false, rememberForces);
+}
+
+IslandOutcome runFall(IslandStep& step, double begin_s) {
+  const Simulation& simulation = step.simulation;
+  double fastest = 0.0;
+  for (const std::int32_t block : step.blocks)
+    fastest = std::max(fastest, fastestCorner(simulation.state.velocity, static_cast<std::size_t>(block), Vec3::Zero()));
+  const double steps = fastest * simulation.scene.settings.frame_s / (kMostWay * simulation.lengths.blockHeight_m);
+  const IslandOutcome outcome =
+      runRigidSteps(step, std::clamp(static_cast<int>(std::ceil(steps)), kFallSteps, kMostFallSteps), begin_s);
+  for (const std::int32_t block : step.blocks) {
+    BlockClock& clock = step.engine.clock[static_cast<std::size_t>(block)];
+    clock.lastDrift_s = 0.0;
+    clock.history_s = 0.0;
+    clock.explicitLast = true;
+    clock.explicitFrames = std::max(0, clock.explicitFrames - 1);
+  }
+  step.engine.implicitIslands[static_cast<std::size_t>(step.blocks.front())].forcesKnown = false;
+  return outcome;
+}
+
+}  // namespace springtower

@@ -1,0 +1,11 @@
+#pragma once
+
+#include "solver/world/engine.h"
+
+namespace springtower {
+
+/// Sort and sweep for the frame ahead: swept boxes of the awake blocks (grown by `margin_m`), pairs, islands, and the pairs of
+/// each island. Pairs met before keep their contacts; pairs of two sleeping blocks stay as they are.
+void findNearPairs(Simulation& simulation, double margin_m);
+
+}  // namespace springtower

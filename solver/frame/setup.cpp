@@ -1,0 +1,172 @@
+#include "core/error.h"
+#include "solver/block/inertia.h"
+#include "solver/block/springs.h"
+#include "solver/explicit/stable_step.h"
+#include "solver/frame/choose_method.h"
+#include "solver/frame/pairs.h"
+#include "solver/implicit/run.h"
+#include "solver/rigid/run.h"
+#include "solver/sleep/rest.h"
+#include "solver/world/engine.h"
+#include "solver/world/simulation.h"
+#include "solver/world/stiffness.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+namespace springtower {
+
+namespace {
+
+void placeBlock(const BlockSpec& spec, std::size_t b, Simulation& simulation) {
+  simulation.model.dimensions[b] = spec.dimensions;
+  simulation.model.mass[b] = spec.mass;
+  for (std::size_t c = 0; c < kCorners; ++c) {
+    Vec3 arm;
+    for (std::size_t a = 0; a < 3; ++a) {
+      const auto axis = static_cast<Eigen::Index>(a);
+      arm[axis] = 0.5 * cornerSide(c, a) * spec.dimensions[axis];
+    }
+    arm = spec.orientation * arm;
+    simulation.state.position.set(b, c, spec.centre + arm);
+    simulation.state.velocity.set(b, c, spec.velocity + spec.spin.cross(arm));
+  }
+}
+
+// Largest eigenvalue of M^-1 K, 1/s2, that any contact set of this scene is expected to reach with a stiffness: the stiffest
+// block's springs, and contacts that press a block from both sides against neighbours that give way as easily.
+double foreseenSpectralRadius(const Simulation& simulation, const Stiffness& stiffness) {
+  const Settings& settings = simulation.scene.settings;
+  BlockModel model = simulation.model;
+  double springs = 0.0;
+  double lightest = 1e300;
+  for (std::size_t b = 0; b < model.blockCount(); ++b) {
+    const bool asBefore = b > 0 && model.dimensions[b] == model.dimensions[b - 1] && model.mass[b] == model.mass[b - 1];
+    lightest = std::min(lightest, model.mass[b]);
+    if (asBefore) continue;
+    setSprings(model, b, stiffness.spring_n_m, simulation.lengths.blockHeight_m, 0.0);
+    springs = std::max(springs, blockSpectralRadius(model, settings.inertia, b));
+  }
+  constexpr double kPointsPerSide = 12.0;  // three neighbours of four points
+  const double compressionMass =
+      inverseMass(settings.inertia).own / 2.0;  // 1/m times this, of the mode that presses a block flat
+  const double contact =
+      std::max(2.0 * kPointsPerSide * stiffness.contact_n_m, 4.0 * stiffness.floor_n_m) / 4.0 * 2.0 * compressionMass;
+  return springs + (1.0 + settings.viscoelasticRatio) * contact / lightest;
+}
+
+// Tolerance to stiffness to substeps, or the other way round (design section 2). Stiffness goes as one over the tolerance, the
+// square of the steps as the stiffness.
+void chooseStiffness(Simulation& simulation) {
+  const Settings& settings = simulation.scene.settings;
+  LoadEstimate loads = estimateLoads(simulation.scene);
+  const bool stable = isImplicit(settings.method) || isRigid(settings.method);  // with any step
+  simulation.fixedSubsteps = stable ? 0 : settings.substeps;
+  simulation.tolerance_m = toleranceOf(simulation.scene);
+  Stiffness stiffness = stiffnessForTolerance(loads, simulation.tolerance_m);
+  if (simulation.fixedSubsteps > 0) {
+    const double allowed = stableSpectralRadius(settings.method, settings.frame_s / settings.substeps, simulation.dampingTime_s,
+                                                settings.stepMargin);
+    const double needed = foreseenSpectralRadius(simulation, stiffness);
+    if (!settings.tolerance_m) {
+      loads.swayStiffness_n_m = 0.0;
+      const double unit = foreseenSpectralRadius(simulation, stiffnessForTolerance(loads, 1.0));
+      simulation.tolerance_m = unit / allowed;
+      stiffness = stiffnessForTolerance(loads, simulation.tolerance_m);
+    } else if (needed > allowed && !settings.forceUnstable) {
+      throw InputError(fmt::format(
+          "settings: found tolerance_m = {:g} with substeps = {}, allowed: at least {} substeps for this tolerance, or "
+          "force_unstable",
+          *settings.tolerance_m, settings.substeps,
+          static_cast<int>(
+              std::ceil(settings.frame_s / stableStep(settings.method, needed, simulation.dampingTime_s, settings.stepMargin)))));
+    }
+  }
+  simulation.contactStiffness_n_m = stiffness.contact_n_m;
+  simulation.floorStiffness_n_m = stiffness.floor_n_m;
+  simulation.springStiffness_n_m = settings.springRatio * stiffness.spring_n_m;
+}
+
+// Sizes what every method works on.
+void sizeEngine(Simulation& simulation) {
+  const Scene& scene = simulation.scene;
+  const BlockModel& model = simulation.model;
+  const std::size_t count = model.blockCount();
+  Engine& e = *simulation.engine;
+  e.boxes.resize(count);
+  e.reach.assign(count, 0.0);
+  e.path.assign(count, 0.0);
+  e.foreseenPath.assign(count, 0.0);
+  e.travelAtSweep.assign(count, 0.0);
+  e.force.resize(count);
+  e.frames.resize(count);
+  e.motion.resize(count);
+  e.contactForce.resize(count);
+  e.contactMetric.resize(count);
+  e.springRadius.resize(count);
+  e.previous = simulation.state.position;
+  e.clock.assign(count, BlockClock{});
+  e.rest.resize(count);
+  e.beginning.assign(count, 0);
+  e.awakeCount = count;
+  for (std::size_t b = 0; b < count; ++b) {
+    const bool asBefore =
+        b > 0 && scene.blocks[b].dimensions == scene.blocks[b - 1].dimensions && model.mass[b] == model.mass[b - 1];
+    e.springRadius[b] = asBefore ? e.springRadius[b - 1] : blockSpectralRadius(model, scene.settings.inertia, b);
+    e.rest[b].centre = centre(simulation.state.position, b);
+  }
+}
+
+}  // namespace
+
+Simulation::Simulation(const Scene& given) : scene(given), engine(std::make_unique<Engine>()) {
+  checkScene(scene, scene.name);
+  if (scene.settings.method == Method::automatic) scene.settings = chooseMethod(scene);
+  const std::size_t count = scene.blocks.size();
+  model.dimensions.resize(count);
+  model.mass.resize(count);
+  for (std::size_t g = 0; g < kSpringGroups; ++g) {
+    model.restLength[g].resize(count);
+    model.springStiffness[g].resize(count);
+    model.springDamping[g].resize(count);
+  }
+  state.resize(count);
+  asleep.assign(count, 0);
+  restTime_s.assign(count, 0.0);
+  for (std::size_t b = 0; b < count; ++b) placeBlock(scene.blocks[b], b, *this);
+  lengths.blockHeight_m = blockHeightOf(scene);
+  lengths.fallTime_s =
+      std::sqrt(lengths.blockHeight_m / (scene.gravity.magnitude > 0.0 ? scene.gravity.magnitude : kStandardGravity_m_s2));
+  dampingTime_s = scene.settings.dampingTime * lengths.fallTime_s;
+  lengths.contactError_m = kBornError * lengths.blockHeight_m;
+  lengths.partingGap_m = kPartingGap * lengths.blockHeight_m;
+  chooseStiffness(*this);
+  for (std::size_t b = 0; b < count; ++b) setSprings(model, b, springStiffness_n_m, lengths.blockHeight_m, dampingTime_s);
+
+  sizeEngine(*this);
+  Engine& e = *engine;
+  if (scene.settings.method == Method::report) {
+    e.report.resize(count);
+  } else if (isRigid(scene.settings.method)) {
+    prepareRigid(*this);
+  } else {
+    prepareImplicit(*this);  // explicit methods start in the equilibrium that implicit steps find
+  }
+  if (scene.settings.method == Method::midpoint || scene.settings.method == Method::rungeKutta4) {
+    e.carried.resize(count);
+    e.carriedMotion.resize(count);
+    for (MotionState& stage : e.stage) stage = state;
+    for (CornerArray& acceleration : e.stageAcceleration) acceleration.resize(count);
+  }
+}
+
+void kick(Simulation& simulation, std::size_t block, const Vec3& velocity) {
+  for (std::size_t c = 0; c < kCorners; ++c) simulation.state.velocity.add(block, c, velocity);
+  simulation.engine->clock[block].history_s = 0.0;
+  simulation.engine->clock[block].explicitFrames = kExplicitFrames;
+  simulation.restTime_s[block] = 0.0;
+  wake(simulation, block);
+}
+
+}  // namespace springtower

@@ -1,0 +1,99 @@
+#include "solver/implicit/bdf2.h"
+
+#include "core/lanes.h"
+#include "solver/contact/evaluate_forces.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace springtower {
+
+namespace {
+
+constexpr double kThird = 1.0 / 3.0;
+
+}  // namespace
+
+void synchronise(IslandStep& step) {
+  Engine& engine = step.engine;
+  double behind_s = 0.0;
+  for (const std::int32_t block : step.blocks)
+    behind_s = std::max(behind_s, engine.clock[static_cast<std::size_t>(block)].lastDrift_s);
+  if (behind_s == 0.0) return;
+  CornerArray& velocity = step.simulation.state.velocity;
+  step.kick_s = behind_s;
+  evaluateForces(step, step.simulation.state, velocity, behind_s, Memory::advance);
+  for (const std::int32_t block : step.blocks) {
+    const auto b = static_cast<std::size_t>(block);
+    const double half_s = 0.5 * engine.clock[b].lastDrift_s;
+    double acceleration[3][kCorners];
+    accelerate(step, b, acceleration);
+    for (std::size_t a = 0; a < 3; ++a) {
+      double* v = velocity.values(a, b);
+      for (std::size_t c = 0; c < kCorners; ++c) v[c] += half_s * acceleration[a][c];
+    }
+    engine.clock[b].lastDrift_s = 0.0;
+  }
+  step.engine.implicitIslands[static_cast<std::size_t>(step.blocks.front())].forcesKnown = false;
+}
+
+SPRINGTOWER_KERNEL
+void foretell(IslandStep& step, double effective_s) {
+  Engine& engine = step.engine;
+  MotionState& state = step.simulation.state;
+  const double h = step.drift_s;
+  const double calm = 2.0 * std::max(step.simulation.scene.gravity.magnitude, 1.0);
+  for (const std::int32_t block : step.blocks) {
+    const auto b = static_cast<std::size_t>(block);
+    // The step before may have been longer or shorter: its mean acceleration then tells of one as long as this.
+    const double past_s = engine.clock[b].history_s;
+    const bool known = past_s > 0.0;
+    const double share = known ? h / past_s : 0.0;
+    double start[3][kCorners] = {};
+    if (!known) {
+      accelerate(step, b, start);
+      double most = 0.0;
+      for (const auto& row : start) {
+        for (const double a : row) most = std::max(most, std::abs(a));
+      }
+      if (!(most < calm)) std::fill_n(&start[0][0], 3 * kCorners, 0.0);
+    }
+    for (std::size_t a = 0; a < 3; ++a) {
+      const double pull = effective_s * effective_s * step.gravity[static_cast<Eigen::Index>(a)];
+      double* x = state.position.values(a, b);
+      double* v = state.velocity.values(a, b);
+      double* xBefore = engine.previous.values(a, b);
+      double* vBefore = engine.previousVelocity.values(a, b);
+      double* history = engine.history.values(a, b);
+      double* target = engine.target.values(a, b);
+      for (std::size_t c = 0; c < kCorners; ++c) {
+        const double dv = known ? share * (v[c] - vBefore[c]) : h * start[a][c];
+        const double dx = past_s == h ? x[c] - xBefore[c] : h * v[c] - 0.5 * h * dv;
+        history[c] = x[c] + kThird * dx;
+        target[c] = history[c] + effective_s * (v[c] + kThird * dv) + pull;
+        xBefore[c] = x[c];
+        vBefore[c] = v[c];
+      }
+    }
+  }
+}
+
+void foretellOneStep(IslandStep& step, double effective_s) {
+  Engine& engine = step.engine;
+  const MotionState& state = step.simulation.state;
+  for (const std::int32_t block : step.blocks) {
+    const auto b = static_cast<std::size_t>(block);
+    for (std::size_t a = 0; a < 3; ++a) {
+      const double pull = effective_s * effective_s * step.gravity[static_cast<Eigen::Index>(a)];
+      const double* x = state.position.values(a, b);
+      const double* v = state.velocity.values(a, b);
+      double* target = engine.target.values(a, b);
+      for (std::size_t c = 0; c < kCorners; ++c) target[c] = x[c] + effective_s * v[c] + pull;
+      std::copy_n(x, kCorners, engine.history.values(a, b));
+      std::copy_n(x, kCorners, engine.previous.values(a, b));
+      std::copy_n(v, kCorners, engine.previousVelocity.values(a, b));
+    }
+  }
+}
+
+}  // namespace springtower

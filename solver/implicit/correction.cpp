@@ -1,0 +1,82 @@
+#include "solver/implicit/correction.h"
+
+#include "core/lanes.h"
+#include "solver/block/modes.h"
+#include "solver/implicit/friction_tangent.h"
+#include "solver/implicit/gmres.h"
+#include "solver/implicit/system.h"
+#include "solver/world/island_step.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace springtower {
+
+namespace {
+
+// Turns the first `count` vectors into the block's frame, or back.
+SPRINGTOWER_INLINE void turn(const std::array<std::array<double, 3>, 3>& axes, bool back, std::size_t count, ModeVectors& modes) {
+  for (std::size_t m = 0; m < count; ++m) {
+    const std::array<double, 3> from = modes[m];
+    for (std::size_t i = 0; i < 3; ++i) {
+      modes[m][i] = back ? axes[0][i] * from[0] + axes[1][i] * from[1] + axes[2][i] * from[2]
+                         : axes[i][0] * from[0] + axes[i][1] * from[1] + axes[i][2] * from[2];
+    }
+  }
+}
+
+// The correction, but for forces of `allowed_n`; whether it came so far.
+SPRINGTOWER_KERNEL
+bool solveForCorrection(IslandStep& step, ImplicitIsland& island, double allowed_n) {
+  const std::size_t count = island.residual.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    turn(island.axes[i], false, kCorners, island.residual[i]);
+    ModeVectors reduced = island.residual[i];
+    eliminateWarps(jacobianOf(island, i), reduced);
+    turn(island.axes[i], true, kAffine, reduced);
+    for (std::size_t m = 0; m < kAffine; ++m)
+      std::copy(reduced[m].begin(), reduced[m].end(), island.affine.data() + kNodeSize * i + 3 * m);
+  }
+  const bool reached = solveCoupled(step, island, allowed_n);
+  for (std::size_t i = 0; i < count; ++i) {
+    ModeVectors& change = island.direction[i];
+    for (std::size_t m = 0; m < kAffine; ++m) std::copy_n(island.affine.data() + kNodeSize * i + 3 * m, 3, change[m].begin());
+    turn(island.axes[i], false, kAffine, change);
+    recoverWarps(jacobianOf(island, i), island.residual[i], change);
+    turn(island.axes[i], true, kCorners, change);
+    turn(island.axes[i], true, kCorners, island.residual[i]);
+  }
+  return reached;
+}
+
+double lightest(const IslandStep& step) {
+  double mass = std::numeric_limits<double>::infinity();
+  for (const std::int32_t block : step.blocks) mass = std::min(mass, step.simulation.model.mass[static_cast<std::size_t>(block)]);
+  return mass;
+}
+
+}  // namespace
+
+double workAlong(const ImplicitIsland& island) {
+  double work = 0.0;
+  for (std::size_t i = 0; i < island.residual.size(); ++i) {
+    for (std::size_t m = 0; m < kCorners; ++m) {
+      for (std::size_t k = 0; k < 3; ++k) work += island.residual[i][m][k] * island.direction[i][m][k];
+    }
+  }
+  return work;
+}
+
+bool findCorrection(IslandStep& step, ImplicitIsland& island, double effective_s, double allowed, bool differ) {
+  const double allowed_n = allowed * lightest(step) * std::max(step.simulation.scene.gravity.magnitude, 1.0);
+  island.tangents.clear();
+  if (differ) findTangents(step, island, effective_s);
+  const bool reached = solveForCorrection(step, island, allowed_n);
+  if (!island.tangents.empty() && !(workAlong(island) > 0.0)) {  // what is symmetric always works forwards
+    island.tangents.clear();
+    solveForCorrection(step, island, allowed_n);
+  }
+  return reached;
+}
+
+}  // namespace springtower

@@ -1,0 +1,142 @@
+#include "solver/implicit/equilibrium.h"
+
+#include "solver/block/inertia.h"
+#include "solver/contact/births.h"
+#include "solver/contact/update.h"
+#include "solver/implicit/run.h"
+#include "solver/world/checkpoint.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+namespace springtower {
+
+namespace {
+
+// The first and the last step, in sqrt(h / g); in the last a block without support falls by 20 times its height.
+constexpr double kFirstStep = 0.012;
+constexpr double kLastStep = 4.6;
+constexpr double kGrowth = 2.0;
+constexpr int kMostSteps = 60;
+// How often in a row a step is tried again, shorter.
+constexpr int kMostRetries = 6;
+// Dashpots of contacts in these steps, in sqrt(h / g): they only hold up what comes to rest, and ones that last as long as a step
+// keep it from converging.
+constexpr double kMostDamping = 1e-3;
+// Farthest that a corner may go in one of these steps, in tolerances; what goes farther is falling.
+constexpr double kFarthest = 20.0;
+// Farthest that a corner still goes in the last one, in tolerances.
+constexpr double kSettled = 1e-3;
+
+// Share of gravity's tilt up to which that at which an island stands is looked for.
+constexpr double kLeanStep = 0.01;
+
+// Whether all blocks touch something and none moves.
+bool mayRest(const IslandStep& step) {
+  std::vector<std::uint8_t> touches(step.simulation.model.blockCount(), 0);
+  for (const std::int32_t at : step.pairs) {
+    const Manifold& manifold = step.engine.pairs[static_cast<std::size_t>(at)].manifold;
+    if (manifold.touch == Touch::apart) continue;
+    touches[static_cast<std::size_t>(manifold.upper)] = 1;
+    if (manifold.lower >= 0) touches[static_cast<std::size_t>(manifold.lower)] = 1;
+  }
+  const CornerArray& velocity = step.simulation.state.velocity;
+  return std::all_of(step.blocks.begin(), step.blocks.end(), [&](std::int32_t block) {
+    const auto b = static_cast<std::size_t>(block);
+    bool still = touches[b] != 0;
+    for (std::size_t c = 0; c < kCorners; ++c) still = still && velocity.at(b, c) == Vec3::Zero();
+    return still;
+  });
+}
+
+// Takes the velocities away; returns how far the fastest corner went in the step.
+double stop(IslandStep& step) {
+  MotionState& state = step.simulation.state;
+  double farthest = 0.0;
+  for (const std::int32_t block : step.blocks) {
+    const auto b = static_cast<std::size_t>(block);
+    for (std::size_t c = 0; c < kCorners; ++c) {
+      farthest = std::max(farthest, (state.position.at(b, c) - step.engine.previous.at(b, c)).norm());
+      state.velocity.set(b, c, Vec3::Zero());
+    }
+    step.engine.clock[b].history_s = 0.0;
+  }
+  return farthest;
+}
+
+// Steps until nothing moves any more; false where that does not come about.
+bool settle(IslandStep& step) {
+  const double tolerance = step.simulation.tolerance_m;
+  const double fallTime_s = step.simulation.lengths.fallTime_s;
+  const double travel_m = refreshTravel(step.simulation);  // blocks slide by tolerances at most here
+  double effective_s = kFirstStep * fallTime_s;
+  int retries = 0;
+  for (int i = 0; i < kMostSteps; ++i) {
+    setJacobians(step, effective_s);
+    if (!stepFromRest(step, effective_s)) {
+      if (++retries > kMostRetries) return false;
+      effective_s /= kGrowth * kGrowth;
+      continue;
+    }
+    retries = 0;
+    const double farthest = stop(step);
+    if (!(farthest < kFarthest * tolerance) || !updateContacts(step, {travel_m, travel_m, travel_m})) return false;
+    if (effective_s >= kLastStep * fallTime_s && farthest < kSettled * tolerance) return true;
+    effective_s = std::min(kLastStep * fallTime_s, kGrowth * effective_s);
+  }
+  return false;
+}
+
+}  // namespace
+
+bool startInEquilibrium(IslandStep& step) {
+  if (!mayRest(step)) return false;
+  const Counters before = step.counters;
+  step.scaleMost = 1.0;
+  step.unforced = true;
+  const double damping_s = step.law.dampingTime_s;
+  step.law.dampingTime_s = std::min(damping_s, kMostDamping * step.simulation.lengths.fallTime_s);
+  Gravity gravity = step.simulation.scene.gravity;
+  const double tilt_deg = gravity.tilt_deg;
+  const auto startAgain = [&] {
+    step.counters = before;
+    rewindIsland(step);
+    for (const std::int32_t block : step.blocks) {  // nothing has moved yet
+      for (std::size_t a = 0; a < 3; ++a) {
+        const auto b = static_cast<std::size_t>(block);
+        std::copy_n(step.simulation.state.position.values(a, b), kCorners, step.engine.previous.values(a, b));
+      }
+    }
+    findTouching(step);
+  };
+  const auto stands = [&](double share) {
+    gravity.tilt_deg = share * tilt_deg;
+    step.gravity = gravity.at(step.simulation.time_s);
+    if (settle(step)) return true;
+    startAgain();
+    return false;
+  };
+  bool rests = stands(1.0);
+  // What does not stand as gravity leans stood before it leant so far. The blow with which a weight that nothing bears yet comes
+  // to its foot keeps implicit steps from converging; a block alone feels none, and explicit steps bear it.
+  if (!rests && tilt_deg != 0.0 && step.blocks.size() > 1 && isImplicit(step.simulation.scene.settings.method)) {
+    double most = 0.0;
+    for (double least = 1.0; least - most > kLeanStep;) {
+      const double middle = 0.5 * (least + most);
+      if (stands(middle)) {
+        most = middle;
+        startAgain();
+      } else {
+        least = middle;
+      }
+    }
+    rests = stands(most);
+  }
+  step.unforced = false;
+  step.law.dampingTime_s = damping_s;
+  return rests;
+}
+
+}  // namespace springtower

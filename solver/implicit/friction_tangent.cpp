@@ -1,0 +1,162 @@
+#include "solver/implicit/friction_tangent.h"
+
+#include "solver/implicit/system.h"
+#include "solver/world/island_step.h"
+
+#include <algorithm>
+
+namespace springtower {
+
+namespace {
+
+// The factors' part is taken away, the contacts' own is added.
+enum class Part { factors, contacts };
+
+Vec3 normalOf(const ContactTangent& tangent) {
+  return {tangent.normal[0], tangent.normal[1], tangent.normal[2]};
+}
+
+void setWeights(const BlockFrame& frame, const Vec3& place, std::size_t lane, Lanes (&weight)[3]) {
+  const auto weights = weightsAt(frame, place);
+  for (std::size_t a = 0; a < 3; ++a) weight[a][lane] = weights[1 + a];
+}
+
+// Force of a point on upper, N.
+double pushOf(const ContactLaw& law, const PointMemory& memory, std::size_t i, double stiffness, double depth) {
+  const double elastic = depth - memory.offset[i];
+  return std::max(0.0, stiffness * memory.scale[i] * (elastic + law.relaxingRatio * (elastic - memory.relaxed[i])));
+}
+
+void addPair(const IslandStep& step, const ImplicitIsland& island, std::size_t at, ContactMask mask, Part part, double step_s,
+             AlignedVector<ContactTangent>& to) {
+  if ((mask & 0xFFU) == 0) return;
+  const Engine& engine = step.engine;
+  const auto pair = static_cast<std::size_t>(island.touching[at]);
+  const Manifold& m = engine.pairs[pair].manifold;
+  const PointMemory& memory = engine.trial[pair];
+  const auto upper = static_cast<std::size_t>(m.upper);
+  const BlockFrame* frameLower = m.lower < 0 ? nullptr : &engine.frames[static_cast<std::size_t>(m.lower)];
+  static const AffineField kStill{};
+  const PointForces points = pointForces(m, {&engine.frames[upper], &kStill, &kStill}, {frameLower, &kStill, &kStill}, step.law);
+  const double stiffness = m.lower < 0 ? step.law.floorStiffness_n_m : step.law.stiffness_n_m;
+  const double friction = step.law.kineticFriction;
+  const double sign = part == Part::factors ? 1.0 : -1.0;
+  const std::vector<std::uint8_t>& asleep = step.simulation.asleep;
+
+  for (std::size_t first = 0; first < static_cast<std::size_t>(m.count); first += 4) {
+    ContactTangent& tangent = to.emplace_back();
+    if (asleep[upper] == 0) tangent.upper = engine.nodeOf[upper];
+    if (frameLower != nullptr && asleep[static_cast<std::size_t>(m.lower)] == 0)
+      tangent.lower = engine.nodeOf[static_cast<std::size_t>(m.lower)];
+    for (std::size_t k = 0; k < 3; ++k) tangent.normal[k] = points.direction[static_cast<Eigen::Index>(k)];
+    for (std::size_t a = 0; a < 3 && tangent.lower >= 0; ++a) std::copy_n(frameLower->dual[a].begin(), 3, tangent.dual[a]);
+    for (std::size_t i = first; i < std::min(first + 4, static_cast<std::size_t>(m.count)); ++i) {
+      if ((mask >> i & 1U) == 0) continue;
+      const std::size_t lane = i - first;
+      const PointStiffness resists = pointStiffness(step, m, memory, mask, i, step_s);
+      setWeights(engine.frames[upper], points.place[i], lane, tangent.upperWeight);
+      if (frameLower != nullptr) setWeights(*frameLower, points.lowerPlace[i], lane, tangent.lowerWeight);
+      tangent.isotropic[lane] = sign * resists.tangential;
+      tangent.alongNormal[lane] = sign * (resists.normal - resists.tangential);
+      for (std::size_t k = 0; k < 3; ++k) tangent.slip[k][lane] = resists.slip[static_cast<Eigen::Index>(k)];
+      tangent.alongSlip[lane] = -sign * resists.tangential;
+      const bool slides = (mask >> (8 + i) & 1U) != 0;
+      if (part == Part::factors || !slides) continue;
+      tangent.coupling[lane] = friction * resists.normal;
+      const Vec3 push = pushOf(step.law, memory, i, stiffness, points.depth[i]) * (normalOf(tangent) - friction * resists.slip);
+      for (std::size_t k = 0; k < 3; ++k) tangent.push[k][lane] = push[static_cast<Eigen::Index>(k)];
+    }
+  }
+}
+
+// Adds sign * [sum f, sums f times weight] to one block's forces.
+SPRINGTOWER_INLINE void addSums(const Lanes (&f)[3], const Lanes (&weight)[3], double sign, double* force) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    force[k] += sign * sum(f[k]);
+    for (std::size_t a = 0; a < 3; ++a) force[3 + 3 * a + k] += sign * sum(weight[a] * f[k]);
+  }
+}
+
+SPRINGTOWER_INLINE void addMotion(const double* d, const Lanes (&weight)[3], double sign, Lanes (&g)[3]) {
+  for (std::size_t k = 0; k < 3; ++k) g[k] += sign * (d[k] + weight[0] * d[3 + k] + weight[1] * d[6 + k] + weight[2] * d[9 + k]);
+}
+
+}  // namespace
+
+ContactMask contactMask(const IslandStep& step, const ImplicitIsland& island, std::size_t at) {
+  const auto pair = static_cast<std::size_t>(island.touching[at]);
+  const Manifold& manifold = step.engine.pairs[pair].manifold;
+  const PointMemory& trial = step.engine.trial[pair];
+  const PointMemory& slid = island.moved ? trial : manifold;
+  const double least = island.near ? 1.0 : kUnpressed;
+  unsigned mask = 0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(manifold.count); ++i) {
+    if (trial.live[i] < least) continue;
+    mask |= 1U << i;
+    if (slid.sliding[i] != 0.0) mask |= 0x100U << i;
+  }
+  return static_cast<ContactMask>(mask);
+}
+
+PointStiffness pointStiffness(const IslandStep& step, const Manifold& manifold, const PointMemory& memory, ContactMask mask,
+                              std::size_t i, double step_s) {
+  const ContactLaw& law = step.law;
+  const double stiffness = manifold.lower < 0 ? law.floorStiffness_n_m : law.stiffness_n_m;
+  const bool born = manifold.live[i] == 0.0;  // in this step, in which its dashpot has closed by its depth
+  const double damping = law.dampingTime_s / step_s;
+  const double relaxing = born ? law.relaxingRatio : law.relaxingRatio * law.relaxingTime_s / (law.relaxingTime_s + step.drift_s);
+  const double k = stiffness * std::max(1.0, memory.scale[i]);
+  PointStiffness result;
+  result.normal = k * (1.0 + relaxing + (born ? law.dampingTime_s / step.drift_s : damping));
+  result.tangential = k * (law.tangentialRatio * (1.0 + damping));
+  if ((mask >> (8 + i) & 1U) != 0) {
+    // Until something has moved it slides as it slid before.
+    result.tangential *= memory.sliding[i] > 0.0 ? memory.sliding[i] : manifold.sliding[i];
+    result.slip = Vec3(memory.stretchX[i], memory.stretchY[i], memory.stretchZ[i]).normalized();
+  }
+  return result;
+}
+
+void addFactorTangents(const IslandStep& step, const ImplicitIsland& island, std::size_t at, ContactMask mask, double step_s,
+                       AlignedVector<ContactTangent>& to) {
+  addPair(step, island, at, mask, Part::factors, step_s, to);
+}
+
+void findTangents(const IslandStep& step, ImplicitIsland& island, double step_s) {
+  island.tangents = island.factorTangents;
+  for (std::size_t at = 0; at < island.touching.size(); ++at) {
+    const ContactMask mask = contactMask(step, island, at);
+    const ContactMask known = island.mask[at];
+    if (mask == known && mask <= 0xFFU) continue;
+    if (known <= 0xFFU) addPair(step, island, at, known, Part::factors, step_s, island.tangents);
+    addPair(step, island, at, mask, Part::contacts, step_s, island.tangents);
+  }
+}
+
+SPRINGTOWER_KERNEL
+void addTangentForces(std::span<const ContactTangent> tangents, std::span<const double> displacement, std::span<double> force) {
+  for (const ContactTangent& tangent : tangents) {
+    Lanes g[3] = {};
+    if (tangent.upper >= 0)
+      addMotion(displacement.data() + kNodeSize * static_cast<std::size_t>(tangent.upper), tangent.upperWeight, 1.0, g);
+    if (tangent.lower >= 0)
+      addMotion(displacement.data() + kNodeSize * static_cast<std::size_t>(tangent.lower), tangent.lowerWeight, -1.0, g);
+    const Lanes along = g[0] * tangent.normal[0] + g[1] * tangent.normal[1] + g[2] * tangent.normal[2];
+    const Lanes slid = g[0] * tangent.slip[0] + g[1] * tangent.slip[1] + g[2] * tangent.slip[2];
+    const Lanes onNormal = tangent.alongNormal * along;
+    const Lanes onSlip = tangent.alongSlip * slid + tangent.coupling * along;
+    Lanes f[3];
+    for (std::size_t k = 0; k < 3; ++k) f[k] = tangent.isotropic * g[k] + onNormal * tangent.normal[k] + onSlip * tangent.slip[k];
+    if (tangent.upper >= 0)
+      addSums(f, tangent.upperWeight, 1.0, force.data() + kNodeSize * static_cast<std::size_t>(tangent.upper));
+    if (tangent.lower < 0) continue;
+    double* onLower = force.data() + kNodeSize * static_cast<std::size_t>(tangent.lower);
+    addSums(f, tangent.lowerWeight, -1.0, onLower);
+    for (std::size_t a = 0; a < 3; ++a) {
+      const Lanes moved = g[0] * tangent.dual[a][0] + g[1] * tangent.dual[a][1] + g[2] * tangent.dual[a][2];
+      for (std::size_t k = 0; k < 3; ++k) onLower[3 + 3 * a + k] -= sum(moved * tangent.push[k]);
+    }
+  }
+}
+
+}  // namespace springtower

@@ -1,0 +1,168 @@
+#include "solver/implicit/gmres.h"
+
+#include "core/lanes.h"
+#include "solver/implicit/friction_tangent.h"
+#include "solver/implicit/system.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace springtower {
+
+namespace {
+
+// Directions tried for one correction, in narrow islands and at most.
+constexpr std::size_t kFewDirections = 6;
+constexpr std::size_t kMostDirections = 30;
+// Half of what new factors cost may go into directions, and a product of a factorisation costs four times what a block of the
+// factors costs in a solution (measured: 3 to 4 from 200 to 1800 blocks).
+constexpr std::size_t kDirectionsPerProduct = 2;
+// What may be left over of the forces asked for: the next iteration looks at them anew.
+constexpr double kLeftOver = 0.002;
+
+// The tangents touch few nodes, and outside these the forces left over are none: the directions are kept for these nodes alone.
+void findCoupledNodes(ImplicitIsland& island) {
+  island.coupledAs.assign(island.residual.size(), -1);
+  island.coupled.clear();
+  const auto place = [&](std::int32_t& node) {
+    if (node < 0) return;
+    std::int32_t& as = island.coupledAs[static_cast<std::size_t>(node)];
+    if (as < 0) {
+      as = static_cast<std::int32_t>(island.coupled.size());
+      island.coupled.push_back(node);
+    }
+    node = as;
+  };
+  for (ContactTangent& tangent : island.tangents) {
+    place(tangent.upper);
+    place(tangent.lower);
+  }
+}
+
+SPRINGTOWER_INLINE double dot(const double* p, const double* q, std::size_t count) {
+  Lanes total = {};
+  for (std::size_t i = 0; i < count; i += 4) {
+    Lanes a, b;
+    load(p + i, a);
+    load(q + i, b);
+    total += a * b;
+  }
+  return sum(total);
+}
+
+SPRINGTOWER_INLINE void addScaled(double factor, const double* from, std::size_t count, double* to) {
+  for (std::size_t i = 0; i < count; ++i) to[i] += factor * from[i];
+}
+
+// What the tangents add at the coupled nodes' displacements in island.affine.
+SPRINGTOWER_INLINE void applyTangents(ImplicitIsland& island, double* force) {
+  const std::size_t count = kNodeSize * island.coupled.size();
+  for (std::size_t c = 0; c < island.coupled.size(); ++c) {
+    std::copy_n(island.affine.data() + kNodeSize * static_cast<std::size_t>(island.coupled[c]), kNodeSize,
+                island.coupledMotion.data() + kNodeSize * c);
+  }
+  std::fill_n(force, count, 0.0);
+  addTangentForces(island.tangents, {island.coupledMotion.data(), count}, {force, count});
+}
+
+// Room for direction j and the forces that are left after it.
+void makeRoom(std::size_t j, std::size_t count, ImplicitIsland& island) {
+  const std::size_t all = island.affine.size();
+  const std::size_t room = std::max(kFewDirections, j + 1);
+  if (island.coupledForce.size() < (room + 1) * count) island.coupledForce.resize((room + 1) * count);
+  if (island.correction.size() < (room + 1) * all) island.correction.resize((room + 1) * all);
+}
+
+// Turns column j of the Hessenberg matrix into one of a triangle (Givens), and the right-hand side with it.
+struct LeastSquares {
+  double column[kMostDirections][kMostDirections + 1];
+  double cosine[kMostDirections];
+  double sine[kMostDirections];
+  double right[kMostDirections + 1];
+
+  void turn(std::size_t j) {
+    double* h = column[j];
+    for (std::size_t k = 0; k < j; ++k) {
+      const double turned = cosine[k] * h[k] + sine[k] * h[k + 1];
+      h[k + 1] = cosine[k] * h[k + 1] - sine[k] * h[k];
+      h[k] = turned;
+    }
+    const double length = std::hypot(h[j], h[j + 1]);
+    cosine[j] = h[j] / length;
+    sine[j] = h[j + 1] / length;
+    h[j] = length;
+    right[j + 1] = -sine[j] * right[j];
+    right[j] *= cosine[j];
+  }
+  void backSubstitute(std::size_t count) {
+    for (std::size_t j = count; j-- > 0;) {
+      right[j] /= column[j][j];
+      for (std::size_t k = 0; k < j; ++k) right[k] -= column[j][k] * right[j];
+    }
+  }
+};
+
+}  // namespace
+
+std::size_t mostDirections(const ImplicitIsland& island) {
+  if (island.residual.size() <= kNarrowBlocks) return kFewDirections;
+  const std::size_t blocks = std::max<std::size_t>(1, island.matrix.blockCount());
+  return std::clamp(kDirectionsPerProduct * island.matrix.products / blocks, kFewDirections, kMostDirections);
+}
+
+bool solveCoupled(IslandStep& step, ImplicitIsland& island, double allowed_n) {
+  island.directions = 0;
+  if (island.tangents.empty()) {
+    solve(step, island);
+    return true;
+  }
+  const std::size_t all = island.affine.size();
+  const double allowed = std::max(allowed_n, kLeftOver * std::sqrt(dot(island.affine.data(), island.affine.data(), all)));
+  solve(step, island);
+  findCoupledNodes(island);
+  const std::size_t count = kNodeSize * island.coupled.size();
+  island.coupledMotion.resize(count);
+  makeRoom(0, count, island);
+  const auto force = [&](std::size_t j) { return island.coupledForce.data() + j * count; };
+  const auto correction = [&](std::size_t j) { return island.correction.data() + (j + 1) * all; };
+
+  LeastSquares squares;
+  std::copy(island.affine.begin(), island.affine.end(), island.correction.begin());
+  applyTangents(island, force(0));
+  squares.right[0] = std::sqrt(dot(force(0), force(0), count));
+  if (!(squares.right[0] > allowed)) return true;
+  for (std::size_t i = 0; i < count; ++i) force(0)[i] /= squares.right[0];
+
+  std::size_t used = 0;
+  const std::size_t most = mostDirections(island);
+  while (used < most) {
+    const std::size_t j = used++;
+    makeRoom(j, count, island);
+    std::fill(island.affine.begin(), island.affine.end(), 0.0);
+    for (std::size_t c = 0; c < island.coupled.size(); ++c)
+      std::copy_n(force(j) + kNodeSize * c, kNodeSize,
+                  island.affine.data() + kNodeSize * static_cast<std::size_t>(island.coupled[c]));
+    solve(step, island);
+    std::copy(island.affine.begin(), island.affine.end(), correction(j));
+    double* next = force(j + 1);
+    applyTangents(island, next);
+    for (std::size_t i = 0; i < count; ++i) next[i] = force(j)[i] - next[i];
+    for (std::size_t k = 0; k <= j; ++k) {
+      squares.column[j][k] = dot(next, force(k), count);
+      addScaled(-squares.column[j][k], force(k), count, next);
+    }
+    const double length = std::sqrt(dot(next, next, count));
+    squares.column[j][j + 1] = length;
+    squares.turn(j);
+    if (!(std::abs(squares.right[j + 1]) > allowed) || !(length > 0.0)) break;
+    for (std::size_t i = 0; i < count; ++i) next[i] /= length;
+  }
+  const bool reached = !(std::abs(squares.right[used]) > allowed);
+  island.directions = static_cast<int>(used);
+  squares.backSubstitute(used);
+  std::copy_n(island.correction.data(), all, island.affine.data());
+  for (std::size_t j = 0; j < used; ++j) addScaled(squares.right[j], correction(j), all, island.affine.data());
+  return reached;
+}
+
+}  // namespace springtower

@@ -1,0 +1,401 @@
+#include "core/lanes.h"
+#include "solver/block/inertia.h"
+#include "solver/block/modes.h"
+#include "solver/contact/approach.h"
+#include "solver/contact/evaluate_forces.h"
+#include "solver/implicit/bdf2.h"
+#include "solver/implicit/correction.h"
+#include "solver/implicit/friction_tangent.h"
+#include "solver/implicit/gmres.h"
+#include "solver/implicit/run.h"
+#include "solver/implicit/step_count.h"
+#include "solver/implicit/system.h"
+#include "solver/world/stage_clock.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace springtower {
+
+namespace {
+
+constexpr int kMostIterations = 12;
+// How often a step is solved again with contacts that it turned out to make.
+constexpr int kMostMeetings = 4;
+// Residual force at which a step is taken, in weights of the block; in metres it is this share of the compression under its own
+// weight. Displacements are no measure: a sliding block hardly moves and is still wrong by a tenth of its friction.
+constexpr double kResidual = 1e-5;
+// How far a correction is solved for, in these units: the root of the sum of all blocks' squares, of which the largest is far
+// less. Less costs solutions that the next evaluation does not need, more costs evaluations.
+constexpr double kSolved = 2.0;
+
+// How an iteration goes on.
+struct Iteration {
+  int mostContactIterations;  // while points begin or cease to push or slide: a front of load takes an iteration a row
+  double near;                // residual below which a correction takes contacts as they stand: friction follows the
+                              // normal forces, and what touches and does not push is open; 0 in steps from rest
+  double enough;              // share of the residual at the beginning that may be left over
+};
+
+// Near the solution is within a block's weight of it. Farther away points slide that will not, and Newton's iteration with a cone
+// that moves goes astray (design, section 11, trap 1). Where blocks move, a part of what a step has to find may be left over, up
+// to kMostLeft: a ten thousandth of a weight alters a speed by 4 micrometres a second, and the next step looks at it anew.
+constexpr Iteration kInMotion{40, 1e5, 0.005};
+constexpr double kMostLeft = 10.0;
+// What does not converge in a few iterations does so in fewer with finer steps.
+constexpr Iteration kBeforeFiner{kMostIterations, 1e5, 0.005};
+// In steps from rest the weight of a tower that is laid down comes to its foot row by row, from far away. In a wide island this
+// ends with thousands of points that slide: without what friction does as normal forces change, iterations then take away three
+// tenths of the residual each, and whether that is enough before they are given up is chance (a pyramid of 40 rows of cubes
+// found its equilibrium or not, as rounding had it).
+constexpr Iteration kFromRest{40, 0.0, 0.0};
+constexpr Iteration kWideFromRest{40, 1e5, 0.0};
+
+ImplicitIsland& islandOf(IslandStep& step) {
+  return step.engine.implicitIslands[static_cast<std::size_t>(step.blocks.front())];
+}
+
+// Work along a correction that may be left over or undone, of that at its beginning.
+constexpr double kOvershoot = 0.5;
+constexpr int kMostShares = 6;
+// A residual that shrinks by less asks for new factors: friction has turned.
+constexpr double kSlow = 0.3;
+// Share of the directions that are tried beside the factors from which on new ones cost less.
+constexpr double kOldDirections = 0.6;
+// A residual from which a step begins where the blocks are carried, not where they are: something moves.
+constexpr double kPredicted = 1.0;
+
+// How the contacts stand now. Before the first iteration nothing has moved yet, so what slides is what slid before.
+struct ContactsNow {
+  bool changed = false;  // against what the factors are for
+  bool slides = false;   // whether any point slides
+  bool limited = false;  // whether the hand is at a limit of its forces
+};
+
+ContactsNow contactsNow(const IslandStep& step, const ImplicitIsland& island) {
+  ContactsNow now;
+  for (std::size_t i = 0; i < island.touching.size(); ++i) {
+    const ContactMask mask = contactMask(step, island, i);
+    now.changed = now.changed || mask != island.mask[i];
+    now.slides = now.slides || mask > 0xFFU;
+  }
+  now.limited = isTetherLimited(step);
+  now.changed = now.changed || now.limited != island.limited;
+  return now;
+}
+
+// New factors for contacts as they stand now.
+bool renewFactors(IslandStep& step, ImplicitIsland& island, double effective_s) {
+  for (std::size_t i = 0; i < island.touching.size(); ++i) island.mask[i] = contactMask(step, island, i);
+  return assemble(step, island, effective_s);
+}
+
+// The residual of all blocks, in the world's frame; returns the largest in units of what is allowed,
+// infinity where one is not finite.
+SPRINGTOWER_KERNEL
+double findResidual(IslandStep& step, ImplicitIsland& island, double effective_s) {
+  const Engine& engine = step.engine;
+  const double gravity = std::max(step.simulation.scene.gravity.magnitude, 1.0);
+  const double rate = 1.0 / (effective_s * effective_s);
+  double worst = 0.0;
+  for (std::size_t i = 0; i < step.blocks.size(); ++i) {
+    const auto b = static_cast<std::size_t>(step.blocks[i]);
+    ModeVectors& residual = island.residual[i];
+    missingForces(jacobianOf(island, i), rate, engine.force, engine.target, step.simulation.state.position, b, residual);
+    double largest = 0.0;
+    for (const auto& vector : residual) {
+      for (const double r : vector) {
+        if (!std::isfinite(r)) return std::numeric_limits<double>::infinity();
+        largest = std::max(largest, std::abs(r));
+      }
+    }
+    worst = std::max(worst, largest / (kResidual * step.simulation.model.mass[b] * gravity));
+  }
+  return worst;
+}
+
+// A block's velocities at the step's end, and those that carried it through the step.
+SPRINGTOWER_INLINE void updateVelocities(IslandStep& step, std::size_t b, double effective_s) {
+  Engine& engine = step.engine;
+  MotionState& state = step.simulation.state;
+  const double rate = 1.0 / effective_s;
+  const double stepRate = 1.0 / step.drift_s;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const double* x = state.position.values(a, b);
+    const double* before = engine.previous.values(a, b);
+    const double* history = engine.history.values(a, b);
+    double* v = state.velocity.values(a, b);
+    double* carried = engine.stepVelocity.values(a, b);
+    for (std::size_t c = 0; c < kCorners; ++c) {
+      v[c] = (x[c] - history[c]) * rate;
+      carried[c] = (x[c] - before[c]) * stepRate;
+    }
+  }
+}
+
+// Moves the blocks along the correction by this share of it.
+SPRINGTOWER_KERNEL
+void moveAlong(IslandStep& step, const ImplicitIsland& island, double share, double effective_s) {
+  for (std::size_t i = 0; i < step.blocks.size(); ++i) {
+    const auto b = static_cast<std::size_t>(step.blocks[i]);
+    ModeVectors part = island.direction[i];
+    for (auto& vector : part) {
+      for (double& d : vector) d *= share;
+    }
+    addModes(part, step.simulation.state.position, b);
+    updateVelocities(step, b, effective_s);
+  }
+}
+
+SPRINGTOWER_INLINE void copyPoints(const PointMemory& from, std::int32_t count, PointMemory& to) {
+  if (count > 4) {
+    to = from;
+    return;
+  }
+  const auto copy = [](const auto& source, auto& target) {
+    Lanes lanes;
+    load(source.data(), lanes);
+    store(lanes, target.data());
+  };
+  copy(from.stretchX, to.stretchX);
+  copy(from.stretchY, to.stretchY);
+  copy(from.stretchZ, to.stretchZ);
+  copy(from.relaxed, to.relaxed);
+  copy(from.offset, to.offset);
+  copy(from.scale, to.scale);
+  copy(from.live, to.live);
+  copy(from.sliding, to.sliding);
+}
+
+SPRINGTOWER_KERNEL
+void accept(IslandStep& step, ImplicitIsland& island) {
+  Engine& engine = step.engine;
+  for (const std::int32_t at : island.touching) {
+    Manifold& manifold = engine.pairs[static_cast<std::size_t>(at)].manifold;
+    copyPoints(engine.trial[static_cast<std::size_t>(at)], manifold.count, manifold);
+  }
+  for (const std::int32_t block : step.blocks) {
+    BlockClock& clock = engine.clock[static_cast<std::size_t>(block)];
+    clock.history_s = step.drift_s;
+    clock.lastDrift_s = 0.0;
+    clock.explicitLast = false;
+  }
+  ++step.counters.implicitSteps;
+}
+
+// Puts the blocks back where the step began.
+void goBack(IslandStep& step) {
+  Engine& engine = step.engine;
+  for (const std::int32_t block : step.blocks) {
+    const auto b = static_cast<std::size_t>(block);
+    for (std::size_t a = 0; a < 3; ++a) {
+      std::copy_n(engine.previous.values(a, b), kCorners, step.simulation.state.position.values(a, b));
+      std::copy_n(engine.previousVelocity.values(a, b), kCorners, step.simulation.state.velocity.values(a, b));
+    }
+  }
+}
+
+void reject(IslandStep& step) {
+  goBack(step);
+  for (const std::int32_t block : step.blocks) {
+    BlockClock& clock = step.engine.clock[static_cast<std::size_t>(block)];
+    clock.history_s = 0.0;
+    clock.lastDrift_s = 0.0;
+    clock.explicitLast = false;
+  }
+  ++step.counters.handedOver;
+}
+
+// Forces and residual where the blocks are now.
+double evaluateResidual(IslandStep& step, ImplicitIsland& island, double effective_s, StageClock& clock) {
+  clock.lap(Stage::integration);
+  evaluateForces(step, step.simulation.state, step.engine.stepVelocity, step.drift_s, Memory::trial);
+  clock.skip();  // it counts its own
+  return findResidual(step, island, effective_s);
+}
+
+// Takes the correction as far as the residual still works along it: where contacts open or friction turns round on the way, the
+// whole of it would go too far, and back in the next iteration (Newton with line search; Nocedal & Wright 2006). Returns the
+// residual there.
+double takeCorrection(IslandStep& step, ImplicitIsland& island, double effective_s, double enough, StageClock& clock) {
+  const double work = workAlong(island);
+  island.moved = true;
+  double share = 1.0;
+  moveAlong(step, island, 1.0, effective_s);
+  double residual = evaluateResidual(step, island, effective_s, clock);
+  if (!std::isfinite(residual) || residual <= enough) return residual;
+  double far = workAlong(island);
+  if (far >= -kOvershoot * work) return residual;
+  double least = 0.0;  // share at which it still works forwards, and where it does no more
+  double most = 1.0;
+  double near = work;
+  for (int trial = 0; trial < kMostShares; ++trial) {
+    const double next = least + (most - least) * std::clamp(near / (near - far), 0.1, 0.9);
+    moveAlong(step, island, next - share, effective_s);
+    share = next;
+    residual = evaluateResidual(step, island, effective_s, clock);
+    const double here = workAlong(island);
+    if (std::abs(here) <= kOvershoot * work || residual <= enough) break;
+    (here > 0.0 ? least : most) = share;
+    (here > 0.0 ? near : far) = here;
+  }
+  return residual;
+}
+
+// Puts the blocks where their velocities and accelerations carry them. Returns the residual there.
+double predict(IslandStep& step, ImplicitIsland& island, double effective_s, StageClock& clock) {
+  Engine& engine = step.engine;
+  const double h = step.drift_s;
+  for (const std::int32_t block : step.blocks) {
+    const auto b = static_cast<std::size_t>(block);
+    for (std::size_t a = 0; a < 3; ++a) {
+      const double pull = effective_s * effective_s * step.gravity[static_cast<Eigen::Index>(a)];
+      const double* v = engine.previousVelocity.values(a, b);
+      const double* history = engine.history.values(a, b);
+      const double* target = engine.target.values(a, b);
+      double* x = step.simulation.state.position.values(a, b);
+      for (std::size_t c = 0; c < kCorners; ++c) {
+        const double change = 3.0 * ((target[c] - pull - history[c]) / effective_s - v[c]);  // of the velocity in the last step
+        x[c] += h * (v[c] + 0.5 * change);
+      }
+    }
+    updateVelocities(step, b, effective_s);
+  }
+  island.moved = true;
+  return evaluateResidual(step, island, effective_s, clock);
+}
+
+// Where the iteration begins when something moves: where the blocks are carried, unless that is not near the solution and where
+// they are is nearer, as when contacts have just let go or taken hold and velocities and accelerations still tell of before.
+// Returns the residual there.
+double beginCarried(IslandStep& step, ImplicitIsland& island, double effective_s, const Iteration& how, StageClock& clock) {
+  const double carried = predict(step, island, effective_s, clock);
+  if (how.near == 0.0 || !(carried > how.near)) return carried;
+  goBack(step);
+  for (const std::int32_t block : step.blocks) updateVelocities(step, static_cast<std::size_t>(block), effective_s);
+  const double still = evaluateResidual(step, island, effective_s, clock);
+  return still < carried ? still : predict(step, island, effective_s, clock);
+}
+
+// Whether the step begins where the blocks are carried, whatever the forces are where they are: all have a history, and one moves
+// so fast that its inertia alone asks for it.
+bool isCarried(const IslandStep& step, double effective_s) {
+  const double gravity = std::max(step.simulation.scene.gravity.magnitude, 1.0);
+  const double most = kPredicted * kResidual * gravity * effective_s * effective_s / step.drift_s;
+  bool moves = false;
+  for (const std::int32_t block : step.blocks) {
+    const auto b = static_cast<std::size_t>(block);
+    if (!(step.engine.clock[b].history_s > 0.0)) return false;
+    for (std::size_t a = 0; a < 3 && !moves; ++a) {
+      const double* v = step.simulation.state.velocity.values(a, b);
+      for (std::size_t c = 0; c < kCorners; ++c) moves = moves || std::abs(v[c]) > most;
+    }
+  }
+  return moves;
+}
+
+// Leaves the blocks where they are. Returns the residual there: where a wide island rests, forces of a thousand stiff contacts
+// round by nearly as much as is allowed, and no solution would make it less.
+double stay(IslandStep& step, ImplicitIsland& island, double effective_s, StageClock& clock) {
+  for (const std::int32_t block : step.blocks) updateVelocities(step, static_cast<std::size_t>(block), effective_s);
+  island.moved = true;
+  return evaluateResidual(step, island, effective_s, clock);
+}
+
+// Newton's iteration for the state at the step's end, from engine.target and engine.history. Unless the blocks are `carried` the
+// forces are known where they are. Returns whether it converged.
+bool solveStep(IslandStep& step, double effective_s, bool carried, const Iteration& how) {
+  ImplicitIsland& island = islandOf(step);
+  StageClock clock(step.times);
+  layOut(step, island);
+  island.moved = false;
+  if (island.step_s != effective_s || tetherStiffness(step, effective_s) != island.tether) island.factorised = false;
+  double residual = island.tooDense || carried ? 0.0 : findResidual(step, island, effective_s);
+  if (!island.tooDense && (carried || residual > kPredicted)) residual = beginCarried(step, island, effective_s, how, clock);
+  const double enough = std::clamp(how.enough * residual, 1.0, kMostLeft);
+  const bool wide = step.blocks.size() > kNarrowBlocks && !island.tooDense;
+  if (wide && !island.moved) residual = stay(step, island, effective_s, clock);
+  bool converged = wide && residual <= kPredicted;
+  int most = island.tooDense || converged ? 0 : kMostIterations;
+  bool slow = false;
+  for (int iteration = 0; iteration < most; ++iteration) {
+    island.near = residual < how.near;
+    const ContactsNow now = contactsNow(step, island);
+    if (now.changed) most = std::min(how.mostContactIterations, iteration + kMostIterations);
+    const bool old = iteration == 0 && island.directions >= kOldDirections * static_cast<double>(mostDirections(island));
+    const bool stale = (slow || old) && (now.changed || now.slides || now.limited);
+    const bool renewed = stale || !island.factorised;
+    if (renewed && !renewFactors(step, island, effective_s)) break;
+    const double before = residual;
+    const bool differs = island.near && (now.changed || now.slides || !island.factorTangents.empty());
+    if (!findCorrection(step, island, effective_s, kSolved * kResidual, differs) && !renewed) {
+      if (!renewFactors(step, island, effective_s)) break;
+      findCorrection(step, island, effective_s, kSolved * kResidual, differs);
+    }
+    residual = takeCorrection(step, island, effective_s, enough, clock);
+    slow = residual > kSlow * before;
+    ++step.counters.implicitIterations;
+    converged = residual <= enough;
+    if (converged || !std::isfinite(residual)) break;
+  }
+  clock.lap(Stage::integration);
+  return converged;
+}
+
+// Takes the state that was found, or goes back to the step's start.
+bool finishStep(IslandStep& step, bool taken) {
+  StageClock clock(step.times);
+  ImplicitIsland& island = islandOf(step);
+  island.forcesKnown = taken;
+  if (taken) {
+    accept(step, island);
+  } else {
+    reject(step);
+  }
+  clock.lap(Stage::integration);
+  return taken;
+}
+
+}  // namespace
+
+bool stepImplicit(IslandStep& step, bool finerFollow) {
+  const double effective_s = endShare(step.simulation.scene.settings.method) * step.drift_s;
+  synchronise(step);
+  const bool carried = !islandOf(step).forcesKnown && isCarried(step, effective_s);
+  if (!islandOf(step).forcesKnown && !carried)
+    evaluateForces(step, step.simulation.state, step.simulation.state.velocity, 0.0, Memory::trial);
+  if (step.simulation.scene.settings.method == Method::implicitEuler) {
+    foretellOneStep(step, effective_s);
+  } else {
+    foretell(step, effective_s);
+  }
+  const Iteration& how = finerFollow ? kBeforeFiner : kInMotion;
+  bool converged = solveStep(step, effective_s, carried, how);
+  for (int trial = 0; converged && trial < kMostMeetings; ++trial) {
+    StageClock clock(step.times);
+    const Meetings met = meetingsIn(step);
+    clock.lap(Stage::candidates);
+    if (met == Meetings::atSpeed) return finishStep(step, false);
+    if (met == Meetings::none) break;
+    goBack(step);
+    evaluateForces(step, step.simulation.state, step.simulation.state.velocity, 0.0, Memory::trial);
+    converged = solveStep(step, effective_s, false, how);
+  }
+  // Where a frame begins a force or the hand may jump, which is no ringing.
+  const bool jumps =
+      step.engine.clock[static_cast<std::size_t>(step.blocks.front())].forced && step.time_s == step.simulation.time_s;
+  if (converged && !jumps && step.simulation.scene.settings.method != Method::implicitEuler) noteRinging(step, effective_s);
+  return finishStep(step, converged);
+}
+
+bool stepFromRest(IslandStep& step, double effective_s) {
+  step.drift_s = effective_s / kBdf2;
+  evaluateForces(step, step.simulation.state, step.simulation.state.velocity, 0.0, Memory::trial);
+  foretellOneStep(step, effective_s);
+  Iteration how = step.blocks.size() > kNarrowBlocks ? kWideFromRest : kFromRest;
+  how.mostContactIterations = std::max(how.mostContactIterations, static_cast<int>(step.blocks.size()));
+  return finishStep(step, solveStep(step, effective_s, false, how));
+}
+
+}  // namespace springtower

@@ -1,0 +1,233 @@
+#include "solver/implicit/run.h"
+
+#include "solver/contact/approach.h"
+#include "solver/contact/evaluate_forces.h"
+#include "solver/contact/update.h"
+#include "solver/implicit/step_count.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace springtower {
+
+namespace {
+
+// Steps of a frame where the user names none: where fewer do not do, and where a hand or a force moves something, at least.
+constexpr int kImplicitSteps = 4;
+constexpr int kForcedSteps = 2;
+// And where rigid steps have just handed a heap back, at least: it hardly moves, and has no swing that steps could damp.
+constexpr int kHandedBackSteps = 2;
+// Frames that rigid steps carry what has fallen before implicit ones are tried again.
+constexpr int kFallenFrames = 30;
+// Angle by which a block may turn in an implicit step, rad: the two-step formula turns along chords.
+constexpr double kMostTurn = 0.01;
+
+// Farthest that a corner may go in a step, in block heights: the energy of what goes over, faster and faster, grows in longer
+// ones. A block alone that glides gains none: only as far as its corners would go about an edge counts.
+constexpr double kMostWay = 0.04;
+
+// Steps of a frame in which no corner goes farther than that.
+int stepsForWay(const IslandStep& step) {
+  const Simulation& simulation = step.simulation;
+  const CornerArray& velocity = simulation.state.velocity;
+  const bool alone = step.blocks.size() == 1;
+  const Vec3 glide = alone ? centre(velocity, static_cast<std::size_t>(step.blocks.front())) : Vec3::Zero();
+  double fastest = 0.0;
+  for (const std::int32_t block : step.blocks)
+    fastest = std::max(fastest, fastestCorner(velocity, static_cast<std::size_t>(block), glide));
+  if (alone) fastest *= 2.0;
+  const double steps = std::ceil(fastest * simulation.scene.settings.frame_s / (kMostWay * simulation.lengths.blockHeight_m));
+  return static_cast<int>(std::clamp(steps, 1.0, static_cast<double>(kMostRingingSteps)));
+}
+
+// Whether the island does so little that one step tells it as well as many.
+bool isCalm(const IslandStep& step) {
+  const Simulation& simulation = step.simulation;
+  const double most = calmSpeed(simulation);
+  for (const std::int32_t block : step.blocks) {
+    // What has just been let go of has no speed yet, and what explicit steps brought here may be at a bounce's turn.
+    const auto b = static_cast<std::size_t>(block);
+    if (!(simulation.restTime_s[b] > 0.0) || step.engine.clock[b].explicitLast) return false;
+    for (std::size_t a = 0; a < 3; ++a) {
+      const double* v = simulation.state.velocity.values(a, b);
+      for (std::size_t c = 0; c < kCorners; ++c) {
+        if (!(std::abs(v[c]) <= most)) return false;
+      }
+    }
+  }
+  return true;
+}
+
+// Whether it touches what sleeps: that wakes by how it is pushed, and would not by a rattle that few steps have damped.
+bool leansOnSleepers(const IslandStep& step) {
+  return std::any_of(step.pairs.begin(), step.pairs.end(), [&](std::int32_t at) {
+    const NearPair& pair = step.engine.pairs[static_cast<std::size_t>(at)];
+    return pair.b >= 0 && pair.manifold.touch != Touch::apart &&
+           (sleeps(step.simulation, pair.a) || sleeps(step.simulation, pair.b));
+  });
+}
+
+// How many steps the frame takes. `forced`: whether a force or the hand acts; `known`: as it did in the frame before.
+int implicitSteps(const IslandStep& step, bool forced, bool known, bool heap) {
+  const Settings& settings = step.simulation.scene.settings;
+  if (settings.substeps > 0) return settings.substeps;
+  const bool calm = isCalm(step) && !forced;
+  if (settings.method == Method::implicitEuler) return calm ? 1 : kImplicitSteps;
+  std::int32_t present = 1;
+  for (const std::int32_t block : step.blocks) {
+    const BlockClock& clock = step.engine.clock[static_cast<std::size_t>(block)];
+    present = std::max(present, clock.implicitSteps);
+    known = known && clock.history_s > 0.0;
+  }
+  int least = forced ? kForcedSteps : 1;
+  if (!calm && leansOnSleepers(step)) least = kImplicitSteps;
+  if (!calm && !known) least = std::max(least, heap ? kHandedBackSteps : kMostRingingSteps);
+  if (!calm && !forced) least = std::max(least, stepsForWay(step));
+  const int steps = std::max(least, stepsForRinging(step, present));
+  for (const std::int32_t block : step.blocks) step.engine.clock[static_cast<std::size_t>(block)].implicitSteps = steps;
+  return steps;
+}
+
+// Steps that what is left of a frame takes where it does more than fewer were chosen for: where friction gives way at once all
+// along a block, not even those do.
+int finerSteps(double share, int steps) {
+  const auto of = [&](int frame) { return static_cast<int>(std::lround(share * frame)); };
+  return of(kImplicitSteps) > steps ? of(kImplicitSteps) : of(kMostRingingSteps);
+}
+
+// A force that has ended leaves another acceleration than that of the step before. One that begins has friction against it soon.
+void forgetSteps(IslandStep& step) {
+  for (const std::int32_t block : step.blocks) step.engine.clock[static_cast<std::size_t>(block)].history_s = 0.0;
+}
+
+// The angular speed of a block is at most this, rad/s: how fast its mean edges change against their length.
+double turningSpeed(const AffineField& place, const AffineField& motion) {
+  double fastest = 0.0;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const auto& side = place.side[a];
+    const auto& rate = motion.side[a];
+    const double length = side[0] * side[0] + side[1] * side[1] + side[2] * side[2];
+    fastest = std::max(fastest, (rate[0] * rate[0] + rate[1] * rate[1] + rate[2] * rate[2]) / length);
+  }
+  return std::sqrt(fastest);
+}
+
+}  // namespace
+
+void prepareImplicit(Simulation& simulation) {
+  Engine& engine = *simulation.engine;
+  const std::size_t count = simulation.model.blockCount();
+  engine.previousVelocity.resize(count);
+  engine.history.resize(count);
+  engine.target.resize(count);
+  engine.stepVelocity.resize(count);
+  engine.carriedMotion.resize(count);
+  engine.implicitIslands.resize(count);
+  engine.nodeOf.assign(count, 0);
+  if (isImplicit(simulation.scene.settings.method)) engine.rigidIslands.resize(count);
+  if (simulation.scene.settings.method == Method::implicitEigen) engine.sparseFactors.resize(count);
+}
+
+void setJacobians(IslandStep& step, double effective_s) {
+  const BlockModel& model = step.simulation.model;
+  ImplicitIsland& island = step.engine.implicitIslands[static_cast<std::size_t>(step.blocks.front())];
+  const auto fits = [&](std::size_t b, std::size_t kind) {
+    return model.dimensions[b] == island.kinds[kind].dimensions && model.mass[b] == island.kinds[kind].mass;
+  };
+  bool known = island.jacobianStep_s == effective_s && island.kindOf.size() == step.blocks.size();
+  for (std::size_t i = 0; known && i < step.blocks.size(); ++i) {
+    known = fits(static_cast<std::size_t>(step.blocks[i]), static_cast<std::size_t>(island.kindOf[i]));
+  }
+  if (known) return;
+  island.jacobianStep_s = effective_s;
+  island.kindOf.resize(step.blocks.size());
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < step.blocks.size(); ++i) {
+    const auto b = static_cast<std::size_t>(step.blocks[i]);
+    if (count == 0 || !fits(b, count - 1)) {
+      if (island.kinds.size() == count) island.kinds.emplace_back();
+      island.kinds[count++] = {model.dimensions[b], model.mass[b],
+                               blockJacobian(model, step.simulation.scene.settings.inertia, b, 1.0 / (effective_s * effective_s),
+                                             1.0 + step.simulation.dampingTime_s / effective_s)};
+    }
+    island.kindOf[i] = static_cast<std::int32_t>(count - 1);
+  }
+}
+
+bool implicitStepsFit(const IslandStep& step, double step_s) {
+  const Simulation& simulation = step.simulation;
+  const bool touches = std::any_of(step.pairs.begin(), step.pairs.end(), [&](std::int32_t at) {
+    return step.engine.pairs[static_cast<std::size_t>(at)].manifold.touch != Touch::apart;
+  });
+  if (!touches || meetsSoon(step, step_s) || bounces(step, step_s)) return false;
+  for (const std::int32_t block : step.blocks) {
+    const auto b = static_cast<std::size_t>(block);
+    if (step.engine.clock[b].explicitFrames > 0) return false;
+    const double turning = turningSpeed(affineField(simulation.state.position, b), affineField(simulation.state.velocity, b));
+    if (turning * step_s > kMostTurn) return false;
+  }
+  return true;
+}
+
+IslandOutcome runImplicitSteps(IslandStep& step, bool heap, double& reached_s) {
+  Simulation& simulation = step.simulation;
+  Engine& engine = step.engine;
+  IslandOutcome outcome;
+  const double frame_s = simulation.scene.settings.frame_s;
+  reached_s = 0.0;
+  ImplicitIsland& island = engine.implicitIslands[static_cast<std::size_t>(step.blocks.front())];
+  const bool forced = holdsTether(step) || isPushed(step);
+  const bool wasForced = engine.clock[static_cast<std::size_t>(step.blocks.front())].forced;
+  if (wasForced && !forced) forgetSteps(step);
+  int steps = implicitSteps(step, forced, forced == wasForced, heap);
+  bool fits = implicitStepsFit(step, frame_s / steps);
+  if (!fits && steps < kImplicitSteps && simulation.scene.settings.substeps == 0) {
+    steps = kImplicitSteps;
+    fits = implicitStepsFit(step, frame_s / steps);
+  }
+  for (const std::int32_t block : step.blocks) {
+    BlockClock& clock = engine.clock[static_cast<std::size_t>(block)];
+    clock.explicitFrames = std::max(0, clock.explicitFrames - 1);
+    clock.forced = forced;
+  }
+  // Where nothing has come or gone since, the forces are those that the last frame ended with.
+  const bool known = island.forcesKnown && !engine.regrouped && !wasForced && !forced;
+  island.forcesKnown = false;
+  if (!fits) return outcome;
+  const auto takeSteps = [&](int count) {
+    steps = count;
+    step.drift_s = (frame_s - reached_s) / count;
+    setJacobians(step, endShare(simulation.scene.settings.method) * step.drift_s);
+  };
+  takeSteps(steps);
+  // A heap that steps do not converge for lies well with rigid ones, as it did before.
+  step.scaleMost = 1.0;
+  island.forcesKnown = known;
+  while (steps > 0) {
+    step.time_s = simulation.time_s + reached_s;
+    step.gravity = simulation.scene.gravity.at(step.time_s + step.drift_s);  // forces are those of the step's end
+    const int finer = finerSteps(1.0 - reached_s / frame_s, steps);
+    const bool finerFollow = finer > steps && simulation.scene.settings.substeps == 0 && !heap;
+    if (!stepImplicit(step, finerFollow || heap)) {
+      if (finerFollow) {
+        takeSteps(finer);
+        continue;
+      }
+      for (const std::int32_t block : step.blocks)
+        engine.clock[static_cast<std::size_t>(block)].explicitFrames = heap ? kFallenFrames : kExplicitFrames;
+      return outcome;
+    }
+    ++outcome.substeps;
+    --steps;
+    reached_s = frame_s - steps * step.drift_s;
+    const std::uint64_t looked = step.counters.manifoldRefreshes + step.counters.contactsBorn;
+    outcome.inside = updateContacts(step, renewalOfImplicitSteps(simulation));
+    if (!outcome.inside) return outcome;
+    if (looked != step.counters.manifoldRefreshes + step.counters.contactsBorn) {
+      island.forcesKnown = false;
+    }
+  }
+  return outcome;
+}
+
+}  // namespace springtower

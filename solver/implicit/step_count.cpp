@@ -1,0 +1,93 @@
+#include "solver/implicit/step_count.h"
+
+#include "core/lanes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace springtower {
+
+namespace {
+
+// Share of a swing's amplitude that the steps of a frame may take away. A kicked tower at 0.01 mm then keeps after 2 s within 13
+// % of what explicit steps leave it; with a hundredth within 27 %. At less than half of it fewer steps will do.
+constexpr double kMostDamping = 1.0 / 150.0;
+constexpr double kLittleDamping = 1.0 / 300.0;
+// Frames over which ringing is looked at: more than a quarter of a swing that asks for more than one step.
+constexpr double kFrames = 5.0;
+
+// Angle, rad, by which the fastest ringing turns in a frame that is followed: that of the most steps. A jump of the acceleration
+// in one step, as of a force that a user sets each frame, counts for no more: it looks the faster the finer the steps are.
+constexpr double kFastestTurn = 1.9;
+
+double fourthPower(double value) {
+  return value * value * value * value;
+}
+
+int stepsFor(double ringing, double damping) {
+  const double steps = std::cbrt(ringing / (4.0 * damping));
+  return static_cast<int>(std::ceil(std::clamp(steps, 1.0, static_cast<double>(kMostRingingSteps))));
+}
+
+// Distance that a calm block's corners go in a frame, in tolerances.
+constexpr double kCalm = 0.1;
+
+}  // namespace
+
+double calmSpeed(const Simulation& simulation) {
+  return kCalm * simulation.tolerance_m / simulation.scene.settings.frame_s;
+}
+
+SPRINGTOWER_KERNEL
+void noteRinging(IslandStep& step, double effective_s) {
+  Engine& engine = step.engine;
+  const CornerArray& velocity = step.simulation.state.velocity;
+  const double frame_s = step.simulation.scene.settings.frame_s;
+  const double share = step.drift_s / (kFrames * frame_s);
+  const double rate = 1.0 / (step.drift_s * step.drift_s);
+  const double ofVelocity = 3.0 / effective_s;
+  const double fastest = fourthPower(kFastestTurn / frame_s);
+  for (const std::int32_t block : step.blocks) {
+    const auto b = static_cast<std::size_t>(block);
+    BlockClock& clock = engine.clock[b];
+    if (!(clock.history_s > 0.0)) continue;
+    double jerk[kCorners] = {};
+    double speed[kCorners] = {};
+    for (std::size_t a = 0; a < 3; ++a) {
+      const double pull = 3.0 * effective_s * step.gravity[static_cast<Eigen::Index>(a)];
+      const double* v = velocity.values(a, b);
+      const double* before = engine.previousVelocity.values(a, b);
+      const double* history = engine.history.values(a, b);
+      const double* target = engine.target.values(a, b);
+      for (std::size_t c = 0; c < kCorners; ++c) {
+        // The change in this step less that in the step before, which the target tells: 3 ((target - history) / h' - pull -
+        // before).
+        const double change = v[c] + 2.0 * before[c] + pull - ofVelocity * (target[c] - history[c]);
+        jerk[c] += change * change;
+        speed[c] += v[c] * v[c];
+      }
+    }
+    const double mass = step.simulation.model.mass[b];
+    clock.motion += share * (mass * std::accumulate(speed, speed + kCorners, 0.0) - clock.motion);
+    const double jerkNow = mass * rate * rate * std::accumulate(jerk, jerk + kCorners, 0.0);
+    clock.jerk += share * (std::min(jerkNow, fastest * clock.motion) - clock.jerk);
+  }
+}
+
+int stepsForRinging(const IslandStep& step, int present) {
+  const Simulation& simulation = step.simulation;
+  const double frame_s = simulation.scene.settings.frame_s;
+  const double calm = calmSpeed(simulation);
+  double jerk = 0.0;
+  double motion = 0.0;
+  for (const std::int32_t block : step.blocks) {
+    const auto b = static_cast<std::size_t>(block);
+    jerk += step.engine.clock[b].jerk;
+    motion += step.engine.clock[b].motion + simulation.model.mass[b] * static_cast<double>(kCorners) * calm * calm;
+  }
+  const double ringing = fourthPower(frame_s) * jerk / motion;  // (w T)^4
+  return std::clamp(present, stepsFor(ringing, kMostDamping), stepsFor(ringing, kLittleDamping));
+}
+
+}  // namespace springtower

@@ -1,0 +1,345 @@
+#include "solver/implicit/system.h"
+
+#include "core/hash.h"
+#include "core/lanes.h"
+#include "solver/contact/evaluate_forces.h"
+#include "solver/implicit/friction_tangent.h"
+#include "solver/world/island_step.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace springtower {
+
+namespace {
+
+// Products of 12 x 12 blocks that a factorisation may take: some 3 s of one thread, and a list of 120 MB. A tower of 18 rows
+// takes 800, a wall of 5000 blocks 340,000, a hundred layers deep solid of 5000 blocks 6 million.
+constexpr std::size_t kMostProducts = 30'000'000;
+// Products, over those that it was found for, from which on an order of elimination is found anew.
+constexpr double kWorseOrder = 1.25;
+
+using Axes = std::array<std::array<double, 3>, 3>;
+using Weights = std::array<double, kAffine>;
+using Coupling = std::array<std::array<double, kAffine>, kAffine>;
+
+// Orthonormal axes of a block: its mean edges, straightened (Gram & Schmidt).
+Axes axesOf(const AffineField& place) {
+  Vec3 x(place.side[0][0], place.side[0][1], place.side[0][2]);
+  Vec3 y(place.side[1][0], place.side[1][1], place.side[1][2]);
+  x.normalize();
+  y -= y.dot(x) * x;
+  y.normalize();
+  const Vec3 z = x.cross(y);
+  return {{{x[0], x[1], x[2]}, {y[0], y[1], y[2]}, {z[0], z[1], z[2]}}};
+}
+
+// Adds a block's own matrix, turned into the world's frame.
+void addOwn(const BlockJacobian& jacobian, const Axes& axes, float* diagonal) {
+  for (std::size_t p = 0; p < kAffine; ++p) {
+    for (std::size_t q = 0; q < kAffine; ++q) {
+      double half[3][3];
+      for (std::size_t i = 0; i < 3; ++i) {
+        for (std::size_t k = 0; k < 3; ++k) {
+          half[i][k] = 0.0;
+          for (std::size_t j = 0; j < 3; ++j) half[i][k] += jacobian.affine[3 * p + i][3 * q + j] * axes[j][k];
+        }
+      }
+      for (std::size_t i = 0; i < 3; ++i) {
+        for (std::size_t k = 0; k < 3; ++k) {
+          double sum = 0.0;
+          for (std::size_t j = 0; j < 3; ++j) sum += axes[j][i] * half[j][k];
+          diagonal[kNodeSize * (3 * p + i) + 3 * q + k] += static_cast<float>(sum);
+        }
+      }
+    }
+  }
+}
+
+// Twelve numbers, [vector][component].
+using ModeRow = std::array<double, kNodeSize>;
+
+SPRINGTOWER_INLINE void ofVectors(const double* value, ModeRow& row) {
+  for (std::size_t e = 0; e < kNodeSize; ++e) row[e] = value[e / 3];
+}
+SPRINGTOWER_INLINE void ofComponents(const double* value, ModeRow& row) {
+  for (std::size_t e = 0; e < kNodeSize; ++e) row[e] = value[e % 3];
+}
+
+// Adds sign * (normal[p][q] n n^T + tangential[p][q] (1 - n n^T)) for all pairs of vectors.
+SPRINGTOWER_INLINE void addContacts(const Coupling& normal, const Coupling& tangential, const Vec3& n, double sign,
+                                    float* block) {
+  ModeRow components;
+  ofComponents(n.data(), components);
+  for (std::size_t p = 0; p < kAffine; ++p) {
+    double alongOf[kAffine], acrossOf[kAffine];
+    for (std::size_t q = 0; q < kAffine; ++q) {
+      alongOf[q] = sign * (normal[p][q] - tangential[p][q]);
+      acrossOf[q] = sign * tangential[p][q];
+    }
+    ModeRow along, across;
+    ofVectors(alongOf, along);
+    ofVectors(acrossOf, across);
+    for (std::size_t i = 0; i < 3; ++i) {
+      float* to = block + kNodeSize * (3 * p + i);
+      const double component = n[static_cast<Eigen::Index>(i)];
+      for (std::size_t e = 0; e < kNodeSize; ++e)
+        to[e] += static_cast<float>(along[e] * component * components[e] + (e % 3 == i ? across[e] : 0.0));
+    }
+  }
+}
+
+// Takes factor * (p (x) s) (q (x) s)^T from a block of the matrix: along `s` a sliding point resists no further.
+SPRINGTOWER_INLINE void takeAlong(double factor, const Weights& p, const Weights& q, const Vec3& s, float* block) {
+  ModeRow vectors, components;
+  ofVectors(q.data(), vectors);
+  ofComponents(s.data(), components);
+  for (std::size_t i = 0; i < kNodeSize; ++i) {
+    const double row = factor * p[i / 3] * s[static_cast<Eigen::Index>(i % 3)];
+    for (std::size_t e = 0; e < kNodeSize; ++e) block[kNodeSize * i + e] -= static_cast<float>(row * vectors[e] * components[e]);
+  }
+}
+
+SPRINGTOWER_INLINE void addProduct(double factor, const Weights& p, const Weights& q, Coupling& sum) {
+  for (std::size_t i = 0; i < kAffine; ++i) {
+    for (std::size_t k = 0; k < kAffine; ++k) sum[i][k] += factor * p[i] * q[k];
+  }
+}
+
+SPRINGTOWER_KERNEL
+void addManifold(const IslandStep& step, ImplicitIsland& island, std::size_t at, double step_s) {
+  const Engine& engine = step.engine;
+  const Manifold& m = engine.pairs[static_cast<std::size_t>(island.touching[at])].manifold;
+  const ContactMask mask = island.mask[at];
+  if ((mask & 0xFFU) == 0) return;
+  const auto upper = static_cast<std::size_t>(m.upper);
+  const BlockFrame& frameUpper = engine.frames[upper];
+  const BlockFrame* frameLower = m.lower < 0 ? nullptr : &engine.frames[static_cast<std::size_t>(m.lower)];
+  static const AffineField kStill{};
+  const PointForces points = pointForces(m, {&frameUpper, &kStill, &kStill}, {frameLower, &kStill, &kStill}, step.law);
+
+  const PointMemory& memory = engine.trial[static_cast<std::size_t>(island.touching[at])];
+  BlockCholesky& matrix = island.matrix;
+  const auto diagonalOf = [&](std::size_t block) {
+    return matrix.diagonal.data() +
+           kNodeMatrix * static_cast<std::size_t>(matrix.position[static_cast<std::size_t>(engine.nodeOf[block])]);
+  };
+  const std::vector<std::uint8_t>& asleep = step.simulation.asleep;
+  float* ofUpper = asleep[upper] == 0 ? diagonalOf(upper) : nullptr;
+  float* ofLower = frameLower != nullptr && asleep[static_cast<std::size_t>(m.lower)] == 0
+                       ? diagonalOf(static_cast<std::size_t>(m.lower))
+                       : nullptr;
+  const BlockSlot& slot = island.slot[at];
+  float* ofBoth = slot.at >= 0 ? matrix.lower.data() + kNodeMatrix * static_cast<std::size_t>(slot.at) : nullptr;
+
+  Coupling upperNormal{}, upperTangential{}, lowerNormal{}, lowerTangential{}, crossNormal{}, crossTangential{};
+  for (std::size_t i = 0; i < static_cast<std::size_t>(m.count); ++i) {
+    if ((mask >> i & 1U) == 0) continue;
+    const auto [normal, tangential, along] = pointStiffness(step, m, memory, mask, i, step_s);
+    const bool slides = (mask >> (8 + i) & 1U) != 0;
+    const Weights wu = weightsAt(frameUpper, points.place[i]);
+    if (slides && ofUpper != nullptr) takeAlong(tangential, wu, wu, along, ofUpper);
+    addProduct(normal, wu, wu, upperNormal);
+    addProduct(tangential, wu, wu, upperTangential);
+    if (frameLower == nullptr) continue;
+    const Weights wl = weightsAt(*frameLower, points.lowerPlace[i]);
+    addProduct(normal, wl, wl, lowerNormal);
+    addProduct(tangential, wl, wl, lowerTangential);
+    if (slides && ofLower != nullptr) takeAlong(tangential, wl, wl, along, ofLower);
+    if (slides && ofBoth != nullptr) takeAlong(-tangential, slot.firstIsRow ? wu : wl, slot.firstIsRow ? wl : wu, along, ofBoth);
+    addProduct(normal, slot.firstIsRow ? wu : wl, slot.firstIsRow ? wl : wu, crossNormal);
+    addProduct(tangential, slot.firstIsRow ? wu : wl, slot.firstIsRow ? wl : wu, crossTangential);
+  }
+  if (ofUpper != nullptr) addContacts(upperNormal, upperTangential, points.direction, 1.0, ofUpper);
+  if (ofLower != nullptr) addContacts(lowerNormal, lowerTangential, points.direction, 1.0, ofLower);
+  if (ofBoth != nullptr) addContacts(crossNormal, crossTangential, points.direction, -1.0, ofBoth);
+}
+
+// Adds the hand's springs on its block; of those at their limit what is symmetric and takes nothing away.
+void addTether(const IslandStep& step, ImplicitIsland& island, double step_s) {
+  const Simulation& simulation = step.simulation;
+  TetherMatrix resistance =
+      tetherResistance(simulation.tether, simulation.model, simulation.state, step.time_s + step.drift_s, step_s);
+  if (island.limited) {
+    const Eigen::SelfAdjointEigenSolver<TetherMatrix> modes(0.5 * (resistance + resistance.transpose()));
+    resistance = modes.eigenvectors() * modes.eigenvalues().cwiseMax(0.0).asDiagonal() * modes.eigenvectors().transpose();
+  }
+  const auto node = static_cast<std::size_t>(step.engine.nodeOf[index(island.tether.block)]);
+  float* diagonal = island.matrix.diagonal.data() + kNodeMatrix * static_cast<std::size_t>(island.matrix.position[node]);
+  for (std::size_t i = 0; i < kNodeSize; ++i) {
+    for (std::size_t k = 0; k < kNodeSize; ++k)
+      diagonal[kNodeSize * i + k] += static_cast<float>(resistance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)));
+  }
+}
+
+// Stiffens every freedom by what its diagonal entry may be off by, as sums and products round. Steps from rest are so long that
+// inertia is less than that beside the stiff contacts of 144 rows, and whether such a matrix is positive definite would else be
+// chance: with contact laws that differed by little, 144 rows took from 2 s to for ever to find where they rest.
+void stiffenByRounding(BlockCholesky& matrix) {
+  constexpr float kRounded = 1.0F + 64.0F * std::numeric_limits<float>::epsilon();
+  for (std::size_t j = 0; j < matrix.nodeCount(); ++j) {
+    float* block = matrix.diagonal.data() + kNodeMatrix * j;
+    for (std::size_t i = 0; i < kNodeSize; ++i) block[(kNodeSize + 1) * i] *= kRounded;
+  }
+}
+
+std::size_t firstBlock(const IslandStep& step) {
+  return static_cast<std::size_t>(step.blocks.front());
+}
+
+// Whether a touching pair couples two nodes: neither side is the floor or asleep.
+bool isCoupled(const IslandStep& step, const Manifold& m) {
+  const std::vector<std::uint8_t>& asleep = step.simulation.asleep;
+  return m.lower >= 0 && asleep[static_cast<std::size_t>(m.upper)] == 0 && asleep[static_cast<std::size_t>(m.lower)] == 0;
+}
+
+// Fills island.touching, and island.edges with the nodes that these pairs couple.
+void findEdges(const IslandStep& step, ImplicitIsland& island) {
+  const Engine& engine = step.engine;
+  island.edges.clear();
+  island.touching.clear();
+  for (const std::int32_t at : step.pairs) {
+    const Manifold& m = engine.pairs[static_cast<std::size_t>(at)].manifold;
+    if (m.touch == Touch::apart) continue;
+    island.touching.push_back(at);
+    if (!isCoupled(step, m)) continue;
+    island.edges.push_back({engine.nodeOf[static_cast<std::size_t>(m.upper)], engine.nodeOf[static_cast<std::size_t>(m.lower)]});
+  }
+}
+
+// From the bottom up, or by dissection where less fills in.
+void chooseOrder(ImplicitIsland& island) {
+  orderBottomUp(island.order);
+  if (island.order.centre.size() <= kNarrowBlocks) return;
+  const bool fits = findPattern(island.order.nodes, island.edges, kMostProducts, island.matrix);
+  const std::size_t products = fits ? island.matrix.products : kMostProducts + 1;
+  orderByDissection(island.edges, island.order);
+  if (!findPattern(island.order.nodes, island.edges, products - 1, island.matrix)) orderBottomUp(island.order);
+}
+
+// Lays out the matrix for island.edges; false where it would take too many products. A wide island keeps its order of elimination
+// while its blocks are the same, and all of the layout where the edges are among those that it has room for: contacts come
+// and go far more often than what is best to be eliminated first changes. `members` is a hash of the blocks.
+bool layOutMatrix(const IslandStep& step, ImplicitIsland& island, std::uint64_t members) {
+  BlockCholesky& matrix = island.matrix;
+  const bool known = island.members == members && step.blocks.size() > kNarrowBlocks;
+  if (known && holds(matrix, island.edges)) return true;
+  if (known && analyse(island.order.nodes, island.edges, kMostProducts, matrix) &&
+      static_cast<double>(matrix.products) <= kWorseOrder * static_cast<double>(island.orderProducts))
+    return true;
+  island.members = 0;
+  island.order.centre.clear();
+  for (const std::int32_t block : step.blocks)
+    island.order.centre.push_back(centre(step.simulation.state.position, static_cast<std::size_t>(block)));
+  chooseOrder(island);
+  if (!analyse(island.order.nodes, island.edges, kMostProducts, matrix)) return false;
+  island.members = members;
+  island.orderProducts = matrix.products;
+  return true;
+}
+
+void findSlots(const IslandStep& step, ImplicitIsland& island) {
+  const Engine& engine = step.engine;
+  island.slot.clear();
+  for (const std::int32_t at : island.touching) {
+    const Manifold& m = engine.pairs[static_cast<std::size_t>(at)].manifold;
+    island.slot.push_back(isCoupled(step, m) ? slotOf(island.matrix, engine.nodeOf[static_cast<std::size_t>(m.upper)],
+                                                      engine.nodeOf[static_cast<std::size_t>(m.lower)])
+                                             : BlockSlot{});
+  }
+}
+
+}  // namespace
+
+std::array<double, kAffine> weightsAt(const BlockFrame& frame, const Vec3& place) {
+  const Vec3 arm = place - Vec3(frame.place.centre[0], frame.place.centre[1], frame.place.centre[2]);
+  Weights weights{1.0, 0.0, 0.0, 0.0};
+  for (std::size_t a = 0; a < 3; ++a)
+    weights[1 + a] = frame.dual[a][0] * arm[0] + frame.dual[a][1] * arm[1] + frame.dual[a][2] * arm[2];
+  return weights;
+}
+
+void layOut(IslandStep& step, ImplicitIsland& island) {
+  Engine& engine = step.engine;
+  const std::vector<std::uint8_t>& asleep = step.simulation.asleep;
+  Hash hash;
+  for (const std::int32_t block : step.blocks) hash.word(static_cast<std::uint64_t>(block));
+  const std::uint64_t members = hash.value();
+  for (const std::int32_t at : step.pairs) {
+    const Manifold& m = engine.pairs[static_cast<std::size_t>(at)].manifold;
+    if (m.touch == Touch::apart) continue;
+    hash.word(static_cast<std::uint64_t>(m.upper) << 32U | static_cast<std::uint32_t>(m.lower));
+    hash.word(static_cast<std::uint64_t>(at));
+    if (m.lower >= 0) {
+      hash.word(std::uint64_t{asleep[static_cast<std::size_t>(m.upper)]} << 1U | asleep[static_cast<std::size_t>(m.lower)]);
+    }
+  }
+  // A block may have been in another island since this layout was made, so its place in it is written every time.
+  const std::size_t count = step.blocks.size();
+  for (std::size_t i = 0; i < count; ++i) engine.nodeOf[static_cast<std::size_t>(step.blocks[i])] = static_cast<std::int32_t>(i);
+  const std::uint64_t pattern = hash.value();
+  if (pattern == island.pattern) return;
+
+  findEdges(step, island);
+  island.pattern = pattern;
+  island.factorised = false;
+  if (!engine.sparseFactors.empty()) engine.sparseFactors[firstBlock(step)].analysed = false;
+  island.tooDense = !layOutMatrix(step, island, members);
+  if (island.tooDense) return;
+  findSlots(step, island);
+  island.mask.assign(island.touching.size(), 0);
+  island.axes.resize(count);
+  island.residual.resize(count);
+  island.direction.resize(count);
+  island.affine.resize(kNodeSize * count);
+}
+
+TetherStiffness tetherStiffness(const IslandStep& step, double step_s) {
+  if (!holdsTether(step)) return {};
+  const Tether& tether = step.simulation.tether;
+  return {tether.block, tether.stiffness_n_m + tether.damping_n_s_m / step_s,
+          tether.cornerStiffness_n_m + tether.cornerDamping_n_s_m / step_s,
+          tether.tiltStiffness_n_m + tether.tiltDamping_n_s_m / step_s};
+}
+
+bool isTetherLimited(const IslandStep& step) {
+  const GripForce& now = step.engine.tetherNow;
+  return holdsTether(step) && (now.limited || now.acrossLimited || now.turnLimited);
+}
+
+bool assemble(IslandStep& step, ImplicitIsland& island, double step_s) {
+  clear(island.matrix);
+  for (std::size_t i = 0; i < step.blocks.size(); ++i) {
+    island.axes[i] = axesOf(step.engine.frames[static_cast<std::size_t>(step.blocks[i])].place);
+    addOwn(jacobianOf(island, i), island.axes[i],
+           island.matrix.diagonal.data() + kNodeMatrix * static_cast<std::size_t>(island.matrix.position[i]));
+  }
+  island.factorTangents.clear();
+  island.directions = 0;
+  for (std::size_t at = 0; at < island.touching.size(); ++at) {
+    addManifold(step, island, at, step_s);
+    if (island.mask[at] > 0xFFU) addFactorTangents(step, island, at, island.mask[at], step_s, island.factorTangents);
+  }
+  island.tether = tetherStiffness(step, step_s);
+  island.limited = isTetherLimited(step);
+  if (island.tether.block != kFloor) addTether(step, island, step_s);
+  if (step.unforced) stiffenByRounding(island.matrix);
+  island.step_s = step_s;
+  ++step.counters.factorisations;
+  std::vector<SparseFactors>& sparse = step.engine.sparseFactors;
+  island.factorised = sparse.empty() ? factorise(island.matrix) : factorise(island.matrix, island.slot, sparse[firstBlock(step)]);
+  return island.factorised;
+}
+
+void solve(IslandStep& step, ImplicitIsland& island) {
+  std::vector<SparseFactors>& sparse = step.engine.sparseFactors;
+  if (sparse.empty()) {
+    solve(island.matrix, island.affine);
+  } else {
+    solve(island.matrix, sparse[firstBlock(step)], island.affine);
+  }
+}
+
+}  // namespace springtower

@@ -1,0 +1,32 @@
+#pragma once
+
+#include "solver/block/affine.h"
+#include "solver/world/implicit_island.h"
+
+#include <array>
+
+namespace springtower {
+
+struct IslandStep;
+
+/// Weights of a block's affine vectors at a place in space.
+std::array<double, kAffine> weightsAt(const BlockFrame& frame, const Vec3& place);
+
+/// Lays out the matrix anew where blocks have begun or ceased to touch, unless the island is too dense.
+void layOut(IslandStep& step, ImplicitIsland& island);
+
+/// The hand's springs on the island's block, wherever the hand is. `step_s` as in `assemble`.
+TetherStiffness tetherStiffness(const IslandStep& step, double step_s);
+
+/// Whether the hand is at a limit of its forces.
+bool isTetherLimited(const IslandStep& step);
+
+/// Assembles and factorises for contacts that stand as `mask` says. `step_s` is the step times the method's factor. Returns false
+/// where the matrix is not positive definite.
+bool assemble(IslandStep& step, ImplicitIsland& island, double step_s);
+
+/// Solves for island.affine in place with the factors at hand: forces (N) in, displacements (m) out, in the world's frame, by
+/// node. Precondition: island.factorised.
+void solve(IslandStep& step, ImplicitIsland& island);
+
+}  // namespace springtower

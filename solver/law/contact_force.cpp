@@ -1,0 +1,321 @@
+#include "solver/law/contact_force.h"
+
+#include "core/lanes.h"
+#include "solver/law/pair_geometry.h"
+#include "solver/law/point_lanes.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace springtower {
+
+namespace {
+
+constexpr double kLeastRelaxingRatio = 1e-9;  // stands for none: no branch, no lag
+constexpr double kLeastShare = 1e-30;         // of friction, left to a point that slides unpressed: that it slides must be seen
+
+// Inverse mass of a point of a face whose four points are pushed alike, over that of the block: 4 (1 + 3), as it moves and
+// squashes.
+constexpr double kFlatInverse = 16.0;
+
+struct LawStep {
+  const ContactLaw& law;
+  const ContactStep& step;
+  double stiffness;     // N/m
+  double impactFactor;  // stiffness scale per squared approach speed
+  double scaleKeep;     // what is left of a scale's excess after the step
+  double relaxGain;     // how much of its lag the relaxing branch forgets in the step
+  double perAdvance;    // 1/s; 0 where the memory is not advanced
+  double pointMass;     // kg that a point moves at least: all four of a face that is hit flat push and squash the block
+};
+
+SPRINGTOWER_INLINE LawStep lawStep(const Manifold& m, const ContactLaw& law, const ContactStep& step, double reducedMass) {
+  const double aim = law.impactPenetration_m;
+  const double stiffness = m.lower < 0 ? law.floorStiffness_n_m : law.stiffness_n_m;
+  return {law,
+          step,
+          stiffness,
+          reducedMass / (stiffness * aim * aim),
+          1.0 / (1.0 + step.advance_s / law.scaleTime_s),
+          step.advance_s / (law.relaxingTime_s + step.advance_s),
+          step.advance_s > 0.0 ? 1.0 / step.advance_s : 0.0,
+          reducedMass / kFlatInverse};
+}
+
+SPRINGTOWER_INLINE bool any(const LaneMask& mask) {
+  return (mask[0] | mask[1] | mask[2] | mask[3]) != 0;
+}
+
+// The contact law on four points. `relative` is the velocity of upper against lower, `carried` the one that moved them since the
+// memory was last brought up to date; `inUse` is 1 for lanes that hold a point.
+SPRINGTOWER_INLINE void pointLaw(const LawStep& s, const Lanes& depth, const Lanes* relative, const Lanes* carried,
+                                 const double* normal, const Lanes& inUse, PointLanes& p) {
+  const Lanes zero = {0.0, 0.0, 0.0, 0.0};
+  const Lanes one = zero + 1.0;
+  const ContactLaw& law = s.law;
+  const Lanes closing = -(relative[0] * normal[0] + relative[1] * normal[1] + relative[2] * normal[2]);
+
+  // A point that is reached in this step starts with no force: its offset is the depth it is found at (or, seen from a step's
+  // end, the surface), so it adds no energy. It is stiffened so that its impact stops within the depth aimed at. The offset
+  // shrinks as the point lifts, where it stores nothing.
+  const LaneMask touching = (depth > zero) & (inUse > zero);
+  const LaneMask known = touching & (p.live > zero);
+  Lanes impact = s.impactFactor * closing * closing;
+  impact = impact > one ? impact : one;
+  impact = impact < s.step.scaleMost ? impact : zero + s.step.scaleMost;
+  p.scale = known ? 1.0 + (p.scale - 1.0) * s.scaleKeep : impact;
+  const Lanes lower = p.offset < depth ? p.offset : depth;
+  p.offset = known ? lower : depth * s.step.bornOffset;
+
+  const Lanes elastic = depth - p.offset;
+  const Lanes relaxed = p.relaxed + (elastic - p.relaxed) * s.relaxGain;
+  const Lanes pushedOut =
+      elastic * (1.0 + 1.0 / std::max(law.relaxingRatio, kLeastRelaxingRatio));  // beyond this the branch would pull
+  p.relaxed = known ? (relaxed < pushedOut ? relaxed : pushedOut) : zero;
+  const Lanes stiffness = s.stiffness * p.scale;
+  // Seen from a step's end, a point that is reached in the step has been pressed for a part of it: its dashpot has closed by no
+  // more than its depth, and no jump at the surface keeps the step from a solution. (Where such points begin to push at the depth
+  // they are found at, as in other steps, they do not push yet.)
+  const Lanes damped = known | (depth > closing * s.step.advance_s) ? closing : depth * s.perAdvance;
+  Lanes push = stiffness * (elastic + law.relaxingRatio * (elastic - p.relaxed) + law.dampingTime_s * damped);
+  push = touching & (push > zero) & (elastic > zero) ? push : zero;
+  if (s.step.kick_s > 0.0 && any(p.scale > one)) {
+    // A point that is thrown back within the step is given no more energy than it came with and its spring stores.
+    const Lanes spring = stiffness * (elastic + law.relaxingRatio * (elastic - p.relaxed));
+    const Lanes given = closing * closing + spring * (elastic - closing * s.step.kick_s) / s.pointMass;
+    Lanes back;
+    squareRoot(given > zero ? given : zero, back);
+    const Lanes most = (closing + back) * (s.pointMass / s.step.kick_s);
+    push = (p.scale > one) & (push > most) ? (most > zero ? most : zero) : push;
+  }
+  p.live = touching ? (push > zero ? one : zero + kUnpressed) : zero;
+  p.normalForce = push;
+
+  // Friction: carry the stretch along, keep it tangential, and bound it by the cone.
+  const Lanes carriedNormal = carried[0] * normal[0] + carried[1] * normal[1] + carried[2] * normal[2];
+  Lanes stretch[3];
+  Lanes slip[3];
+  for (int a = 0; a < 3; ++a) {
+    stretch[a] = p.stretch[a] + (carried[a] - carriedNormal * normal[a]) * s.step.advance_s;
+    slip[a] = relative[a] + closing * normal[a];
+  }
+  const Lanes outOfPlane = stretch[0] * normal[0] + stretch[1] * normal[1] + stretch[2] * normal[2];
+  const Lanes tangential = stiffness * law.tangentialRatio;
+  Lanes friction[3];
+  for (int a = 0; a < 3; ++a) {
+    stretch[a] -= outOfPlane * normal[a];
+    friction[a] = -tangential * (stretch[a] + law.dampingTime_s * slip[a]);
+  }
+  const Lanes squared = friction[0] * friction[0] + friction[1] * friction[1] + friction[2] * friction[2];
+  const Lanes coefficient = p.sliding > zero ? zero + law.kineticFriction : zero + law.staticFriction;
+  const Lanes sticking = coefficient * push;
+  const LaneMask slides = squared > sticking * sticking;
+  if (!any(slides)) {
+    p.sliding = zero;
+    for (int a = 0; a < 3; ++a) {
+      p.stretch[a] = touching ? stretch[a] : zero;
+      p.force[a] = push * normal[a] + friction[a];
+    }
+    return;
+  }
+  Lanes size;
+  squareRoot(squared, size);
+  const Lanes keep = slides ? law.kineticFriction * push / size : one;
+  p.sliding = slides & touching ? (keep > kLeastShare ? keep : zero + kLeastShare) : zero;
+  // What slips frees a little of the offset; friction's own loss pays for the work.
+  Lanes stretchSize;
+  squareRoot(stretch[0] * stretch[0] + stretch[1] * stretch[1] + stretch[2] * stretch[2], stretchSize);
+  const Lanes freed = p.offset - law.offsetPerSlip * (1.0 - keep) * stretchSize;
+  p.offset = known ? (freed > zero ? freed : zero) : p.offset;
+  for (int a = 0; a < 3; ++a) {
+    p.stretch[a] = touching ? stretch[a] * keep : zero;
+    p.force[a] = push * normal[a] + friction[a] * keep;
+  }
+}
+
+// Sums of three lane vectors at once: [sum a, sum b, sum c, 0].
+SPRINGTOWER_INLINE void sums(const Lanes& a, const Lanes& b, const Lanes& c, Lanes& result) {
+  const Lanes none = {0.0, 0.0, 0.0, 0.0};
+  Lanes even, odd;
+  shuffle<0, 4, 2, 6>(a, b, even);
+  shuffle<1, 5, 3, 7>(a, b, odd);
+  const Lanes ab = even + odd;
+  shuffle<0, 4, 2, 6>(c, none, even);
+  shuffle<1, 5, 3, 7>(c, none, odd);
+  const Lanes cd = even + odd;
+  shuffle<0, 1, 4, 5>(ab, cd, even);
+  shuffle<2, 3, 6, 7>(ab, cd, odd);
+  result = even + odd;
+}
+
+// Puts [force, moment along u, moment along v] of one component into a block's affine forces.
+SPRINGTOWER_INLINE void place(const Lanes& total, double sign, const FaceAxes& face, std::size_t k, AffineField& force) {
+  force.centre[k] = sign * total[0];
+  force.side[face.across][k] = sign * face.side * total[0];
+  force.side[face.u][k] = sign * total[1];
+  force.side[face.v][k] = sign * total[2];
+}
+
+template <bool Floor, bool SameMotion>
+SPRINGTOWER_INLINE void faceForces(const Manifold& m, const ContactSide& upper, const ContactSide& lower, const LawStep& law,
+                                   PointMemory* keep, PairForce& result, PointForces* report) {
+  const FaceAxes& upperFace = kFaceAxes[static_cast<std::size_t>(m.incidentFace)];
+  const FaceAxes& lowerFace = kFaceAxes[static_cast<std::size_t>(m.referenceFace)];
+  FaceField placeUpper, motionUpper, carriedUpper, placeLower, motionLower, carriedLower;
+  faceOf(upper.frame->place, upperFace, placeUpper);
+  faceOf(*upper.motion, upperFace, motionUpper);
+  if (!SameMotion) faceOf(*upper.carried, upperFace, carriedUpper);
+  double normal[3] = {0.0, 0.0, 1.0};
+  double dualU[3], dualV[3];
+  if (!Floor) {
+    faceOf(lower.frame->place, lowerFace, placeLower);
+    faceOf(*lower.motion, lowerFace, motionLower);
+    if (!SameMotion) faceOf(*lower.carried, lowerFace, carriedLower);
+    for (std::size_t k = 0; k < 3; ++k) {
+      normal[k] = 2.0 * lowerFace.side * lower.frame->normal[lowerFace.across][k];
+      dualU[k] = lower.frame->dual[lowerFace.u][k];
+      dualV[k] = lower.frame->dual[lowerFace.v][k];
+    }
+  }
+
+  const Lanes zero = {0.0, 0.0, 0.0, 0.0};
+  Lanes onUpper[3] = {zero, zero, zero};
+  Lanes onLower[3] = {zero, zero, zero};
+  const auto count = static_cast<std::size_t>(m.count);
+  for (std::size_t first = 0; first < count; first += 4) {
+    Lanes u, v;
+    load(m.u.data() + first, u);
+    load(m.v.data() + first, v);
+    const double left = static_cast<double>(count - first);
+    const Lanes inUse = Lanes{0.0, 1.0, 2.0, 3.0} < left ? zero + 1.0 : zero;
+
+    Lanes point[3], relative[3], carried[3];
+    at(placeUpper, u, v, point);
+    at(motionUpper, u, v, relative);
+    if (!SameMotion) at(carriedUpper, u, v, carried);
+    Lanes depth = -point[2];
+    Lanes lowerU = zero;
+    Lanes lowerV = zero;
+    if (!Floor) {
+      Lanes arm[3];
+      for (int k = 0; k < 3; ++k) arm[k] = point[k] - placeLower.centre[k];
+      depth = -(arm[0] * normal[0] + arm[1] * normal[1] + arm[2] * normal[2]);
+      lowerU = arm[0] * dualU[0] + arm[1] * dualU[1] + arm[2] * dualU[2];
+      lowerV = arm[0] * dualV[0] + arm[1] * dualV[1] + arm[2] * dualV[2];
+      Lanes below[3];
+      at(motionLower, lowerU, lowerV, below);
+      for (int k = 0; k < 3; ++k) relative[k] -= below[k];
+      if (!SameMotion) {
+        at(carriedLower, lowerU, lowerV, below);
+        for (int k = 0; k < 3; ++k) carried[k] -= below[k];
+      }
+    }
+
+    PointLanes points;
+    loadPoints(m, first, points);
+    pointLaw(law, depth, relative, SameMotion ? relative : carried, normal, inUse, points);
+    if (keep != nullptr) storePoints(points, first, *keep);
+    for (int k = 0; k < 3; ++k) {
+      const Lanes& f = points.force[k];
+      Lanes total;
+      sums(f, f * u, f * v, total);
+      onUpper[k] += total;
+      if (!Floor) {
+        sums(f, f * lowerU, f * lowerV, total);
+        onLower[k] += total;
+      }
+    }
+    if (report != nullptr) {
+      for (std::size_t i = 0; i < 4 && first + i < count; ++i) {
+        const std::size_t to = first + i;
+        report->depth[to] = depth[i];
+        report->normal[to] = points.normalForce[i];
+        report->direction = Vec3(normal[0], normal[1], normal[2]);
+        report->place[to] = Vec3(point[0][i], point[1][i], point[2][i]);
+        report->lowerPlace[to] = report->place[to] + depth[i] * report->direction;
+        for (std::size_t k = 0; k < 3; ++k) report->friction[to][k] = points.force[k][i] - points.normalForce[i] * normal[k];
+      }
+    }
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    place(onUpper[k], 1.0, upperFace, k, result.upper);
+    if (!Floor) place(onLower[k], -1.0, lowerFace, k, result.lower);
+  }
+}
+
+// Edges that cross: one point, whose normal is the edges' common normal and whose places are where they come closest.
+SPRINGTOWER_INLINE void edgeForces(const Manifold& m, const ContactSide& upper, const ContactSide& lower, const LawStep& law,
+                                   PointMemory* keep, PairForce& result, PointForces* report) {
+  const EdgeAxes edgeUpper = edgeAxes(m.incidentFace);
+  const EdgeAxes edgeLower = edgeAxes(m.referenceFace);
+  Crossing crossing;
+  crossingOf(upper.frame->place, edgeUpper, lower.frame->place, edgeLower, crossing);
+  const double* normal = crossing.normal;
+  const double t1 = crossing.onUpper;
+  const double t2 = crossing.onLower;
+  const double depth = -crossing.gap;
+
+  const Lanes zero = {0.0, 0.0, 0.0, 0.0};
+  Lanes relative[3], carried[3];
+  for (std::size_t k = 0; k < 3; ++k) {
+    relative[k] = zero + (onEdge(*upper.motion, edgeUpper, t1, k) - onEdge(*lower.motion, edgeLower, t2, k));
+    carried[k] = zero + (onEdge(*upper.carried, edgeUpper, t1, k) - onEdge(*lower.carried, edgeLower, t2, k));
+  }
+  PointLanes points;
+  loadPoints(m, 0, points);
+  pointLaw(law, zero + depth, relative, carried, normal, Lanes{1.0, 0.0, 0.0, 0.0}, points);
+  if (keep != nullptr) storePoints(points, 0, *keep);
+  const auto apply = [](const EdgeAxes& edge, double t, double f, std::size_t k, AffineField& force) {
+    force.centre[k] = f;
+    force.side[edge.along][k] = t * f;
+    force.side[edge.first][k] = edge.sideFirst * f;
+    force.side[edge.second][k] = edge.sideSecond * f;
+  };
+  for (std::size_t k = 0; k < 3; ++k) {
+    apply(edgeUpper, t1, points.force[k][0], k, result.upper);
+    apply(edgeLower, t2, -points.force[k][0], k, result.lower);
+  }
+  if (report != nullptr) {
+    report->depth[0] = depth;
+    report->normal[0] = points.normalForce[0];
+    report->direction = Vec3(normal[0], normal[1], normal[2]);
+    for (std::size_t k = 0; k < 3; ++k) {
+      report->friction[0][k] = points.force[k][0] - points.normalForce[0] * normal[k];
+      report->place[0][static_cast<Eigen::Index>(k)] = onEdge(upper.frame->place, edgeUpper, t1, k);
+      report->lowerPlace[0][static_cast<Eigen::Index>(k)] = onEdge(lower.frame->place, edgeLower, t2, k);
+    }
+  }
+}
+
+SPRINGTOWER_INLINE void evaluate(const Manifold& m, const ContactSide& upper, const ContactSide& lower, const LawStep& law,
+                                 PointMemory* keep, PairForce& result, PointForces* report) {
+  const bool same = upper.carried == upper.motion;
+  if (m.touch == Touch::edge) {
+    edgeForces(m, upper, lower, law, keep, result, report);
+  } else if (m.lower < 0) {
+    same ? faceForces<true, true>(m, upper, lower, law, keep, result, report)
+         : faceForces<true, false>(m, upper, lower, law, keep, result, report);
+  } else {
+    same ? faceForces<false, true>(m, upper, lower, law, keep, result, report)
+         : faceForces<false, false>(m, upper, lower, law, keep, result, report);
+  }
+}
+
+}  // namespace
+
+SPRINGTOWER_KERNEL
+void manifoldForces(const Manifold& manifold, const ContactSide& upper, const ContactSide& lower, const ContactLaw& law,
+                    const ContactStep& step, double reducedMass_kg, PointMemory* keep, PairForce& result) {
+  const LawStep constants = lawStep(manifold, law, step, reducedMass_kg);
+  evaluate(manifold, upper, lower, constants, keep, result, nullptr);
+}
+
+PointForces pointForces(const Manifold& manifold, const ContactSide& upper, const ContactSide& lower, const ContactLaw& law) {
+  PairForce unused;
+  PointForces report;
+  const ContactStep now;
+  evaluate(manifold, upper, lower, lawStep(manifold, law, now, 0.0), nullptr, unused, &report);
+  return report;
+}
+
+}  // namespace springtower

@@ -1,0 +1,21 @@
+#include "solver/reference/midpoint.h"
+
+#include "solver/reference/stages.h"
+
+namespace springtower {
+
+// The textbook midpoint method (report 4.3.2): forces half a step ahead move the whole step. Figure 4.12 as printed reads a stale
+// state there and is first order. Undamped it is never stable: amplitudes grow by (w dt)^4 / 8 a step.
+void stepMidpoint(IslandStep& step) {
+  Engine& engine = step.engine;
+  MotionState& state = step.simulation.state;
+  MotionState& middle = engine.stage[0];
+  rememberPositions(step);
+  stageAcceleration(step, state, engine.carried, step.advance_s, true, engine.stageAcceleration[0]);
+  advanceStage(step, state, state.velocity, engine.stageAcceleration[0], 0.5 * step.drift_s, middle);
+  stageAcceleration(step, middle, state.velocity, 0.5 * step.drift_s, false, engine.stageAcceleration[1]);
+  advanceStage(step, state, middle.velocity, engine.stageAcceleration[1], step.drift_s, state);
+  copyCorners(step, middle.velocity, engine.carried);
+}
+
+}  // namespace springtower

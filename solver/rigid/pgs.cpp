@@ -1,0 +1,235 @@
+#include "solver/contact/rigid_contacts.h"
+#include "solver/rigid/constraints.h"
+#include "solver/rigid/methods.h"
+#include "solver/rigid/run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace springtower {
+
+namespace {
+
+// Contacts push back like overdamped springs of an eighth of the step's rate: firm enough to hold, and what the passes have not
+// yet settled is forgotten little by little rather than kept as jitter.
+constexpr double kContactRate = 0.125;  // in steps
+constexpr double kDampingRatio = 10.0;  // of the critical
+// Share of their overlap by which blocks that fall are pushed apart in a step: the weight of what lies on one another sinks into
+// no softness, to come up again.
+constexpr double kFallPush = 0.05;
+// Overlap, in heights, from which on a pass is too little for a fall: a blow then goes through several blocks at once.
+constexpr double kDeep = 0.005;
+constexpr int kDeepPasses = 3;
+// Speed that blocks are pushed apart with at most, in sqrt(g h).
+constexpr double kPushSpeed = 0.86;
+
+// A soft constraint: `rate` of the gap is closed in a second, `mass` and `impulse` are the shares of the rigid answer and of the
+// impulse so far.
+struct Softness {
+  double rate = 0.0;
+  double mass = 1.0;
+  double impulse = 0.0;
+};
+
+Softness softness(double step_s) {
+  const double omega = 2.0 * std::numbers::pi * kContactRate / step_s;
+  const double a = 2.0 * kDampingRatio + step_s * omega;
+  const double b = step_s * omega * a;
+  return {omega / a, b / (1.0 + b), 1.0 / (1.0 + b)};
+}
+
+// What the passes ask of all points of a step.
+struct Pass {
+  double step_s;
+  double kinetic;  // coefficient of friction
+  double most;     // m/s, at which blocks are pushed apart
+  Softness soft;   // of those that overlap
+  bool push;       // whether these are pushed apart, or that is taken out of the velocities again
+};
+
+// One point: friction first, bounded by the cone of the push so far, then the push, so that along the normal the blocks do not
+// come closer than their gap.
+SPRINGTOWER_INLINE void solvePoint(const Pass& pass, std::vector<ImpulseBody>& bodies, ImpulsePoint& p) {
+  ImpulseBody& upper = bodies[static_cast<std::size_t>(p.upper)];
+  ImpulseBody& lower = bodies[static_cast<std::size_t>(p.lower)];
+  Lanes turningUpper, turningLower;
+  crossLanes(upper.spin, p.armUpper, turningUpper);
+  crossLanes(lower.spin, p.armLower, turningLower);
+  const Lanes relative = (upper.velocity + turningUpper) - (lower.velocity + turningLower);
+  const double opening = sum(p.normal * relative);
+  double least = 0.0;
+  double share = 1.0;
+  double forgotten = 0.0;
+  if (p.gap > 0.0) {
+    least = -p.gap / pass.step_s;
+  } else if (pass.push) {
+    least = std::min(-pass.soft.rate * p.gap, pass.most);
+    share = pass.soft.mass;
+    forgotten = pass.soft.impulse;
+  }
+  if (p.idle && opening >= least) return;
+
+  const Lanes slip = relative - opening * p.normal;
+
+  Lanes friction = p.friction - p.acrossMass * slip;
+  const double squared = sum(friction * friction);
+  const double most = p.coefficient * p.push;
+  p.sliding = squared > most * most;
+  if (p.sliding) friction *= std::min(p.coefficient, pass.kinetic) * p.push / __builtin_sqrt(squared);
+  const Lanes change = friction - p.friction;
+  p.friction = friction;
+  Lanes momentUpper, momentLower;
+  crossLanes(p.armUpper, change, momentUpper);
+  crossLanes(p.armLower, change, momentLower);
+
+  const double now = opening + sum(p.turnUpper * momentUpper + p.turnLower * momentLower);
+  const double push = std::max(0.0, p.push + p.normalMass * share * (least - now) - forgotten * p.push);
+  const double more = push - p.push;
+  p.push = push;
+  p.idle = push == 0.0 && most == 0.0;
+
+  Lanes turnUpper, turnLower;
+  timesLanes(upper.inverseInertia, momentUpper, turnUpper);
+  timesLanes(lower.inverseInertia, momentLower, turnLower);
+  const Lanes impulse = change + more * p.normal;
+  upper.velocity += upper.inverseMass * impulse;
+  upper.spin += turnUpper + more * p.turnUpper;
+  lower.velocity -= lower.inverseMass * impulse;
+  lower.spin -= turnLower + more * p.turnLower;
+}
+
+SPRINGTOWER_KERNEL
+void solvePoints(const Pass& pass, std::vector<ImpulseBody>& bodies, std::vector<ImpulsePoint>& points) {
+  for (ImpulsePoint& point : points) solvePoint(pass, bodies, point);
+}
+
+// The impulses of the step before, to start from.
+SPRINGTOWER_KERNEL
+void applyKnown(std::vector<ImpulseBody>& bodies, const std::vector<ImpulsePoint>& points) {
+  for (const ImpulsePoint& p : points) {
+    if (p.idle) continue;
+    ImpulseBody& upper = bodies[static_cast<std::size_t>(p.upper)];
+    ImpulseBody& lower = bodies[static_cast<std::size_t>(p.lower)];
+    const Lanes impulse = p.friction + p.push * p.normal;
+    Lanes moment, turn;
+    crossLanes(p.armUpper, impulse, moment);
+    timesLanes(upper.inverseInertia, moment, turn);
+    upper.velocity += upper.inverseMass * impulse;
+    upper.spin += turn;
+    crossLanes(p.armLower, impulse, moment);
+    timesLanes(lower.inverseInertia, moment, turn);
+    lower.velocity -= lower.inverseMass * impulse;
+    lower.spin -= turn;
+  }
+}
+
+// Brings the gaps to the step's end, to first order in the turns.
+SPRINGTOWER_KERNEL
+void moveGaps(const std::vector<RigidBody>& bodies, std::vector<ImpulsePoint>& points) {
+  const auto read = [&](std::int32_t at, Lanes& moved, Lanes& turned) {
+    moved = turned = Lanes{0.0, 0.0, 0.0, 0.0};
+    if (static_cast<std::size_t>(at) == bodies.size()) return;
+    const RigidBody& body = bodies[static_cast<std::size_t>(at)];
+    moved = Lanes{body.moved[0], body.moved[1], body.moved[2], 0.0};
+    turned = Lanes{body.turned[0], body.turned[1], body.turned[2], 0.0};
+  };
+  for (ImpulsePoint& p : points) {
+    Lanes movedUpper, turnedUpper, movedLower, turnedLower;
+    read(p.upper, movedUpper, turnedUpper);
+    read(p.lower, movedLower, turnedLower);
+    p.gap += sum(p.normal * (movedUpper - movedLower) + (p.leverUpper * turnedUpper - p.leverLower * turnedLower));
+  }
+}
+
+// Notes which bodies have a contact that pushes. Returns whether any has.
+bool notePushed(RigidIsland& island) {
+  for (RigidBody& body : island.bodies) body.pushed = false;
+  for (const ImpulsePoint& p : island.points) {
+    for (const std::int32_t at : {p.upper, p.lower}) {
+      if (p.push > 0.0 && static_cast<std::size_t>(at) < island.bodies.size())
+        island.bodies[static_cast<std::size_t>(at)].pushed = true;
+    }
+  }
+  return std::any_of(island.bodies.begin(), island.bodies.end(), [](const RigidBody& body) { return body.pushed; });
+}
+
+// Whether any two blocks overlap by much.
+bool isDeep(const IslandStep& step, const RigidIsland& island) {
+  const double deep = -kDeep * step.simulation.lengths.blockHeight_m;
+  return std::any_of(island.points.begin(), island.points.end(), [&](const ImpulsePoint& p) { return p.gap < deep; });
+}
+
+double kineticEnergy(const std::vector<RigidBody>& bodies) {
+  double energy = 0.0;
+  for (const RigidBody& body : bodies) {
+    const Vec3 spin = body.axes.transpose() * body.spin;
+    energy += 0.5 * (body.velocity.squaredNorm() / body.inverseMass + spin.dot(body.moment * spin));
+  }
+  return energy;
+}
+
+// Takes what a step has added to the energy out of the speeds, little of the motion: pushes that part blocks lift what lies on
+// them, and passes that have not settled the contacts leave too much.
+void takeBack(std::vector<RigidBody>& bodies, double added) {
+  constexpr double kMostShare = 0.01;
+  if (added <= 0.0) return;
+  const double kinetic = kineticEnergy(bodies);
+  const double left = std::sqrt(1.0 - std::min(kMostShare, added / kinetic));
+  for (RigidBody& body : bodies) {
+    body.velocity *= left;
+    body.spin *= left;
+  }
+}
+
+// Passes over all points, from the bodies' velocities to the bodies' velocities.
+void runPasses(IslandStep& step, RigidIsland& island, int passes, bool push) {
+  const Scene& scene = step.simulation.scene;
+  Pass pass;
+  pass.step_s = step.drift_s;
+  pass.kinetic = scene.kineticFriction;
+  pass.most = kPushSpeed * step.simulation.lengths.blockHeight_m / step.simulation.lengths.fallTime_s;
+  pass.soft = isRigid(scene.settings.method) ? softness(step.drift_s) : Softness{kFallPush / step.drift_s};
+  pass.push = push;
+  if (push) applyKnown(island.movers, island.points);
+  for (int i = 0; i < passes; ++i) solvePoints(pass, island.movers, island.points);
+  step.counters.contactEvaluations += static_cast<std::uint64_t>(passes) * island.points.size();
+  writeMovers(island);
+}
+
+}  // namespace
+
+// Sequential impulses (projected Gauss-Seidel on velocities; Catto 2005) with warm starting. Blocks that are apart may come as
+// near as the gap in one step; those that overlap are pushed out softly, and a second set of passes takes the push out of the
+// velocities again (soft contacts with relaxing, as in Catto's Solver2D, 2024).
+void moveRigidPgs(IslandStep& step, RigidIsland& island, bool again) {
+  const bool falls = !isRigid(step.simulation.scene.settings.method);
+  island.energyBefore_j = kineticEnergy(island.bodies);
+  applyForces(step);
+  gatherPoints(step, island, again);
+  int passes = step.simulation.scene.settings.iterations;
+  if (falls && isDeep(step, island)) passes = std::max(passes, kDeepPasses);
+  runPasses(step, island, passes, true);
+  island.touches = notePushed(island);
+  for (RigidBody& body : island.bodies) {
+    moveFreely(body, step.drift_s);
+    if (falls && !body.pushed) {  // it flies: with its mean velocity, not that of the step's end
+      const Vec3 lag = 0.5 * step.drift_s * step.drift_s * step.gravity;
+      body.place -= lag;
+      body.moved -= lag;
+    }
+    island.energyBefore_j += body.moved.dot(step.gravity) / body.inverseMass;
+  }
+}
+
+void settleRigidPgs(IslandStep& step, RigidIsland& island) {
+  moveGaps(island.bodies, island.points);
+  readMovers(island);
+  runPasses(step, island, step.simulation.scene.settings.iterations, false);
+  // Blocks that stand are moved by such pushes alone, slowly, and would be kept from it.
+  if (!isRigid(step.simulation.scene.settings.method) && island.touches)
+    takeBack(island.bodies, kineticEnergy(island.bodies) - island.energyBefore_j);
+  keepPoints(step, island);
+}
+
+}  // namespace springtower

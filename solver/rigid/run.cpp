@@ -1,0 +1,284 @@
+#include "solver/rigid/run.h"
+
+#include "core/lanes.h"
+#include "solver/block/affine.h"
+#include "solver/block/inertia.h"
+#include "solver/contact/evaluate_forces.h"
+#include "solver/contact/rigid_contacts.h"
+#include "solver/contact/update.h"
+#include "solver/rigid/methods.h"
+#include "solver/world/stage_clock.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+namespace springtower {
+
+namespace {
+
+// Steps of a frame where the user names none: as many as keep the game's tower of 18 rows within the default tolerance.
+constexpr int kRigidSubsteps = 64;
+// The pivoting method solves its contacts exactly, and slowly.
+constexpr int kPivotingSubsteps = 4;
+// How often a step is taken again because of contacts found in it.
+constexpr int kMostRepeats = 4;
+
+// Of a cuboid m (b^2 + c^2) / 12; with the mass in eight corners three times as much.
+Eigen::Matrix3d momentOf(const Simulation& simulation, std::size_t block, const RigidBody& body) {
+  Eigen::Matrix3d moment = Eigen::Matrix3d::Zero();
+  for (std::size_t c = 0; c < kCorners; ++c) {
+    const Vec3 arm(body.corner[0][c], body.corner[1][c], body.corner[2][c]);
+    moment += arm.squaredNorm() * Eigen::Matrix3d::Identity() - arm * arm.transpose();
+  }
+  return simulation.model.mass[block] / inverseMass(simulation.scene.settings.inertia).own * moment;
+}
+
+void readPoses(IslandStep& step) {
+  const Simulation& simulation = step.simulation;
+  const bool undeformed = isRigid(simulation.scene.settings.method);
+  RigidIsland& island = rigidIslandOf(step);
+  island.bodies.resize(step.blocks.size());
+  for (std::size_t i = 0; i < step.blocks.size(); ++i) {
+    const auto b = static_cast<std::size_t>(step.blocks[i]);
+    RigidBody& body = island.bodies[i];
+    const RigidMotion motion = rigidMotion(simulation.state, b);
+    body.place = motion.centre;
+    body.velocity = motion.velocity;
+    body.spin = motion.spin;
+    body.axes = straightAxes(simulation.state.position, b);
+    for (std::size_t c = 0; c < kCorners; ++c) {
+      const Vec3 arm = body.axes.transpose() * (simulation.state.position.at(b, c) - motion.centre);
+      for (std::size_t a = 0; a < 3; ++a) {
+        const auto axis = static_cast<Eigen::Index>(a);
+        body.corner[a][c] = undeformed ? 0.5 * cornerSide(c, a) * simulation.model.dimensions[b][axis] : arm[axis];
+      }
+    }
+    body.moment = momentOf(simulation, b, body);
+    body.inverseMoment = body.moment.inverse();
+    body.inverseMass = 1.0 / simulation.model.mass[b];
+    step.engine.nodeOf[b] = static_cast<std::int32_t>(i);
+  }
+}
+
+SPRINGTOWER_KERNEL
+void writePositions(const RigidIsland& island, std::span<const std::int32_t> blocks, CornerArray& position) {
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    const RigidBody& body = island.bodies[i];
+    for (std::size_t a = 0; a < 3; ++a) {
+      const auto row = static_cast<Eigen::Index>(a);
+      double* x = position.values(a, static_cast<std::size_t>(blocks[i]));
+      for (std::size_t c = 0; c < kCorners; ++c) {
+        x[c] = body.place[row] + (body.axes(row, 0) * body.corner[0][c] + body.axes(row, 1) * body.corner[1][c] +
+                                  body.axes(row, 2) * body.corner[2][c]);
+      }
+    }
+  }
+}
+
+void writeVelocities(IslandStep& step) {
+  const RigidIsland& island = rigidIslandOf(step);
+  MotionState& state = step.simulation.state;
+  for (std::size_t i = 0; i < step.blocks.size(); ++i) {
+    const auto b = static_cast<std::size_t>(step.blocks[i]);
+    const RigidBody& body = island.bodies[i];
+    for (std::size_t c = 0; c < kCorners; ++c)
+      state.velocity.set(b, c, body.velocity + body.spin.cross(state.position.at(b, c) - body.place));
+  }
+}
+
+void rememberStart(IslandStep& step) {
+  RigidIsland& island = rigidIslandOf(step);
+  for (RigidBody& body : island.bodies) {
+    body.placeBefore = body.place;
+    body.axesBefore = body.axes;
+    body.velocityBefore = body.velocity;
+    body.spinBefore = body.spin;
+  }
+  for (std::size_t i = 0; i < step.blocks.size(); ++i) {
+    const auto b = static_cast<std::size_t>(step.blocks[i]);
+    island.bodies[i].travelBefore_m = step.engine.clock[b].travel;
+    for (std::size_t a = 0; a < 3; ++a)
+      std::copy_n(step.simulation.state.position.values(a, b), kCorners, step.engine.previous.values(a, b));
+  }
+}
+
+void backToStart(IslandStep& step) {
+  RigidIsland& island = rigidIslandOf(step);
+  Engine& engine = step.engine;
+  for (RigidBody& body : island.bodies) {
+    body.place = body.placeBefore;
+    body.axes = body.axesBefore;
+    body.velocity = body.velocityBefore;
+    body.spin = body.spinBefore;
+  }
+  for (std::size_t i = 0; i < step.blocks.size(); ++i) {
+    const auto b = static_cast<std::size_t>(step.blocks[i]);
+    engine.clock[b].travel = island.bodies[i].travelBefore_m;
+    for (std::size_t a = 0; a < 3; ++a)
+      std::copy_n(engine.previous.values(a, b), kCorners, step.simulation.state.position.values(a, b));
+  }
+  measureAgain(step);
+}
+
+void stepOnce(IslandStep& step, bool again) {
+  StageClock clock(step.times);
+  RigidIsland& island = rigidIslandOf(step);
+  for (RigidBody& body : island.bodies) {
+    if (!again) updateInertia(body);
+    body.moved.setZero();
+    body.turned.setZero();
+  }
+  const Method method = step.simulation.scene.settings.method;
+  if (method == Method::rigidLcp || method == Method::xpbd) {
+    gatherContacts(step, island);
+    clock.lap(Stage::contacts);
+    if (method == Method::rigidLcp) {
+      stepRigidLcp(step, island);
+    } else {
+      stepXpbd(step, island);
+    }
+    keepForces(step, island);
+  } else {
+    moveRigidPgs(step, island, again);
+  }
+  clock.lap(Stage::contacts);
+  writePositions(island, step.blocks, step.simulation.state.position);
+  clock.lap(Stage::integration);
+}
+
+// A vector turned by the rotation whose axis is that of `half` and the tangent of half whose angle is its length (Cayley).
+SPRINGTOWER_INLINE Vec3 turnedVector(const Vec3& half, const Vec3& v) {
+  const Vec3 once = half.cross(v);
+  return v + 2.0 / (1.0 + half.squaredNorm()) * (once + half.cross(once));
+}
+
+}  // namespace
+
+Eigen::Matrix3d straightAxes(const CornerArray& position, std::size_t block) {
+  Eigen::Matrix3d axes;
+  axes.col(0) = meanEdge(position, block, 0).normalized();
+  const Vec3 second = meanEdge(position, block, 1);
+  axes.col(1) = (second - second.dot(axes.col(0)) * axes.col(0)).normalized();
+  axes.col(2) = axes.col(0).cross(axes.col(1));
+  return axes;
+}
+
+RigidIsland& rigidIslandOf(IslandStep& step) {
+  return step.engine.rigidIslands[static_cast<std::size_t>(step.blocks.front())];
+}
+
+void prepareRigid(Simulation& simulation) {
+  const std::size_t count = simulation.model.blockCount();
+  simulation.engine->rigidIslands.resize(count);
+  simulation.engine->nodeOf.assign(count, 0);
+}
+
+int rigidSubsteps(const Settings& settings) {
+  if (settings.substeps > 0) return settings.substeps;
+  return settings.method == Method::rigidLcp ? kPivotingSubsteps : kRigidSubsteps;
+}
+
+void turnAxes(const Vec3& angle, Eigen::Matrix3d& axes) {
+  for (Eigen::Index k = 0; k < 3; ++k) axes.col(k) = turnedVector(0.5 * angle, axes.col(k));
+}
+
+void updateInertia(RigidBody& body) {
+  body.inverseInertia = body.axes * body.inverseMoment * body.axes.transpose();
+}
+
+// The steps are long for the hand's springs, so they give way as they would at the step's end.
+void applyTether(IslandStep& step) {
+  Tether tether = step.simulation.tether;
+  const std::size_t b = index(tether.block);
+  RigidBody& body = rigidIslandOf(step).bodies[static_cast<std::size_t>(step.engine.nodeOf[b])];
+  const double h = step.drift_s;
+  const double cornerInverseMass = inverseMass(step.simulation.scene.settings.inertia).own * body.inverseMass;
+  const double centre = 1.0 + h * body.inverseMass * (tether.damping_n_s_m + h * tether.stiffness_n_m);
+  const double level = 1.0 + h * cornerInverseMass * (tether.cornerDamping_n_s_m + h * tether.cornerStiffness_n_m);
+  const double tilt = 1.0 + h * cornerInverseMass * (tether.tiltDamping_n_s_m + h * tether.tiltStiffness_n_m);
+  tether.stiffness_n_m /= centre;
+  tether.damping_n_s_m /= centre;
+  tether.cornerStiffness_n_m /= level;
+  tether.cornerDamping_n_s_m /= level;
+  tether.tiltStiffness_n_m /= tilt;
+  tether.tiltDamping_n_s_m /= tilt;
+  MotionState& state = step.simulation.state;
+  for (std::size_t c = 0; c < kCorners; ++c)
+    state.velocity.set(b, c, body.velocity + body.spin.cross(state.position.at(b, c) - body.place));
+  std::array<Vec3, kCorners> corner;
+  const GripForce held = tetherForces(tether, step.simulation.model, state, step.time_s, corner);
+  body.velocity += h * body.inverseMass * held.force;
+  body.spin += h * (body.inverseInertia * held.torque);
+}
+
+void applyForces(IslandStep& step) {
+  RigidIsland& island = rigidIslandOf(step);
+  if (holdsTether(step)) applyTether(step);  // first: its dashpots would brake what gravity has not done yet
+  for (RigidBody& body : island.bodies) body.velocity += step.drift_s * step.gravity;
+  const std::int32_t own = step.engine.islands.islandOf[static_cast<std::size_t>(step.blocks.front())];
+  for (const UserForce& user : step.simulation.scene.forces) {
+    if (step.time_s < user.start_s || step.time_s >= user.end_s) continue;
+    const auto b = static_cast<std::size_t>(user.block);
+    if (step.engine.islands.islandOf[b] != own) continue;
+    RigidBody& body = island.bodies[static_cast<std::size_t>(step.engine.nodeOf[b])];
+    body.velocity += step.drift_s * body.inverseMass * user.force;
+    if (user.corner < 0) continue;
+    const auto c = static_cast<std::size_t>(user.corner);
+    const Vec3 arm = body.axes * Vec3(body.corner[0][c], body.corner[1][c], body.corner[2][c]);
+    body.spin += step.drift_s * (body.inverseInertia * arm.cross(user.force));
+  }
+}
+
+void moveFreely(RigidBody& body, double step_s) {
+  body.place += step_s * body.velocity;
+  const auto spinOf = [&](const Vec3& momentum) {
+    return Vec3(body.axes * (body.inverseMoment * (body.axes.transpose() * momentum)));
+  };
+  const Vec3 momentum = body.axes * (body.moment * (body.axes.transpose() * body.spin));
+  const Vec3 quarter = 0.25 * step_s * body.spin;
+  const Vec3 middle = turnedVector(quarter, spinOf(turnedVector(-quarter, momentum)));
+  turnAxes(step_s * middle, body.axes);
+  body.spin = spinOf(momentum);
+  body.moved += step_s * body.velocity;
+  body.turned += step_s * middle;
+}
+
+IslandOutcome runRigidSteps(IslandStep& step, int steps, double begin_s) {
+  Simulation& simulation = step.simulation;
+  const double frame_s = simulation.scene.settings.frame_s;
+  IslandOutcome outcome;
+  outcome.substeps = std::max(1, static_cast<int>(std::ceil(steps * (frame_s - begin_s) / frame_s - 1e-9)));
+  step.drift_s = (frame_s - begin_s) / outcome.substeps;
+  step.kick_s = step.advance_s = step.drift_s;
+  step.rigid = true;
+  const Method method = simulation.scene.settings.method;
+  const bool sequential = method != Method::rigidLcp && method != Method::xpbd;
+  readPoses(step);
+  computeFrames(simulation.state.position, step.blocks, step.engine.frames);
+  step.lists = true;
+  step.listedFor = 0;
+  for (int substep = 0; substep < outcome.substeps && outcome.inside; ++substep) {
+    step.time_s = simulation.time_s + begin_s + substep * step.drift_s;
+    step.gravity = simulation.scene.gravity.at(step.time_s);
+    rememberStart(step);
+    for (int repeat = 0;; ++repeat) {
+      const std::uint64_t born = step.counters.contactsBorn;
+      stepOnce(step, repeat > 0);
+      outcome.inside = findContacts(step);
+      if (!outcome.inside || born == step.counters.contactsBorn || repeat == kMostRepeats) break;
+      backToStart(step);
+    }
+    if (sequential) settleRigidPgs(step, rigidIslandOf(step));
+    computeFrames(simulation.state.position, step.blocks, step.engine.frames);
+    if (outcome.inside) renewContacts(step, renewalOfExplicitSteps(simulation));
+  }
+  writeVelocities(step);
+  for (const std::int32_t block : step.blocks) {
+    step.engine.clock[static_cast<std::size_t>(block)].lastDrift_s = step.drift_s;
+    step.engine.clock[static_cast<std::size_t>(block)].history_s = 0.0;
+  }
+  return outcome;
+}
+
+}  // namespace springtower

@@ -1,0 +1,152 @@
+#include "solver/sleep/load_change.h"
+
+#include "solver/contact/query.h"
+#include "solver/sleep/support_check.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace springtower {
+
+namespace {
+
+// Change of force, in a block's weights, that counts at all.
+constexpr double kChange = 0.02;
+// Change of force, in a block's weights, and of torque, in its weight times its height, that is left unbalanced when a neighbour
+// has come to rest. Six of them are less than the thousandth that counts as balanced.
+constexpr double kUnbalanced = 1e-4;
+// Change of force, as a share of what goes through the block, that springs around it take up without moving by more than that
+// share of their compression.
+constexpr double kBorne = 0.35;
+// Share of the friction of its contacts with sleepers that may hold a block against friction of awake ones. A third of a row that
+// is drawn out asks for a fifth of it, half a row for a third; so some is left of what it takes to slip.
+constexpr double kHeld = 0.35;
+
+double weightOf(const Simulation& simulation, std::int32_t block) {
+  return simulation.model.mass[static_cast<std::size_t>(block)] * simulation.scene.gravity.magnitude;
+}
+
+// How block a of a pair is pushed now.
+Push pushOnA(const Simulation& simulation, const NearPair& pair) {
+  Push push = pushOnUpper(simulation, pair.manifold);
+  if (pair.manifold.upper == pair.a) return push;
+  return {-push.force, -push.torque, -push.direction};
+}
+
+// Adds what an awake neighbour does to a sleeping block.
+void addChange(Simulation& simulation, const NearPair& pair, std::int32_t sleeper) {
+  Engine& engine = *simulation.engine;
+  PushChange& change = engine.change[static_cast<std::size_t>(sleeper)];
+  const double sign = sleeper == pair.a ? 1.0 : -1.0;
+  const Push now = pushOnA(simulation, pair);
+  const Vec3 difference = sign * (now.force - pair.restForce);
+  const double least = kChange * weightOf(simulation, sleeper);
+  const bool pushed = pair.restForce.norm() > least;
+  const bool pushes = now.force.norm() > least;
+  change.begunOrLost = change.begunOrLost || pushed != pushes;
+  change.force += difference;
+  change.torque += sign * (now.torque - pair.restTorque) -
+                   centre(simulation.state.position, static_cast<std::size_t>(sleeper)).cross(difference);
+  change.shear += sign * (now.force - now.direction.dot(now.force) * now.direction);
+  change.side += sign * now.direction;
+}
+
+// Adds up what went through the blocks that are pushed otherwise when they fell asleep, and what holds them.
+void findLoads(Simulation& simulation) {
+  Engine& engine = *simulation.engine;
+  for (const std::int32_t block : engine.pushed) {
+    PushChange& change = engine.change[static_cast<std::size_t>(block)];
+    change.load_n = 0.5 * weightOf(simulation, block);
+    if (!change.side.isZero(0.0)) change.side.normalize();
+    engine.joined[static_cast<std::size_t>(block)] = 1;
+  }
+  for (const NearPair& pair : engine.pairs) {
+    const auto add = [&](std::int32_t block, std::int32_t partner, const Vec3& force) {
+      if (block < 0 || engine.joined[static_cast<std::size_t>(block)] == 0) return;
+      PushChange& change = engine.change[static_cast<std::size_t>(block)];
+      change.load_n += 0.5 * force.norm();
+      if (sleeps(simulation, partner)) change.hold_n += simulation.scene.staticFriction * force.norm();
+    };
+    add(pair.a, pair.b, pair.restForce);
+    add(pair.b, pair.a, -pair.restForce);
+  }
+}
+
+// Whether a sleeping block bears what is done to it.
+bool bears(const Simulation& simulation, std::int32_t block) {
+  const auto b = static_cast<std::size_t>(block);
+  const PushChange& change = simulation.engine->change[b];
+  if (change.begunOrLost) return false;
+  if (change.force.norm() <= kChange * weightOf(simulation, block)) return true;
+  const double longest = simulation.model.dimensions[b].maxCoeff();
+  const double middle = simulation.model.dimensions[b].sum() - longest - simulation.model.dimensions[b].minCoeff();
+  const Vec3 across = change.force - change.side.dot(change.force) * change.side;
+  const double twist = std::abs(change.side.dot(change.torque));
+  const Vec3 tilting = change.torque - change.side.dot(change.torque) * change.side;
+  if (std::abs(change.side.dot(change.force)) > kBorne * change.load_n) return false;
+  if (tilting.norm() > kBorne * change.load_n * middle) return false;
+  const double shear = change.shear.norm() + 4.0 * twist / longest;
+  return across.norm() <= kChange * weightOf(simulation, block) || shear <= kHeld * change.hold_n;
+}
+
+}  // namespace
+
+void rememberPushes(Simulation& simulation, std::span<const std::uint8_t> staysAwake) {
+  Engine& engine = *simulation.engine;
+  for (NearPair& pair : engine.pairs) {
+    const auto falls = [&](std::int32_t block) {
+      return !sleeps(simulation, block) && staysAwake[static_cast<std::size_t>(block)] == 0;
+    };
+    if (!falls(pair.a) && !falls(pair.b)) continue;
+    const Push now = pushOnA(simulation, pair);
+    const std::int32_t sleeper =
+        pair.b < 0 ? -1 : (sleeps(simulation, pair.a) ? pair.a : (sleeps(simulation, pair.b) ? pair.b : -1));
+    if (sleeper >= 0) {
+      const auto s = static_cast<std::size_t>(sleeper);
+      const double most = kUnbalanced * weightOf(simulation, sleeper);
+      const Vec3 force = now.force - pair.restForce;
+      const Vec3 torque = now.torque - pair.restTorque - centre(simulation.state.position, s).cross(force);
+      if (force.norm() <= most && torque.norm() <= most * simulation.model.dimensions[s].minCoeff()) continue;
+      engine.toWake.push_back(sleeper);
+    }
+    pair.restForce = now.force;
+    pair.restTorque = now.torque;
+  }
+}
+
+bool findBlocksToWake(Simulation& simulation) {
+  Engine& engine = *simulation.engine;
+  engine.toWake.clear();
+  engine.pushed.clear();
+  engine.change.resize(simulation.asleep.size());
+  engine.joined.assign(simulation.asleep.size(), 0);
+  bool changed = false;
+  bool gives = false;
+  for (const std::int32_t at : engine.islandPairs) {
+    const NearPair& pair = engine.pairs[static_cast<std::size_t>(at)];
+    if (pair.b < 0 || sleeps(simulation, pair.a) == sleeps(simulation, pair.b)) continue;
+    const std::int32_t sleeper = sleeps(simulation, pair.a) ? pair.a : pair.b;
+    PushChange& change = engine.change[static_cast<std::size_t>(sleeper)];
+    if (engine.joined[static_cast<std::size_t>(sleeper)] == 0) {
+      engine.joined[static_cast<std::size_t>(sleeper)] = 1;
+      engine.pushed.push_back(sleeper);
+      change = {};
+    }
+    addChange(simulation, pair, sleeper);
+    const double least = kChange * weightOf(simulation, sleeper);
+    changed = changed || change.begunOrLost || change.force.norm() > least ||
+              change.torque.norm() > least * simulation.model.dimensions[static_cast<std::size_t>(sleeper)].minCoeff();
+  }
+  if (changed) {
+    findLoads(simulation);
+    for (const std::int32_t block : engine.pushed) {
+      if (!bears(simulation, block)) engine.toWake.push_back(block);
+    }
+    if (simulation.scene.settings.sleep == Sleep::on) gives = findWhatGivesWay(simulation);
+  }
+  // A pair that the sweep has dropped pushes no more.
+  engine.toWake.insert(engine.toWake.end(), engine.lostPartner.begin(), engine.lostPartner.end());
+  return gives;
+}
+
+}  // namespace springtower

@@ -1,0 +1,288 @@
+#include "solver/sleep/rest.h"
+
+#include "narrowphase/separation.h"
+#include "solver/block/inertia.h"
+#include "solver/contact/approach.h"
+#include "solver/sleep/load_change.h"
+#include "solver/world/stage_clock.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace springtower {
+
+namespace {
+
+// How much longer than others a block is at rest that falls asleep beside restless ones.
+constexpr double kPatience = 4.0;
+// Speed from which on a block hits a sleeper rather than being laid on it, in sqrt(g h).
+constexpr double kHit = 0.05;
+// Speed from which on a block that slides on sleepers, or is drawn over them, shakes all they touch before what it does to them
+// can be looked at, alike; a player's 4 cm/s are half of it.
+constexpr double kRush = 0.2;
+// What gravity may have turned since the last block fell asleep, in g.
+constexpr double kWakeGravity = 1e-4;
+
+double timeScale(const Simulation& s) {
+  return std::sqrt(s.lengths.blockHeight_m / std::max(s.scene.gravity.magnitude, 1e-9));
+}
+double speedScale(const Simulation& s) {
+  return std::sqrt(s.lengths.blockHeight_m * s.scene.gravity.magnitude);
+}
+
+bool acts(const UserForce& user, double begin_s, double frame_s) {
+  return user.start_s < begin_s + frame_s && user.end_s > begin_s;
+}
+
+// A bound from above of the speed of a block's fastest corner in its rigid motion, m/s: that motion has no more kinetic energy
+// than the corners, and the least moment of inertia is that about the longest axis.
+double fastestRigidCorner(const Simulation& simulation, std::size_t b) {
+  double squared = 0.0;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const double* v = simulation.state.velocity.values(a, b);
+    for (std::size_t c = 0; c < kCorners; ++c) squared += v[c] * v[c];
+  }
+  const Vec3& size = simulation.model.dimensions[b];
+  const double diagonal = size.squaredNorm();
+  const double inertia = (diagonal - size.maxCoeff() * size.maxCoeff()) / 12.0;
+  return std::sqrt(squared / static_cast<double>(kCorners)) * (1.0 + std::sqrt(0.25 * diagonal / inertia));
+}
+
+// A block is at rest while its rigid motion is slow: compressing and ringing keep no block awake. It also has to be in balance:
+// over each window the mean force and torque, seen as what they do to the speed of its corners, stay below a small share of
+// gravity. A block that starts to tip is slow but out of balance.
+void judge(Simulation& simulation, std::size_t b) {
+  const Settings& settings = simulation.scene.settings;
+  RestWindow& window = simulation.engine->rest[b];
+  const double slow = settings.restSpeed * speedScale(simulation);
+  const bool ends = window.age_s + settings.frame_s >= settings.restTime * timeScale(simulation);
+  if (!ends && fastestRigidCorner(simulation, b) < slow) {  // the usual case, without the rigid motion itself
+    simulation.restTime_s[b] += settings.frame_s;
+    window.age_s += settings.frame_s;
+    return;
+  }
+  const RigidMotion motion = rigidMotion(simulation.state, b);
+  const double arm = 0.5 * simulation.model.dimensions[b].norm();
+  const auto begin = [&] { window = {motion.centre, motion.velocity, motion.spin, 0.0}; };
+  if (!(motion.cornerSpeed < slow)) {
+    simulation.restTime_s[b] = 0.0;
+    begin();
+    return;
+  }
+  simulation.restTime_s[b] += settings.frame_s;
+  window.age_s += settings.frame_s;
+  if (window.age_s < settings.restTime * timeScale(simulation)) return;
+  const double change = (motion.velocity - window.velocity).norm() + arm * (motion.spin - window.spin).norm();
+  if (change > settings.restImbalance * simulation.scene.gravity.magnitude * window.age_s) simulation.restTime_s[b] = 0.0;
+  begin();
+}
+
+// The report's test (its appendix 2.5): how far the block's particles have moved together, compression and all, over one frame.
+void judgeAsReported(Simulation& simulation, std::size_t b) {
+  const CornerArray& before = simulation.engine->frameStart.position;
+  double moved = 0.0;
+  for (std::size_t c = 0; c < kCorners; ++c) moved += (simulation.state.position.at(b, c) - before.at(b, c)).norm();
+  simulation.restTime_s[b] = moved < simulation.scene.settings.reportDisableDistance_m ? simulation.scene.settings.frame_s : 0.0;
+}
+
+// Whether an awake block slides on the sleeper of a pair too fast for it to be asked afterwards, or may hit it in this frame
+// faster than a hand lays a block down. `supported`: whether anything touches the awake block.
+bool isStruck(const Simulation& simulation, const NearPair& pair, std::int32_t awake, bool supported) {
+  const auto block = static_cast<std::size_t>(awake);
+  const double scale = speedScale(simulation);
+  const bool held = block == index(simulation.tether.block);
+  const double speed =
+      std::max(fastestCorner(simulation.state.velocity, block, Vec3::Zero()), held ? simulation.tether.velocity.norm() : 0.0);
+  if (pair.manifold.touch != Touch::apart && anyPointTouches(pair.manifold)) return speed > kRush * scale;
+  const bool falls = !supported && !held;
+  if (!falls && speed <= kHit * scale) return false;
+  const double frame_s = simulation.scene.settings.frame_s;
+  const CornerArray& position = simulation.state.position;
+  const Separation separation = findSeparation(cornersOf(position, static_cast<std::size_t>(pair.a)),
+                                               cornersOf(position, static_cast<std::size_t>(pair.b)));
+  const double gap = std::max(0.0, separation.best());
+  const Vec3 towards = pair.a == awake ? Vec3(-separation.bestNormal()) : separation.bestNormal();
+  double closing = 0.0;
+  for (std::size_t c = 0; c < kCorners; ++c) closing = std::max(closing, simulation.state.velocity.at(block, c).dot(towards));
+  const double fall = falls ? std::max(0.0, simulation.scene.gravity.at(simulation.time_s).dot(towards)) : 0.0;
+  if (gap > frame_s * (closing + 0.5 * fall * frame_s)) return false;
+  return std::sqrt(closing * closing + 2.0 * fall * gap) > kHit * scale;
+}
+
+double restNeeded(const Simulation& simulation) {
+  return simulation.scene.settings.sleep == Sleep::report ? simulation.scene.settings.frame_s
+                                                          : simulation.scene.settings.restTime * timeScale(simulation);
+}
+
+void fallAsleep(Simulation& simulation, std::size_t b) {
+  Engine& engine = *simulation.engine;
+  simulation.asleep[b] = 1;
+  engine.loadPath.known.clear();
+  BlockClock& clock = engine.clock[b];
+  clock.falls = clock.hasFallen = false;
+  clock.explicitFrames = 0;
+  --engine.awakeCount;
+  for (std::size_t a = 0; a < 3; ++a) std::fill_n(simulation.state.velocity.values(a, b), kCorners, 0.0);
+  engine.frames[b] = blockFrame(simulation.state.position, b);
+  engine.motion[b] = AffineField{};
+  if (!engine.carriedMotion.empty()) engine.carriedMotion[b] = AffineField{};
+  if (!engine.report.contacts.empty()) engine.report.contacts[b].clear();
+}
+
+// Where all that touch are at rest, but some sleep on forces that no longer balance, they wake and find their rest together: by
+// turns that would take as many rests as there are rows.
+void restTogether(Simulation& simulation) {
+  Engine& engine = *simulation.engine;
+  engine.touchingEdges.clear();
+  for (const NearPair& pair : engine.pairs) {
+    if (pair.b >= 0 && pair.manifold.touch != Touch::apart) engine.touchingEdges.push_back({pair.a, pair.b});
+  }
+  engine.touched.resize(simulation.asleep.size());
+  connectedBlocks(engine.touchingEdges, engine.toWake, engine.parent, engine.touched);
+  const auto touches = [&](std::int32_t block) { return engine.touched[static_cast<std::size_t>(block)] != 0; };
+  if (std::any_of(engine.restless.begin(), engine.restless.end(), touches)) return;
+  for (std::size_t b = 0; b < engine.touched.size(); ++b) {
+    if (engine.touched[b] == 0) continue;
+    engine.joined[b] = 1;
+    engine.toWake.push_back(static_cast<std::int32_t>(b));
+  }
+}
+
+// Puts blocks to sleep: groups that touch and are all at rest, at once; and a block that has long been at rest beside restless
+// ones by itself, as what they do to it later is looked at in every frame. Method `report` does not know from step to step who
+// touches whom: there who is near counts, and nobody sleeps beside a restless block.
+void putToSleep(Simulation& simulation) {
+  Engine& engine = *simulation.engine;
+  const double needed = restNeeded(simulation);
+  const auto ready = [&](std::int32_t block) {
+    if (simulation.restTime_s[static_cast<std::size_t>(block)] < needed ||
+        block == static_cast<std::int32_t>(simulation.tether.block)) {
+      return false;
+    }
+    const double frame_s = simulation.scene.settings.frame_s;
+    return std::none_of(simulation.scene.forces.begin(), simulation.scene.forces.end(), [&](const UserForce& user) {
+      return user.block == block && acts(user, simulation.time_s - frame_s, frame_s);
+    });
+  };
+  if (std::none_of(engine.awakeBlocks.begin(), engine.awakeBlocks.end(), ready)) return;
+
+  engine.restless.clear();
+  engine.touchingEdges.clear();
+  for (const std::int32_t block : engine.awakeBlocks) {
+    if (!ready(block)) engine.restless.push_back(block);
+  }
+  const Settings& settings = simulation.scene.settings;
+  const bool nearCounts = settings.method == Method::report;
+  if (settings.sleep == Sleep::on) {
+    for (const NearPair& pair : engine.pairs) {
+      if (pair.b < 0 || (pair.manifold.touch == Touch::apart && !nearCounts)) continue;
+      const bool bothAwake =
+          simulation.asleep[static_cast<std::size_t>(pair.a)] == 0 && simulation.asleep[static_cast<std::size_t>(pair.b)] == 0;
+      if (bothAwake) engine.touchingEdges.push_back({pair.a, pair.b});
+    }
+  }
+  engine.joined.resize(simulation.asleep.size());
+  connectedBlocks(engine.touchingEdges, engine.restless, engine.parent, engine.joined);
+  for (const std::int32_t block : engine.awakeBlocks) {
+    const bool patient = simulation.restTime_s[static_cast<std::size_t>(block)] >= kPatience * needed;
+    if (patient && ready(block) && !nearCounts) engine.joined[static_cast<std::size_t>(block)] = 0;
+  }
+  engine.toWake.clear();
+  rememberPushes(simulation, engine.joined);
+  if (!engine.toWake.empty() && settings.sleep == Sleep::on) restTogether(simulation);
+  for (const std::int32_t block : engine.awakeBlocks) {
+    if (engine.joined[static_cast<std::size_t>(block)] == 0) fallAsleep(simulation, static_cast<std::size_t>(block));
+  }
+  for (const std::int32_t block : engine.toWake) wake(simulation, static_cast<std::size_t>(block));
+  engine.gravitySlept = simulation.scene.gravity.at(simulation.time_s);
+}
+
+}  // namespace
+
+void wake(Simulation& simulation, std::size_t block) {
+  if (simulation.asleep[block] == 0) return;
+  simulation.asleep[block] = 0;
+  simulation.engine->loadPath.known.clear();
+  simulation.restTime_s[block] = 0.0;
+  ++simulation.engine->awakeCount;
+  const RigidMotion motion = rigidMotion(simulation.state, block);
+  simulation.engine->rest[block] = {motion.centre, motion.velocity, motion.spin, 0.0};
+}
+
+void wakeForFrame(Simulation& simulation) {
+  Engine& engine = *simulation.engine;
+  if (engine.awakeCount == simulation.asleep.size()) return;
+  const double frame_s = simulation.scene.settings.frame_s;
+  const Vec3 gravity = simulation.scene.gravity.at(simulation.time_s + frame_s);
+  if ((gravity - engine.gravitySlept).norm() > kWakeGravity * simulation.scene.gravity.magnitude) {
+    for (std::size_t b = 0; b < simulation.asleep.size(); ++b) wake(simulation, b);
+    return;
+  }
+  for (const UserForce& user : simulation.scene.forces) {
+    if (acts(user, simulation.time_s, frame_s)) wake(simulation, static_cast<std::size_t>(user.block));
+  }
+  if (simulation.tether.block != kFloor) wake(simulation, index(simulation.tether.block));
+}
+
+bool wakeWhatIsStruck(Simulation& simulation) {
+  Engine& engine = *simulation.engine;
+  if (simulation.scene.settings.sleep != Sleep::on || engine.awakeCount == simulation.asleep.size()) return false;
+  const StageTimer timer(simulation.stageTimes, Stage::islandsAndSleep);
+  engine.toWake.clear();
+  engine.touched.assign(simulation.asleep.size(), 0);
+  for (const std::int32_t at : engine.islandPairs) {
+    const NearPair& pair = engine.pairs[static_cast<std::size_t>(at)];
+    if (pair.manifold.touch == Touch::apart || !anyPointTouches(pair.manifold)) continue;
+    engine.touched[static_cast<std::size_t>(pair.a)] = 1;
+    if (pair.b >= 0) engine.touched[static_cast<std::size_t>(pair.b)] = 1;
+  }
+  for (const std::int32_t at : engine.islandPairs) {
+    const NearPair& pair = engine.pairs[static_cast<std::size_t>(at)];
+    if (pair.b < 0 || sleeps(simulation, pair.a) == sleeps(simulation, pair.b)) continue;
+    const bool sleepsA = sleeps(simulation, pair.a);
+    const std::int32_t awake = sleepsA ? pair.b : pair.a;
+    if (isStruck(simulation, pair, awake, engine.touched[static_cast<std::size_t>(awake)] != 0))
+      engine.toWake.push_back(sleepsA ? pair.a : pair.b);
+  }
+  if (engine.toWake.empty()) return false;
+  engine.touchingEdges.clear();
+  for (const NearPair& pair : engine.pairs) {
+    if (pair.b >= 0 && pair.manifold.touch != Touch::apart && sleeps(simulation, pair.a) && sleeps(simulation, pair.b))
+      engine.touchingEdges.push_back({pair.a, pair.b});
+  }
+  engine.touched.resize(simulation.asleep.size());
+  connectedBlocks(engine.touchingEdges, engine.toWake, engine.parent, engine.touched);
+  for (std::size_t b = 0; b < engine.touched.size(); ++b) {
+    if (engine.touched[b] != 0) wake(simulation, b);
+  }
+  return true;
+}
+
+bool wakeWhatGaveWay(Simulation& simulation) {
+  Engine& engine = *simulation.engine;
+  engine.toWake.clear();
+  if (engine.awakeCount == simulation.asleep.size()) return false;
+  const StageTimer timer(simulation.stageTimes, Stage::islandsAndSleep);
+  if (!findBlocksToWake(simulation)) return false;
+  for (const std::int32_t block : engine.toWake) wake(simulation, static_cast<std::size_t>(block));
+  return true;
+}
+
+void updateRest(Simulation& simulation) {
+  Engine& engine = *simulation.engine;
+  const Sleep sleep = simulation.scene.settings.sleep;
+  for (const std::int32_t block : engine.awakeBlocks) {
+    const auto b = static_cast<std::size_t>(block);
+    sleep == Sleep::report ? judgeAsReported(simulation, b) : judge(simulation, b);
+  }
+  if (sleep == Sleep::off) return;
+  for (const std::int32_t block : engine.toWake) wake(simulation, static_cast<std::size_t>(block));
+  putToSleep(simulation);
+}
+
+bool atRest(const Simulation& simulation) {
+  const double needed = restNeeded(simulation);
+  return std::all_of(simulation.restTime_s.begin(), simulation.restTime_s.end(), [&](double time) { return time >= needed; });
+}
+
+}  // namespace springtower

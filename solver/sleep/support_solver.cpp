@@ -1,0 +1,95 @@
+#include "solver/sleep/support_solver.h"
+
+#include <Eigen/Cholesky>
+#include <cmath>
+
+namespace springtower {
+
+namespace {
+
+using Vec6 = Eigen::Matrix<double, 6, 1>;
+using Mat6 = Eigen::Matrix<double, 6, 6>;
+
+// Rounds in which points lift off and begin to slide.
+constexpr int kRounds = 12;
+// How far friction may be off its cone, over the mean friction of the points.
+constexpr double kSlip = 0.02;
+// Least stiffness against any motion, over the stiffest: below it a block on its supports is free to move.
+constexpr double kFree = 1e-6;
+
+// What the springs of a point do against a motion of it.
+Eigen::Matrix3d stiffnessOf(const SupportPoint& point, double tangentialRatio) {
+  if (point.state == SupportState::lifted) return Eigen::Matrix3d::Zero();
+  const double across = point.state == SupportState::slides ? 0.0 : tangentialRatio;
+  return (1.0 - across) * point.normal * point.normal.transpose() + across * Eigen::Matrix3d::Identity();
+}
+
+// The matrix by which a turn moves a point: turn x arm.
+Eigen::Matrix3d turning(const Vec3& arm) {
+  Eigen::Matrix3d matrix;
+  matrix << 0.0, arm.z(), -arm.y(), -arm.z(), 0.0, arm.x(), arm.y(), -arm.x(), 0.0;
+  return matrix;
+}
+
+// What a point takes up whatever the block does: all of its force where it has lifted, and of its friction where it slides.
+Vec3 givenUp(const SupportPoint& point) {
+  if (point.state == SupportState::lifted) return -point.force;
+  if (point.state == SupportState::sticks) return Vec3::Zero();
+  return point.slide - (point.force - point.normal.dot(point.force) * point.normal);
+}
+
+// Whether a point keeps to what was taken for granted of it; else what is to be taken next.
+bool keepsState(SupportPoint& point, double slip_n) {
+  if (point.state == SupportState::lifted) return true;
+  const Vec3 force = point.force + point.added;
+  const double push = point.normal.dot(force);
+  if (push < 0.0) {
+    point.state = SupportState::lifted;
+    return false;
+  }
+  const Vec3 shear = force - push * point.normal;
+  const bool slides = point.state == SupportState::slides;
+  const double off_n = shear.norm() - point.friction * push;
+  if (slides ? std::abs(off_n) <= slip_n : off_n <= slip_n) return true;
+  point.slide = point.friction * push * shear.normalized();
+  point.state = SupportState::slides;
+  return false;
+}
+
+}  // namespace
+
+bool takeUp(std::span<SupportPoint> points, const Vec3& force, const Vec3& torque, double length_m, double tangentialRatio) {
+  if (points.empty()) return false;
+  double friction_n = 0.0;
+  for (const SupportPoint& point : points) friction_n += point.friction * point.normal.dot(point.force);
+  const double slip_n = kSlip * friction_n / static_cast<double>(points.size());
+  for (int round = 0; round < kRounds; ++round) {
+    Mat6 stiffness = Mat6::Zero();
+    Vec6 load;
+    load << -force, -torque / length_m;
+    for (const SupportPoint& point : points) {
+      const Eigen::Matrix3d turn = turning(point.arm / length_m);
+      const Eigen::Matrix3d spring = stiffnessOf(point, tangentialRatio);
+      const Eigen::Matrix3d coupled = spring * turn;
+      stiffness.topLeftCorner<3, 3>() += spring;
+      stiffness.bottomLeftCorner<3, 3>() += coupled.transpose();
+      stiffness.bottomRightCorner<3, 3>() += turn.transpose() * coupled;
+      const Vec3 given = givenUp(point);
+      load.head<3>() -= given;
+      load.tail<3>() -= turn.transpose() * given;
+    }
+    const Eigen::LDLT<Mat6> factors(stiffness);
+    if (!(factors.vectorD().minCoeff() > kFree * factors.vectorD().maxCoeff())) return false;
+    const Vec6 moved = factors.solve(load);
+    bool kept = true;
+    for (SupportPoint& point : points) {
+      const Vec3 motion = moved.head<3>() + turning(point.arm / length_m) * moved.tail<3>();
+      point.added = givenUp(point) + stiffnessOf(point, tangentialRatio) * motion;
+      kept = keepsState(point, slip_n) && kept;
+    }
+    if (kept) return true;
+  }
+  return false;
+}
+
+}  // namespace springtower

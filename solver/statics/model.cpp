@@ -1,0 +1,66 @@
+#include "solver/statics/model.h"
+
+#include "core/error.h"
+
+namespace springtower {
+namespace {
+
+// The normal and two tangents; for contacts that lie flat the tangents are the world's x and y.
+Eigen::Matrix3d frameOf(const Vec3& normal) {
+  const Vec3 hint = std::abs(normal.x()) < 0.9 ? Vec3::UnitX() : Vec3::UnitY();
+  Eigen::Matrix3d frame;
+  frame.col(0) = normal;
+  frame.col(1) = (hint - normal * normal.dot(hint)).normalized();
+  frame.col(2) = normal.cross(frame.col(1));
+  return frame;
+}
+
+}  // namespace
+
+Eigen::Matrix<double, 6, 3> StaticsModel::wrench(const ForcePoint& point, bool onUpper) const {
+  const std::int32_t block = onUpper ? point.upper : point.lower;
+  const Vec3 arm = (point.place - centre[static_cast<std::size_t>(block)]) / lengthUnit_m;
+  Eigen::Matrix<double, 6, 3> result;
+  for (Eigen::Index a = 0; a < 3; ++a) {
+    result.block<3, 1>(0, a) = point.frame.col(a);
+    result.block<3, 1>(3, a) = arm.cross(point.frame.col(a));
+  }
+  if (!onUpper) result = -result;
+  return result;
+}
+
+Eigen::VectorXd StaticsModel::gravityLoad(const Vec3& gravity) const {
+  Eigen::VectorXd load = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(6 * blockCount()));
+  for (std::size_t b = 0; b < blockCount(); ++b) load.segment<3>(static_cast<Eigen::Index>(6 * b)) = weight[b] * gravity;
+  return load;
+}
+
+StaticsModel staticsModel(const Scene& scene, std::span<const Facing> facings) {
+  if (scene.blocks.empty()) throw InputError("statics: found no blocks, allowed is at least one");
+  if (scene.gravity.magnitude <= 0.0) throw InputError("statics: found no gravity, allowed is a magnitude above 0");
+  StaticsModel model;
+  double mass = 0.0;
+  double height = 0.0;
+  for (const BlockSpec& block : scene.blocks) {
+    mass += block.mass;
+    height += block.dimensions.minCoeff();
+  }
+  const auto count = static_cast<double>(scene.blocks.size());
+  model.forceUnit_n = mass / count * scene.gravity.magnitude;
+  model.lengthUnit_m = height / count;
+  model.friction = scene.staticFriction;
+  for (const BlockSpec& block : scene.blocks) {
+    model.centre.push_back(block.centre);
+    model.weight.push_back(block.mass * count / mass);
+  }
+  for (std::size_t f = 0; f < facings.size(); ++f) {
+    const Eigen::Matrix3d frame = frameOf(facings[f].normal);
+    for (const FacingPoint& point : facings[f].points) {
+      model.points.push_back({static_cast<std::int32_t>(facings[f].upper), static_cast<std::int32_t>(facings[f].lower),
+                              point.place, frame, point.gap_m, f});
+    }
+  }
+  return model;
+}
+
+}  // namespace springtower

@@ -1,0 +1,51 @@
+#pragma once
+
+#include "core/scene/scene.h"
+#include "solver/statics/contacts.h"
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace springtower {
+
+using Vec6 = Eigen::Matrix<double, 6, 1>;
+
+/// A point at which one block may push another, or the floor a block.
+struct ForcePoint {
+  std::int32_t upper = -1;
+  std::int32_t lower = -1;  ///< -1: the floor
+  Vec3 place = Vec3::Zero();
+  Eigen::Matrix3d frame = Eigen::Matrix3d::Identity();  ///< columns: the normal (from lower to upper) and two tangents
+  double gap_m = 0.0;
+  std::size_t facing = 0;  ///< which of the facings it belongs to
+};
+
+/// Rigid blocks, the points at which they may push one another, and the weights they bear: what equilibrium is about. Forces are
+/// in mean block weights and lengths in mean block heights, so that any size and density gives the same numbers.
+///
+/// Equilibrium is A f + w = 0: f holds three components for each point in its frame (normal, two tangents: the force on the upper
+/// block), A maps it to force and torque about its centre of every block, and w are the loads; all with six rows for each block.
+struct StaticsModel {
+  std::vector<Vec3> centre;    ///< m
+  std::vector<double> weight;  ///< in mean block weights
+  std::vector<ForcePoint> points;
+  double friction = 0.0;
+  double forceUnit_n = 1.0;   ///< mean block weight
+  double lengthUnit_m = 1.0;  ///< mean least side of the blocks
+
+  [[nodiscard]] std::size_t blockCount() const { return centre.size(); }
+
+  /// Force and torque (about its centre) that a unit force along each axis of the point's frame puts on a block: 6 x 3; for the
+  /// point's lower block the reaction.
+  [[nodiscard]] Eigen::Matrix<double, 6, 3> wrench(const ForcePoint& point, bool onUpper) const;
+
+  /// Loads of all blocks, [6 blocks], under a gravity of this direction and relative magnitude (1: what the model was made for).
+  [[nodiscard]] Eigen::VectorXd gravityLoad(const Vec3& gravity) const;
+};
+
+/// The model of a scene with the points of `facings`. Throws InputError when the scene has no gravity or no blocks.
+StaticsModel staticsModel(const Scene& scene, std::span<const Facing> facings);
+
+}  // namespace springtower

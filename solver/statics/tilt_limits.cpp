@@ -1,0 +1,173 @@
+#include "solver/statics/tilt_limits.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace springtower {
+namespace {
+
+constexpr double kSameHeight = 1e-6;  // in mean block heights
+constexpr double kSamePlace = 1e-9;   // m
+constexpr double kFlat = 1e-9;
+
+double cross(const Vec2& a, const Vec2& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
+
+// A group of blocks that moves as one, and the edge it tips over: a line across `direction`, which is horizontal.
+struct Tipping {
+  std::vector<char> moves;  // [blocks]
+  Vec2 direction;
+  double edge = 0.0;    // m, along the direction
+  double height = 0.0;  // m
+};
+
+class Limits {
+ public:
+  Limits(const StaticsModel& model, std::span<const std::size_t> usable)
+      : model_(model), usable_(usable), same_m_(kSameHeight * model.lengthUnit_m) {}
+
+  // All limits of the blocks above a height and of what they would tip on.
+  void addLevel(double height) {
+    std::vector<char> above;
+    for (const Vec3& centre : model_.centre) above.push_back(centre.z() > height ? 1 : 0);
+    std::vector<Vec2> places;
+    bool flat = true;
+    for (const std::size_t p : usable_) {
+      const ForcePoint& point = model_.points[p];
+      if (!crosses(point, above)) continue;
+      places.emplace_back(point.place.head<2>());
+      flat = flat && pushesUp(point, above) && std::abs(point.place.z() - height) <= same_m_;
+    }
+    const std::vector<Vec2> hull = convexHull(places, kSamePlace);
+    if (hull.size() < 3) return;
+    for (std::size_t i = 0; i < hull.size(); ++i) {
+      const Vec2 along = hull[(i + 1) % hull.size()] - hull[i];
+      const Vec2 outward = Vec2(along.y(), -along.x()).normalized();
+      addChain({above, outward, outward.dot(hull[i]), height});
+    }
+    if (!flat) return;
+    for (const Vec2& side : {Vec2(1, 0), Vec2(0, 1), Vec2(-1, 0), Vec2(0, -1)}) found.push_back({side, model_.friction});
+  }
+
+  std::vector<GravityLimit> found;
+
+ private:
+  static bool isIn(std::int32_t block, const std::vector<char>& group) {
+    return block >= 0 && group[static_cast<std::size_t>(block)] != 0;
+  }
+  static bool crosses(const ForcePoint& point, const std::vector<char>& group) {
+    return isIn(point.upper, group) != isIn(point.lower, group);
+  }
+  static bool pushesUp(const ForcePoint& point, const std::vector<char>& group) {
+    return isIn(point.upper, group) && point.frame(2, 0) > 1.0 - kFlat;
+  }
+
+  void addChain(Tipping tipping) {
+    do {
+      add(tipping);
+    } while (reachDown(tipping));
+  }
+
+  void add(const Tipping& tipping) {
+    for (const std::size_t p : usable_) {
+      const ForcePoint& point = model_.points[p];
+      if (!crosses(point, tipping.moves)) continue;
+      const double behind = tipping.edge - tipping.direction.dot(point.place.head<2>());
+      const bool letsGo =
+          pushesUp(point, tipping.moves) && model_.friction * std::abs(point.place.z() - tipping.height) <= behind + kSamePlace;
+      if (!letsGo) return;
+    }
+    double arm = 0.0;
+    double rise = 0.0;
+    for (std::size_t b = 0; b < model_.blockCount(); ++b) {
+      if (tipping.moves[b] == 0) continue;
+      arm += model_.weight[b] * (tipping.edge - tipping.direction.dot(model_.centre[b].head<2>()));
+      rise += model_.weight[b] * (model_.centre[b].z() - tipping.height);
+    }
+    if (rise > 0.0) found.push_back({tipping.direction, arm / rise});
+  }
+
+  // Takes the blocks under the edge along. False where there is only the floor.
+  bool reachDown(Tipping& tipping) {
+    std::vector<char> taken(model_.blockCount(), 0);
+    bool any = false;
+    for (const std::size_t p : usable_) {
+      const ForcePoint& point = model_.points[p];
+      if (point.lower < 0 || !isIn(point.upper, tipping.moves) || isIn(point.lower, tipping.moves)) continue;
+      if (tipping.direction.dot(point.place.head<2>()) < tipping.edge - same_m_) continue;
+      taken[static_cast<std::size_t>(point.lower)] = 1;
+      any = true;
+    }
+    if (!any) return false;
+    for (std::size_t b = 0; b < taken.size(); ++b) tipping.moves[b] = static_cast<char>(tipping.moves[b] | taken[b]);
+    double lowest = std::numeric_limits<double>::infinity();
+    for (const std::size_t p : usable_) {
+      const ForcePoint& point = model_.points[p];
+      if (isIn(point.upper, taken) && !isIn(point.lower, tipping.moves)) lowest = std::min(lowest, point.place.z());
+    }
+    if (!std::isfinite(lowest)) return false;
+    tipping.height = lowest;
+    tipping.edge = -std::numeric_limits<double>::infinity();
+    for (const std::size_t p : usable_) {
+      const ForcePoint& point = model_.points[p];
+      if (!isIn(point.upper, taken) || isIn(point.lower, tipping.moves) || point.place.z() > lowest + same_m_) continue;
+      tipping.edge = std::max(tipping.edge, tipping.direction.dot(point.place.head<2>()));
+    }
+    return true;
+  }
+
+  const StaticsModel& model_;
+  std::span<const std::size_t> usable_;
+  double same_m_;
+};
+
+}  // namespace
+
+std::vector<Vec2> convexHull(std::vector<Vec2> points, double same) {
+  const auto before = [](const Vec2& a, const Vec2& b) { return std::pair(a.x(), a.y()) < std::pair(b.x(), b.y()); };
+  std::sort(points.begin(), points.end(), before);
+  points.erase(std::unique(points.begin(), points.end(), [&](const Vec2& a, const Vec2& b) { return (a - b).norm() <= same; }),
+               points.end());
+  if (points.size() < 3) return points;
+  std::vector<Vec2> hull;
+  for (const int pass : {0, 1}) {
+    const std::size_t start = hull.size();
+    for (const Vec2& point : points) {
+      while (hull.size() >= start + 2 && cross(hull.back() - hull[hull.size() - 2], point - hull.back()) <= 0.0) hull.pop_back();
+      hull.push_back(point);
+    }
+    hull.pop_back();
+    if (pass == 0) std::reverse(points.begin(), points.end());
+  }
+  return hull;
+}
+
+std::vector<Vec2> keepTo(const std::vector<Vec2>& polygon, const GravityLimit& limit) {
+  std::vector<Vec2> kept;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Vec2& from = polygon[i];
+    const Vec2& to = polygon[(i + 1) % polygon.size()];
+    const double before = from.dot(limit.direction) - limit.bound;
+    const double after = to.dot(limit.direction) - limit.bound;
+    if (before <= 0.0) kept.push_back(from);
+    if ((before < 0.0 && after > 0.0) || (before > 0.0 && after < 0.0)) {
+      kept.emplace_back(from + (to - from) * (before / (before - after)));
+    }
+  }
+  return kept;
+}
+
+std::vector<GravityLimit> gravityLimits(const StaticsModel& model, std::span<const std::size_t> usable) {
+  std::vector<double> heights;
+  for (const std::size_t p : usable) heights.push_back(model.points[p].place.z());
+  std::sort(heights.begin(), heights.end());
+  const double same = kSameHeight * model.lengthUnit_m;
+  heights.erase(std::unique(heights.begin(), heights.end(), [&](double a, double b) { return b - a <= same; }), heights.end());
+  Limits limits(model, usable);
+  for (const double height : heights) limits.addLevel(height);
+  return limits.found;
+}
+
+}  // namespace springtower

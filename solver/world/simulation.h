@@ -1,0 +1,105 @@
+#pragma once
+
+#include "core/counters.h"
+#include "core/scene/scene.h"
+#include "core/state.h"
+#include "solver/law/tether.h"
+#include "solver/law/tolerances.h"
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace springtower {
+
+struct Engine;  // the engine's working data: pairs, contacts, islands, workspaces (solver/world/engine.h)
+
+/// A running scene. Plain data that tools may read between frames; changed only by the functions below.
+struct Simulation {
+  explicit Simulation(const Scene& scene);
+  ~Simulation();
+  Simulation(Simulation&&) noexcept;
+  Simulation& operator=(Simulation&&) noexcept;
+
+  Scene scene;
+  BlockModel model;
+  Lengths lengths;  ///< the scene's own scale
+  MotionState state;
+  Tether tether;               ///< what holds a block, as set by whoever leads the hand (solver/hand/grip), until it lets go
+  double time_s = 0.0;         ///< simulated time, s
+  std::uint64_t frame = 0;     ///< frames done
+  double tolerance_m = 0.0;    ///< the tolerance in force: as given, or what the given substeps allow
+  double dampingTime_s = 0.0;  ///< s, dashpot over stiffness of springs and contacts
+  double contactStiffness_n_m = 0.0;  ///< N/m, of one resting contact point, normal
+  double floorStiffness_n_m = 0.0;    ///< N/m, of one on the floor
+  double springStiffness_n_m = 0.0;   ///< N/m, of an upright edge of a block of the scene's least height
+  int fixedSubsteps = 0;              ///< steps of every frame where the user gave them, else 0
+  int substeps = 0;                   ///< steps of the last frame (the most over its islands)
+  std::vector<std::uint8_t> asleep;   ///< 1 where a block sleeps, [blocks]
+  std::vector<double> restTime_s;     ///< how long a block has been at rest, s, [blocks]; kept with sleep off as well
+  Counters counters;
+  StageTimes stageTimes;
+  std::unique_ptr<Engine> engine;
+};
+
+/// Advances a scene by one frame (settings.frame_s). Bitwise the same for any number of threads. Throws DivergenceError in the
+/// step in which a position stops being finite or a block turns inside out.
+void stepFrame(Simulation& simulation);
+
+/// Adds to the velocity of a block (m/s), as a blow would that takes no time, and wakes it. Methods that step from what was
+/// before forget it for this block; velocities in `state` are not to be changed behind their back.
+void kick(Simulation& simulation, std::size_t block, const Vec3& velocity);
+
+/// Whether a block sleeps; the floor, numbered -1, always does.
+inline bool sleeps(const Simulation& simulation, std::int32_t block) {
+  return block < 0 || simulation.asleep[static_cast<std::size_t>(block)] != 0;
+}
+
+/// Whether every block has been at rest (speed of its rigid motion, force and torque balance) for the time the settings name.
+bool atRest(const Simulation& simulation);
+
+/// Energies, J. The kinetic energy is the one that the leapfrog form of semi-implicit Euler conserves for linear forces: half the
+/// product of the velocities before and after the coming step's kick (Hairer, Lubich & Wanner 2003, Acta Numerica 12), with the
+/// inertia in force.
+struct Energy {
+  double kinetic = 0.0;
+  double gravity = 0.0;  ///< against the floor z = 0, with the gravity of the moment
+  double springs = 0.0;
+  double contacts = 0.0;       ///< stored in contact springs: normal, relaxing branch, friction anchors
+  std::vector<double> step_s;  ///< of each block: the step of that kick; 0 where its velocity is that of its position's time
+  std::vector<double> stepShare_j_s2;  ///< of each block: what the kinetic energy lacks for it, over the square of the step
+  [[nodiscard]] double total() const { return kinetic + gravity + springs + contacts; }
+};
+Energy energy(const Simulation& simulation);
+
+/// By how much the energy rose between the ends of two frames, J, both as the later one's steps conserve it: where a frame takes
+/// shorter steps than the one before nothing has risen yet.
+double energyRise(const Energy& before, const Energy& after);
+
+/// One contact point as it acts now, for reports, overlays and tests: the force on `upper` from `lower` (kFloor: the floor).
+struct ContactForce {
+  BlockId upper;
+  BlockId lower;
+  Vec3 point;          ///< m, where it acts on `upper`
+  Vec3 lowerPoint;     ///< m, where its reaction acts on `lower`; apart by the penetration, along the normal
+  Vec3 normal;         ///< unit, from lower to upper
+  double normalForce;  ///< N, >= 0
+  Vec3 frictionForce;  ///< N, on `upper`
+  double depth;        ///< m, geometric penetration of the point
+  bool sliding;
+};
+std::vector<ContactForce> contactForces(const Simulation& simulation);
+
+/// Those on one block.
+std::vector<ContactForce> contactForcesOn(const Simulation& simulation, BlockId block);
+
+/// A copy of all that the next frame depends on, and back. A restored simulation repeats its future bit for bit.
+struct Snapshot;
+std::shared_ptr<const Snapshot> takeSnapshot(const Simulation& simulation);
+void restoreSnapshot(Simulation& simulation, const Snapshot& snapshot);
+
+/// A hash (FNV-1a, 64 bit) of the bits of positions, velocities, sleep and contact memory: equal for equal states, on any thread
+/// count.
+std::uint64_t stateHash(const Simulation& simulation);
+
+}  // namespace springtower

@@ -1,0 +1,268 @@
+// springtower chart, run as a user would.
+#include "core/scene/scene.h"
+#include "tests/support/program.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+namespace springtower {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+using Json = nlohmann::ordered_json;
+
+ProgramResult chart(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), "chart");
+  return runProgram("springtower", arguments);
+}
+
+void expectRefusal(const std::vector<std::string>& arguments, const std::string& message) {
+  const ProgramResult result = chart(arguments);
+  EXPECT_EQ(result.exitCode, 2);
+  EXPECT_THAT(result.error, StartsWith("springtower: "));
+  EXPECT_THAT(result.error, HasSubstr(message));
+}
+
+TEST(Chart, RefusesWhatItDoesNotKnow) {
+  expectRefusal({"--scenes", "uniform,flood"}, "'flood'");
+  expectRefusal({"--methods", "magic"}, "'magic'");
+  expectRefusal({"--rows", "1"}, "2 to 200");
+  expectRefusal({"--out", "/dev/null"}, "--out");
+  expectRefusal({"--out", "/proc"}, "--out: cannot write '/proc/");
+  expectRefusal({"--long", "--quick"}, "--quick");
+}
+
+TEST(Chart, RefusesPeersWithoutTheirColumns) {
+  const ScratchFolder scratch;
+  std::ofstream(scratch.file("peers.csv")) << "engine,rows\nBox,18\n";
+  expectRefusal({"--peers", scratch.file("peers.csv"), "--out", scratch.file("out")}, "no column 'version'");
+}
+
+// A small chart that all tests below read.
+class ChartFiles : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = std::make_unique<ScratchFolder>();
+    result_ = chart(arguments());
+  }
+  static void TearDownTestSuite() { folder_.reset(); }
+  void SetUp() override { ASSERT_EQ(result_.exitCode, 0) << result_.error; }
+
+  static std::vector<std::string> arguments() {
+    return {"--quick",
+            "--rows",
+            "3",
+            "--scenes",
+            "uniform,spin",
+            "--methods",
+            "implicit,rigid-pgs",
+            "--case-limit",  // a slow machine, or a sanitizer, shall see the same cases
+            "30",
+            "--peers",
+            std::string(SPRINGTOWER_SOURCE_DIR) + "/bench/data/peers/records.csv",
+            "--out",
+            path("out")};
+  }
+  static std::string path(const std::string& name) { return folder_->file(name); }
+  static Json json() { return Json::parse(contentOf(path("out/chart.json"))); }
+
+  inline static std::unique_ptr<ScratchFolder> folder_;
+  inline static ProgramResult result_;
+};
+
+TEST_F(ChartFiles, HoldEveryCaseWithItsFigures) {
+  const Json file = json();
+  ASSERT_EQ(file.at("cases").size(), 8U);  // two scenes, two methods, two settings each
+  for (const Json& one : file.at("cases")) {
+    SCOPED_TRACE(one.dump());
+    EXPECT_GT(one.at("cpu_ms_per_frame").get<double>(), 0.0);
+    const bool tower = one.at("scene") == "uniform";
+    for (const char* key : {"penetration_mm", "compression_mm", "creep_mm", "jitter_mm_s", "imbalance"})
+      EXPECT_EQ(one.at(key).is_number(), tower) << key;
+    EXPECT_EQ(one.at("max_strain").is_number(), tower && one.at("method") == "implicit") << "rigid blocks have no springs";
+    EXPECT_GE(one.at("frames").get<int>(), 1);
+    EXPECT_GE(one.at("samples").get<int>(), 1);
+    EXPECT_EQ(one.at("error_mm").is_number(), !tower);
+    if (!tower) continue;
+    EXPECT_LT(one.at("imbalance").get<double>(), 1e-3) << "of a block's weight";
+    const double sunk = one.at("compression_mm").get<double>() / (1e3 * kBlockHeight_m);
+    if (one.at("method") == "rigid-pgs") {
+      EXPECT_GT(one.at("energy_error").get<double>(), 0.2 * sunk) << "what rigid blocks lose as they sink into each other";
+    } else {
+      EXPECT_LT(one.at("energy_error").get<double>(), 1e-9) << "springs start in equilibrium";
+    }
+    EXPECT_EQ(one.at("outcome"), "right") << one.at("note");
+    EXPECT_LT(one.at("penetration_mm").get<double>(), 1.0);
+    EXPECT_LT(one.at("creep_mm").get<double>(), 1.0);
+  }
+}
+
+TEST_F(ChartFiles, TableSaysWhereItComesFrom) {
+  const std::vector<std::string> lines = linesOf(contentOf(path("out/chart.csv")));
+  ASSERT_EQ(lines.size(), 9U) << "no peers at 3 rows";
+  for (const char* column : {"measured,", "cpu_ms_per_frame", "commit,compiler,flags,cpu,date"})
+    EXPECT_THAT(lines[0], HasSubstr(column));
+  const std::string commit = json().at("commit");
+  for (std::size_t i = 1; i < lines.size(); ++i) {
+    EXPECT_THAT(lines[i], StartsWith("here,"));
+    EXPECT_THAT(lines[i], HasSubstr("," + commit + ","));
+  }
+}
+
+TEST_F(ChartFiles, IndexNamesEveryChart) {
+  const std::string index = contentOf(path("out/index.md"));
+  EXPECT_THAT(index, HasSubstr("| uniform |"));
+  std::size_t charts = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(path("out"))) {
+    if (entry.path().extension() != ".svg") continue;
+    ++charts;
+    EXPECT_THAT(index, HasSubstr(entry.path().filename().string()));
+    const std::filesystem::path picture = std::filesystem::path(entry.path()).replace_extension(".png");
+    EXPECT_THAT(contentOf(picture), HasSubstr("PNG"));
+    EXPECT_GT(contentOf(entry.path()).size(), 10000U);
+  }
+  EXPECT_EQ(charts, 9U);  // seven measures of the tower; the energy of the block that flies, and its error
+}
+
+// A finer step is nearer to the converged run of its own model.
+TEST_F(ChartFiles, ErrorAgainstAConvergedRunFallsWithTheStep) {
+  const Json file = json();
+  double coarse_mm = 0.0;
+  for (const Json& one : file.at("cases")) {
+    if (one.at("scene") != "spin" || one.at("method") != "rigid-pgs") continue;
+    const auto error_mm = one.at("error_mm").get<double>();
+    if (coarse_mm > 0.0) {
+      EXPECT_LT(error_mm, 0.5 * coarse_mm) << "four times the steps of a method of first order";
+    }
+    coarse_mm = error_mm;
+  }
+  EXPECT_GT(coarse_mm, 0.0);
+}
+
+std::string withoutDates(const std::string& text) {
+  std::string cut;
+  for (const std::string& line : linesOf(text)) cut += line.substr(0, line.rfind(',')) + "\n";
+  return cut;
+}
+
+// Of a run that was broken off the scenes that were done stay, to the last digit of their timings.
+TEST_F(ChartFiles, AnotherRunGoesOnFromThem) {
+  const std::string before = withoutDates(contentOf(path("out/chart.csv")));
+  Json broken = json();
+  std::erase_if(broken.at("cases").get_ref<Json::array_t&>(), [](const Json& one) { return one.at("scene") == "spin"; });
+  ASSERT_EQ(broken.at("cases").size(), 4U);
+  std::ofstream(path("out/chart.json")) << broken.dump();
+  ASSERT_EQ(chart(arguments()).exitCode, 0);
+  const std::string after = withoutDates(contentOf(path("out/chart.csv")));
+  EXPECT_EQ(linesOf(after).size(), 9U);
+  for (const std::string& line : linesOf(before)) {
+    if (!line.starts_with("here,uniform")) continue;
+    EXPECT_THAT(after, HasSubstr(line + "\n"));
+  }
+}
+
+TEST_F(ChartFiles, StayWhenOneSceneIsAskedFor) {
+  std::vector<std::string> one = arguments();
+  std::replace(one.begin(), one.end(), std::string("uniform,spin"), std::string("spin"));
+  const std::string before = withoutDates(contentOf(path("out/chart.csv")));
+  ASSERT_EQ(chart(one).exitCode, 0);
+  EXPECT_EQ(withoutDates(contentOf(path("out/chart.csv"))), before);
+}
+
+TEST_F(ChartFiles, AreNotOverwrittenByARunWithOtherLimits) {
+  std::vector<std::string> other = arguments();
+  std::replace(other.begin(), other.end(), std::string("3"), std::string("4"));
+  const std::string before = contentOf(path("out/chart.json"));
+  const ProgramResult refused = chart(other);
+  EXPECT_EQ(refused.exitCode, 2);
+  EXPECT_THAT(refused.error, HasSubstr("--fresh"));
+  EXPECT_EQ(contentOf(path("out/chart.json")), before);
+  other.emplace_back("--fresh");
+  EXPECT_EQ(chart(other).exitCode, 0);
+}
+
+// Where blocks move, cases are timed over the same frames. The choice of method `auto` stands in the index, judged.
+TEST(Chart, TimesMotionAlikeAndJudgesTheChoiceOfAuto) {
+  const ScratchFolder scratch;
+  const ProgramResult result = chart({"--quick", "--auto", "--scenes", "slide,thrown", "--methods", "auto,implicit,rigid-pgs",
+                                      "--case-limit", "30", "--out", scratch.file("out")});
+  ASSERT_EQ(result.exitCode, 0) << result.error;
+  const Json file = Json::parse(contentOf(scratch.file("out/chart.json")));
+  for (const Json& one : file.at("cases")) {
+    SCOPED_TRACE(one.dump());
+    EXPECT_EQ(one.at("frames"), 20);
+    EXPECT_EQ(one.at("outcome"), "right");
+  }
+  const std::string index = contentOf(scratch.file("out/index.md"));
+  EXPECT_THAT(index, HasSubstr("| slide | took implicit"));
+  EXPECT_THAT(index, HasSubstr("| thrown | took rigid-pgs"));
+  EXPECT_THAT(index, ::testing::AnyOf(HasSubstr("| pass |"), HasSubstr("| **fail** |")));
+}
+
+// A frame cannot be broken off, and one of a tall tower may take a quarter of an hour by pivoting: a few rows tell beforehand.
+TEST(Chart, ForeseesWhichTallTowersTakeTooLong) {
+  const ScratchFolder scratch;
+  const ProgramResult result = chart({"--quick", "--auto", "--scenes", "tall", "--methods", "implicit,rigid-lcp", "--seconds",
+                                      "1", "--case-limit", "3", "--out", scratch.file("out")});
+  ASSERT_EQ(result.exitCode, 0) << result.error;
+  const Json file = Json::parse(contentOf(scratch.file("out/chart.json")));
+  int foreseen = 0;
+  for (const Json& one : file.at("cases")) {
+    SCOPED_TRACE(one.dump());
+    const bool tooLong = one.at("note").get<std::string>().find("foreseen: a frame of 6 rows") != std::string::npos;
+    EXPECT_EQ(tooLong, one.at("method") == "rigid-lcp");
+    if (!tooLong) continue;
+    EXPECT_EQ(one.at("outcome"), "timed out");
+    ++foreseen;
+  }
+  EXPECT_GE(foreseen, 1);
+}
+
+// Other engines run beside ours. The packages that tests need have both of them (packages.txt).
+TEST(Chart, RunsOtherEnginesAndCarriesOverThoseMeasuredElsewhere) {
+  const std::filesystem::path programs = std::filesystem::path(SPRINGTOWER_BINARY_DIR) / "bin";
+  for (const char* engine : {"peers_bullet", "peers_ode"}) ASSERT_TRUE(exists(programs / engine)) << engine << " was not built";
+  const ScratchFolder scratch;
+  const std::string records = scratch.file("records.csv");
+  std::ofstream(records) << "engine,version,settings,scene,rows,threads,stands_60_s,worst_penetration_mm,top_height_error_mm,"
+                            "creep_mm,jitter_mm_s,ms_per_frame,ratio_to_bullet_16_substeps\n"
+                            "Other,1,default,uniform,3,1,yes,0.1,-0.3,0,0,1000,0.5\n";
+  const ProgramResult result = chart({"--quick", "--rows", "3", "--scenes", "uniform,pull,drop", "--methods", "bullet,ode",
+                                      "--peers", records, "--out", scratch.file("out")});
+  ASSERT_EQ(result.exitCode, 0) << result.error;
+  double bullet_ms = 0.0;
+  int right = 0;
+  int pulled = 0;
+  const Json file = Json::parse(contentOf(scratch.file("out/chart.json")));
+  for (const Json& one : file.at("cases")) {
+    SCOPED_TRACE(one.dump());
+    EXPECT_GT(one.at("cpu_ms_per_frame").get<double>(), 0.0);
+    EXPECT_LT(one.at("penetration_mm").get<double>(), 20.0);
+    if (one.at("outcome") == "right") ++right;
+    if (one.at("scene") == "pull") ++pulled;
+    if (one.at("scene") == "uniform") {
+      EXPECT_GT(one.at("imbalance").get<double>(), 0.0) << "they are never quite at rest";
+    }
+    if (one.at("method") == "bullet" && one.at("value") == 16.0 && one.at("scene") == "uniform")
+      bullet_ms = one.at("cpu_ms_per_frame").get<double>();
+  }
+  EXPECT_EQ(pulled, 4) << "two settings of each";
+  EXPECT_GE(right, 4) << "three rows stand with any engine that takes 16 steps";
+  const std::vector<std::string> lines = linesOf(contentOf(scratch.file("out/chart.csv")));
+  EXPECT_THAT(lines.back(), StartsWith("elsewhere,uniform,3,\"Other\","));
+  ASSERT_GT(bullet_ms, 0.0);
+  std::istringstream carried(lines.back().substr(lines.back().find(",,,,,,") + 6));
+  double ms = 0.0;
+  carried >> ms;
+  EXPECT_NEAR(ms, 0.5 * bullet_ms, 1e-3 * bullet_ms);
+}
+
+}  // namespace
+}  // namespace springtower

@@ -1,0 +1,200 @@
+#include "core/error.h"
+#include "core/random.h"
+#include "core/scene/scene.h"
+
+#include <cmath>
+#include <functional>
+#include <gmock/gmock.h>
+#include <limits>
+#include <numbers>
+
+namespace springtower {
+namespace {
+
+using testing::ThrowsMessage;
+
+constexpr double kHalfHeight_m = 0.0091;
+
+BlockSpec blockAt(const Vec3& centre, double angle_deg = 0.0, const Vec3& axis = Vec3::UnitZ()) {
+  BlockSpec block;
+  block.centre = centre;
+  block.orientation = Eigen::AngleAxisd(angle_deg * std::numbers::pi / 180.0, axis.normalized());
+  return block;
+}
+
+Scene sceneOf(std::vector<BlockSpec> blocks) {
+  Scene scene;
+  scene.blocks = std::move(blocks);
+  return scene;
+}
+
+auto checking(const Scene& scene) {
+  return [scene] { checkScene(scene, "test"); };
+}
+
+TEST(StartingPlaces, ThatTouchAreFine) {
+  const double stacked = 3.0 * kHalfHeight_m;
+  EXPECT_NO_THROW(checkScene(sceneOf({blockAt({0, 0, kHalfHeight_m})}), "on the floor"));
+  EXPECT_NO_THROW(checkScene(sceneOf({blockAt({0, 0, kHalfHeight_m}), blockAt({0, 0, stacked})}), "face on face"));
+  EXPECT_NO_THROW(checkScene(sceneOf({blockAt({0, 0, kHalfHeight_m}), blockAt({0, 0, stacked}, 37.0)}), "face on turned face"));
+  EXPECT_NO_THROW(checkScene(sceneOf({blockAt({0, 0, kHalfHeight_m}), blockAt({0.081, 0, kHalfHeight_m})}), "side by side"));
+  EXPECT_NO_THROW(checkScene(sceneOf({blockAt({0, 0, kHalfHeight_m}), blockAt({0.081, 0.0267, stacked})}), "corner at corner"));
+}
+
+TEST(StartingPlaces, MayOverlapByAMillionthOfTheLeastDimension) {
+  const double allowed = 1e-6 * 0.0182;
+  EXPECT_NO_THROW(checkScene(sceneOf({blockAt({0, 0, kHalfHeight_m - 0.9 * allowed})}), "test"));
+  EXPECT_THROW(checkScene(sceneOf({blockAt({0, 0, kHalfHeight_m - 1.1 * allowed})}), "test"), InputError);
+  const BlockSpec lower = blockAt({0, 0, kHalfHeight_m});
+  EXPECT_NO_THROW(checkScene(sceneOf({lower, blockAt({0, 0, 3.0 * kHalfHeight_m - 0.9 * allowed})}), "test"));
+  EXPECT_THROW(checkScene(sceneOf({lower, blockAt({0, 0, 3.0 * kHalfHeight_m - 1.1 * allowed})}), "test"), InputError);
+}
+
+TEST(StartingPlaces, InsideTheFloorAreNamedWithTheirDepth) {
+  EXPECT_THAT(checking(sceneOf({blockAt({0, 0, kHalfHeight_m}), blockAt({0.2, 0, 0.0081})})),
+              ThrowsMessage<InputError>("test: block 1 starts 1 mm inside the floor z = 0, allowed is touching it"));
+  Scene withoutFloor = sceneOf({blockAt({0, 0, -0.5})});
+  withoutFloor.floor = false;
+  EXPECT_NO_THROW(checkScene(withoutFloor, "test"));
+}
+
+TEST(StartingPlaces, InsideOneAnotherNameBothBlocksAndTheDepth) {
+  const BlockSpec first = blockAt({0, 0, kHalfHeight_m});
+  EXPECT_THAT(checking(sceneOf({blockAt({1, 0, kHalfHeight_m}), first, blockAt({0.0, 0.0, 0.0263}, 90.0)})),
+              ThrowsMessage<InputError>("test: block 1 and block 2 start 1 mm inside each other, allowed is touching"));
+  EXPECT_THAT(checking(sceneOf({first, first})),
+              ThrowsMessage<InputError>("test: block 0 and block 1 start 18.2 mm inside each other, allowed is touching"));
+}
+
+// A cube of side 1 balanced on its corner, half a diagonal above the flat one below: only the flat one's face separates them,
+// whichever of the two comes first.
+TEST(StartingPlaces, OfTurnedBlocksAreJudgedByTheirBoxes) {
+  BlockSpec flat = blockAt({0, 0, 0.5});
+  BlockSpec onCorner = blockAt({0.2, 0.1, 0});
+  flat.dimensions = onCorner.dimensions = Vec3::Ones();
+  onCorner.orientation = Eigen::AngleAxisd(std::acos(1.0 / std::numbers::sqrt3), Vec3(1, -1, 0).normalized());
+  const double touching = 1.0 + std::numbers::sqrt3 / 2.0;
+  for (const bool flatFirst : {true, false}) {
+    onCorner.centre.z() = touching;
+    EXPECT_NO_THROW(checkScene(flatFirst ? sceneOf({flat, onCorner}) : sceneOf({onCorner, flat}), "test"));
+    onCorner.centre.z() = touching - 0.01;
+    EXPECT_THAT(checking(flatFirst ? sceneOf({flat, onCorner}) : sceneOf({onCorner, flat})),
+                ThrowsMessage<InputError>("test: block 0 and block 1 start 10 mm inside each other, allowed is touching"));
+  }
+}
+
+// Two bars crossed edge on edge, one turned 45 degrees about its length along x, the other about its length along y: only the
+// product of the two edges separates them.
+TEST(StartingPlaces, OfCrossedEdgesAreJudgedByTheProductOfTheEdges) {
+  const auto bars = [](double distance) {
+    BlockSpec lower = blockAt({0, 0, 10.0}, 45.0, Vec3::UnitX());
+    BlockSpec upper = blockAt({0, 0, 10.0 + distance}, 45.0, Vec3::UnitY());
+    lower.dimensions = {4.0, 1.0, 1.0};
+    upper.dimensions = {1.0, 4.0, 1.0};
+    return sceneOf({lower, upper});
+  };
+  EXPECT_NO_THROW(checkScene(bars(std::numbers::sqrt2), "test"));
+  EXPECT_THAT(checking(bars(std::numbers::sqrt2 - 0.002)),
+              ThrowsMessage<InputError>("test: block 0 and block 1 start 2 mm inside each other, allowed is touching"));
+}
+
+// Whether two boxes share a point, found by sampling both: the answer of the separating axes must not contradict it.
+TEST(StartingPlaces, AreRefusedWheneverABoxHoldsAPointOfAnother) {
+  RandomStream random(11, 0);
+  const auto inside = [](const BlockSpec& block, const Vec3& point) {
+    const Vec3 own = block.orientation.conjugate() * (point - block.centre);
+    return (own.cwiseAbs().array() < 0.499 * block.dimensions.array()).all();
+  };
+  int overlapping = 0;
+  int accepted = 0;
+  for (int trial = 0; trial < 400; ++trial) {
+    const auto vector = [&] { return Vec3(random.normal(), random.normal(), random.normal()); };
+    BlockSpec first = blockAt({0, 0, 1.0}, 360.0 * random.uniform(), vector());
+    BlockSpec second = blockAt(first.centre + 0.025 * vector(), 360.0 * random.uniform(), vector());
+    bool sharesAPoint = false;
+    for (int sample = 0; sample < 3000 && !sharesAPoint; ++sample) {
+      const Vec3 own =
+          (Vec3(random.uniform(), random.uniform(), random.uniform()).array() - 0.5) * 0.998 * first.dimensions.array();
+      sharesAPoint = inside(second, first.orientation * own + first.centre);
+    }
+    bool refused = false;
+    try {
+      checkScene(sceneOf({first, second}), "test");
+    } catch (const InputError&) {
+      refused = true;
+    }
+    if (sharesAPoint) {
+      ++overlapping;
+      EXPECT_TRUE(refused) << "trial " << trial;
+    }
+    if (!refused) ++accepted;
+  }
+  EXPECT_GT(overlapping, 50);
+  EXPECT_GT(accepted, 50);
+}
+
+TEST(StartingPlaces, OfManyBlocksAreComparedWhereverTheyStand) {
+  Scene towers;
+  for (int x = 0; x < 10; ++x) {
+    for (int y = 0; y < 10; ++y) {
+      for (BlockSpec block : towerScene(18).blocks) {
+        block.centre += Vec3(0.1 * x, 0.1 * y, 0.0);
+        towers.blocks.push_back(block);
+      }
+    }
+  }
+  EXPECT_NO_THROW(checkScene(towers, "towers"));
+  for (const std::size_t intruder : {std::size_t{3}, std::size_t{2727}, towers.blocks.size() - 1}) {
+    Scene scene = towers;
+    scene.blocks[intruder].centre.z() -= 0.003;
+    EXPECT_THROW(checkScene(scene, "towers"), InputError) << "block " << intruder;
+  }
+}
+
+TEST(SceneLimits, NameTheBlockTheValueAndWhatIsAllowed) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double infinity = std::numeric_limits<double>::infinity();
+  const std::pair<std::function<void(Scene&)>, const char*> mistakes[] = {
+      {[](Scene& s) { s.blocks[1].mass = -0.02; }, "test: block 1: mass: found -0.02, allowed 1e-09 to 1000000 kg"},
+      {[](Scene& s) { s.blocks[1].mass = 0.0; }, "test: block 1: mass: found 0, allowed 1e-09 to 1000000 kg"},
+      {[=](Scene& s) { s.blocks[0].centre.y() = nan; }, "test: block 0: centre y: found nan, allowed -10000 to 10000 m"},
+      {[](Scene& s) { s.blocks[0].dimensions.z() = 1e-6; }, "test: block 0: dimension z: found 1e-06, allowed 1e-05 to 100 m"},
+      {[](Scene& s) { s.blocks[0].dimensions.x() = 101.0; }, "test: block 0: dimension x: found 101, allowed 1e-05 to 100 m"},
+      {[=](Scene& s) { s.blocks[0].velocity.x() = -infinity; },
+       "test: block 0: velocity x: found -inf, allowed -1000 to 1000 m/s"},
+      {[](Scene& s) { s.blocks[0].spin.z() = 1e9; }, "test: block 0: spin z: found 1000000000, allowed -1000 to 1000 rad/s"},
+      {[](Scene& s) { s.blocks[0].orientation.coeffs() *= 2.0; },
+       "test: block 0: length of the orientation's quaternion: found 2, allowed 0.999999999 to 1.000000001"},
+      {[](Scene& s) { s.blocks.clear(); }, "test: number of blocks: found 0, allowed 1 to 100000"},
+      {[](Scene& s) { s.seconds = -1.0; }, "test: seconds: found -1, allowed 0.001 to 10000000 s"},
+      {[](Scene& s) { s.staticFriction = -0.4; }, "test: static friction: found -0.4, allowed 0 to 10"},
+      {[](Scene& s) { s.kineticFriction = 0.5; }, "test: kinetic friction: found 0.5, allowed 0 to 0.4 (the static one)"},
+      {[](Scene& s) { s.gravity.magnitude = -9.81; }, "test: gravity: magnitude: found -9.81, allowed 0 to 1000 m/s2"},
+      {[=](Scene& s) { s.gravity.tilt_deg = nan; }, "test: gravity: tilt: found nan, allowed -180 to 180 deg"},
+      {[](Scene& s) { s.settings.frame_s = 0.0; }, "test: frame_s: found 0, allowed 0.0001 to 0.1 s"},
+      {[](Scene& s) { s.forces.push_back({.block = 2, .end_s = 1.0}); }, "test: force 0: block: found 2, allowed 0 to 1"},
+      {[](Scene& s) { s.forces.push_back({.block = 0, .corner = 8, .end_s = 1.0}); },
+       "test: force 0: corner: found 8, allowed -1 to 7 (-1 is the centre)"},
+      {[](Scene& s) { s.forces.push_back({.start_s = 2.0, .end_s = 1.0}); },
+       "test: force 0: end: found 1, allowed 2 to 10000000 s"},
+  };
+  for (const auto& [makeMistake, message] : mistakes) {
+    Scene scene = sceneOf({blockAt({0, 0, kHalfHeight_m}), blockAt({0.2, 0, kHalfHeight_m})});
+    ASSERT_NO_THROW(checkScene(scene, "test"));
+    makeMistake(scene);
+    EXPECT_THAT(checking(scene), ThrowsMessage<InputError>(message));
+  }
+}
+
+TEST(SceneLimits, AllowAHundredThousandBlocksAndNoMore) {
+  Scene scene;
+  for (int x = 0; x < 1000; ++x) {
+    for (int y = 0; y < 100; ++y) scene.blocks.push_back(blockAt({0.1 * x, 0.1 * y, kHalfHeight_m}));
+  }
+  EXPECT_NO_THROW(checkScene(scene, "test"));
+  scene.blocks.push_back(blockAt({0, -1, kHalfHeight_m}));
+  EXPECT_THAT(checking(scene), ThrowsMessage<InputError>("test: number of blocks: found 100001, allowed 1 to 100000"));
+}
+
+}  // namespace
+}  // namespace springtower

@@ -1,0 +1,315 @@
+#include "core/error.h"
+#include "core/scene/scene.h"
+
+#include <filesystem>
+#include <fmt/format.h>
+#include <fstream>
+#include <gmock/gmock.h>
+#include <numbers>
+#include <string>
+#include <unistd.h>
+#include <vector>
+
+namespace springtower {
+namespace {
+
+using testing::ThrowsMessage;
+
+const std::string kData = SPRINGTOWER_TEST_DATA_DIR "/scenes/";
+const std::string kScenes = SPRINGTOWER_SOURCE_DIR "/scenes/";
+
+// Reads a text as a scene file. Tests run side by side, so each process has a file of its own.
+Scene fromText(const std::string& text) {
+  const std::string path = testing::TempDir() + fmt::format("springtower_scene_{}.toml", getpid());
+  std::ofstream(path) << text;
+  Scene scene = sceneFromToml(path);
+  std::filesystem::remove(path);
+  return scene;
+}
+
+TEST(SceneFile, SetsEverythingASceneHas) {
+  const Scene scene = sceneFromToml(kData + "everything.toml");
+  EXPECT_EQ(scene.name, "everything");
+  EXPECT_EQ(scene.seconds, 2.5);
+  ASSERT_EQ(scene.blocks.size(), 7U);
+  EXPECT_FALSE(scene.floor);
+  EXPECT_EQ(scene.staticFriction, 0.5);
+  EXPECT_EQ(scene.kineticFriction, 0.3);
+  EXPECT_EQ(scene.gravity.magnitude, 1.62);
+  EXPECT_EQ(scene.gravity.tilt_deg, 3.0);
+  EXPECT_EQ(scene.gravity.direction_deg, 45.0);
+  EXPECT_EQ(scene.gravity.sway_deg, 0.5);
+  EXPECT_EQ(scene.gravity.sway_hz, 2.0);
+  EXPECT_EQ(scene.settings.method, Method::rungeKutta4);
+  EXPECT_EQ(scene.settings.inertia, Inertia::lumped);
+  EXPECT_EQ(scene.settings.sleep, Sleep::report);
+  EXPECT_EQ(scene.settings.substeps, 120);
+  EXPECT_FALSE(scene.settings.continuousTests);
+  EXPECT_FALSE(scene.settings.tolerance_m);
+  EXPECT_EQ(scene.settings.stepMargin, Settings{}.stepMargin);
+
+  const BlockSpec& block = scene.blocks[6];
+  EXPECT_EQ(block.row, -1);
+  EXPECT_EQ(block.centre, Vec3(0.3, 0.1, 0.5));
+  EXPECT_EQ(block.dimensions, Vec3(0.1, 0.04, 0.02));
+  EXPECT_EQ(block.mass, 0.05);
+  EXPECT_EQ(block.velocity, Vec3(1, -2, 3));
+  EXPECT_EQ(block.spin, Vec3(4, 5, -6));
+  EXPECT_LT((block.orientation * Vec3::UnitX() - Vec3::UnitY()).norm(), 1e-15);
+
+  ASSERT_EQ(scene.forces.size(), 2U);
+  EXPECT_EQ(scene.forces[0].block, 5);
+  EXPECT_EQ(scene.forces[0].corner, 5);
+  EXPECT_EQ(scene.forces[0].force, Vec3(0.1, 0.2, -0.3));
+  EXPECT_EQ(scene.forces[0].start_s, 0.5);
+  EXPECT_EQ(scene.forces[0].end_s, 1.5);
+  EXPECT_EQ(scene.forces[1].block, 6);
+  EXPECT_EQ(scene.forces[1].corner, -1);
+  EXPECT_EQ(scene.forces[1].start_s, 0.0);
+}
+
+TEST(SceneFile, DescribesTheTowerThatItsOptionsDescribe) {
+  TowerOptions options;
+  options.heightsSigma_m = 0.0002;
+  options.massSigma_kg = 0.001;
+  options.seed = 7;
+  options.startGap_m = 0.001;
+  options.offsets = {{1, 2, 0.003, -0.004}};
+  options.loose = {{0, 2, 0.0005}};
+  const Scene expected = bitCodeScene("(111)-(010)-(10L)", options);
+  const Scene scene = sceneFromToml(kData + "everything.toml");
+  for (std::size_t b = 0; b < expected.blocks.size(); ++b) {
+    EXPECT_EQ(scene.blocks[b].centre, expected.blocks[b].centre);
+    EXPECT_EQ(scene.blocks[b].dimensions, expected.blocks[b].dimensions);
+    EXPECT_EQ(scene.blocks[b].mass, expected.blocks[b].mass);
+    EXPECT_EQ(scene.blocks[b].row, expected.blocks[b].row);
+    EXPECT_EQ(scene.blocks[b].position, expected.blocks[b].position);
+  }
+}
+
+TEST(SceneFile, HasTheDefaultsOfASceneWhereItIsSilent) {
+  const Scene scene = fromText("[tower]\nrows = 3\n");
+  const Scene tower = towerScene(3);
+  EXPECT_EQ(scene.blocks.size(), tower.blocks.size());
+  EXPECT_EQ(scene.seconds, tower.seconds);
+  EXPECT_EQ(scene.plane, tower.plane);
+  EXPECT_EQ(scene.staticFriction, tower.staticFriction);
+  EXPECT_EQ(scene.gravity.magnitude, tower.gravity.magnitude);
+  EXPECT_TRUE(scene.floor);
+  EXPECT_THAT(scene.name, testing::HasSubstr("springtower_scene_"));
+}
+
+TEST(SceneFile, RotationIsAnAxisTimesItsAngle) {
+  const Scene scene = fromText("[[block]]\ncentre_m = [0, 0, 1]\nrotation_deg = [0.0, 30.0, 40.0]\n");
+  const Eigen::AngleAxisd rotation(scene.blocks[0].orientation);
+  EXPECT_NEAR(rotation.angle() * 180.0 / std::numbers::pi, 50.0, 1e-12);
+  EXPECT_LT((rotation.axis() - Vec3(0.0, 0.6, 0.8)).norm(), 1e-14);
+}
+
+TEST(SceneFile, ReadsEverySettingOfTheTable) {
+  for (const SettingRow& row : settingTable()) {
+    std::string most = fmt::format("{}", row.most);
+    if (std::holds_alternative<bool Settings::*>(row.member)) most = "true";
+    const Settings settings = fromText(fmt::format("[tower]\nrows = 1\n[settings]\n{} = {}\n", row.key, most)).settings;
+    EXPECT_EQ(numberOf(settings, row), row.most) << row.key;
+    EXPECT_EQ(settings.tolerance_m.has_value(), row.key == "tolerance_m") << row.key;
+  }
+  EXPECT_FALSE(fromText("[tower]\nrows = 1\n[settings]\ncontinuous_tests = false\n").settings.continuousTests);
+}
+
+TEST(SceneFile, GivesWayToOptionsOfTheCommandLine) {
+  TowerOptions options;
+  options.seed = 8;
+  options.startGap_m = 0.0;
+  TowerOptions expected = options;
+  expected.heightsSigma_m = 0.0002;
+  expected.massSigma_kg = 0.001;
+  expected.offsets = {{1, 2, 0.003, -0.004}};
+  expected.loose = {{0, 2, 0.0005}};
+  const Scene scene = sceneFromName(kData + "everything.toml", options);
+  const Scene tower = bitCodeScene("(111)-(010)-(10L)", expected);
+  for (std::size_t b = 0; b < tower.blocks.size(); ++b) {
+    EXPECT_EQ(scene.blocks[b].centre, tower.blocks[b].centre);
+    EXPECT_EQ(scene.blocks[b].mass, tower.blocks[b].mass);
+  }
+}
+
+TEST(SceneFile, WithoutATowerRefusesTheOptionsOfOne) {
+  const std::string path = kScenes + "dropped_block.toml";
+  const auto with = [&](auto change) {
+    TowerOptions options;
+    change(options);
+    return [path, options] { sceneFromName(path, options); };
+  };
+  const std::string rest = " for a scene without [tower], allowed for towers only";
+  EXPECT_THAT(with([](TowerOptions& o) { o.heightsSigma_m = 0.0002; }),
+              ThrowsMessage<InputError>(path + ": found a variation of heights" + rest));
+  EXPECT_THAT(with([](TowerOptions& o) { o.massSigma_kg = 0.001; }),
+              ThrowsMessage<InputError>(path + ": found a variation of masses" + rest));
+  EXPECT_THAT(with([](TowerOptions& o) { o.seed = 1; }), ThrowsMessage<InputError>(path + ": found a seed" + rest));
+  EXPECT_THAT(with([](TowerOptions& o) { o.startGap_m = 0.01; }), ThrowsMessage<InputError>(path + ": found a start gap" + rest));
+  EXPECT_NO_THROW(sceneFromName(path));
+}
+
+// One line each: file, line and column, key, what was found, what is allowed.
+TEST(BadSceneFile, IsNamedInOneLine) {
+  const std::pair<const char*, const char*> cases[] = {
+      {"unknown_key",
+       ":3:1: unknown key 'colour' in block[0], allowed centre_m, dimensions_m, mass_kg, rotation_deg, velocity_m_s, "
+       "spin_rad_s"},
+      {"wrong_type", ":1:11: seconds: found the text 'ten', allowed a number from 0.001 to 10000000 s"},
+      {"wrong_whole_number", ":2:8: tower.rows: found 3.5, allowed a whole number from 1 to 2000"},
+      {"wrong_array", ":2:12: block[0].centre_m: found an array of 2, allowed an array of three numbers from -10000 to 10000 m"},
+      {"wrong_array_value", ":2:18: block[0].centre_m[1]: found true, allowed a number from -10000 to 10000 m"},
+      {"not_an_array_of_tables", ":1:1: block: found a table, allowed up to 100000 tables, each [[block]]"},
+      {"not_a_table", ":1:9: tower: found 18, allowed a table, [tower]"},
+      {"negative_mass", ":6:11: block[1].mass_kg: found -0.0196, allowed 1e-09 to 1000000 kg"},
+      {"not_a_number", ":3:22: block[0].velocity_m_s[1]: found nan, allowed -1000 to 1000 m/s"},
+      {"infinite", ":1:11: seconds: found inf, allowed 0.001 to 10000000 s"},
+      {"absurd_size", ":3:32: block[0].dimensions_m[2]: found 1000, allowed 1e-05 to 100 m"},
+      {"absurd_rows", ":2:8: tower.rows: found 1000000000, allowed a whole number from 1 to 2000"},
+      {"zero_thickness", ":3:32: block[0].dimensions_m[2]: found 0, allowed 1e-05 to 100 m"},
+      {"code_typo", ":1:1: tower: bit code '(010)-(0120)': character 10: found '2', allowed 0, 1 or L"},
+      {"absent_offset",
+       ":1:1: tower: (010)-(010): offset of row 1, position 3: found no block there, allowed rows 0 to 1 and "
+       "positions 1 to 3 where a block is present"},
+      {"rows_and_code", ":1:1: tower: found both or neither of rows and code, allowed either"},
+      {"no_blocks", ": found no blocks, allowed a [tower], [[block]]s or both"},
+      {"no_centre", ":1:1: block[0]: found no centre_m, which is required"},
+      {"inside_each_other", ": block 0 and block 1 start 1 mm inside each other, allowed is touching"},
+      {"inside_the_floor", ": block 0 starts 1 mm inside the floor z = 0, allowed is touching it"},
+      {"unknown_method",
+       ":5:10: settings.method: found 'euler', allowed implicit, implicit-euler, implicit-eigen, semi-implicit-euler, midpoint, "
+       "runge-kutta-4, "
+       "report, rigid-pgs, rigid-lcp, xpbd or auto"},
+      {"setting_out_of_range", ":5:15: settings.step_margin: found 1.5, allowed 0.05 to 1"},
+      {"force_on_no_block", ":5:9: force[0].block: found 1, allowed a whole number from 0 to 0"},
+      {"force_ends_first", ":8:9: force[0].end_s: found 1, allowed 2 to 10000000 s"},
+      {"friction_twice", ":4:1: friction: found both or neither of coefficient and static with kinetic, allowed either"},
+      {"kinetic_above_static", ":6:11: friction.kinetic: found 0.5, allowed 0 to 0.4 (the static one)"},
+  };
+  for (const auto& [name, message] : cases) {
+    const std::string path = kData + name + ".toml";
+    EXPECT_THAT([&] { sceneFromToml(path); }, ThrowsMessage<InputError>(path + message));
+  }
+}
+
+TEST(BadSceneFile, UnknownSettingListsTheKnownOnes) {
+  const std::string path = kData + "unknown_setting.toml";
+  std::string known = "method, inertia, sleep";
+  for (const SettingRow& row : settingTable()) known += fmt::format(", {}", row.key);
+  EXPECT_THAT([&] { sceneFromToml(path); },
+              ThrowsMessage<InputError>(path + ":5:1: unknown key 'sub_steps' in settings, allowed " + known));
+}
+
+TEST(BadSceneFile, BrokenTomlIsNamedByLineAndColumn) {
+  const std::string path = kData + "broken.toml";
+  try {
+    sceneFromToml(path);
+    FAIL() << "a broken file was read";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), testing::StartsWith(path + ":2:"));
+    EXPECT_THAT(error.what(), testing::Not(testing::HasSubstr("\n")));
+  }
+}
+
+TEST(BadSceneFile, MissingFilesAndFoldersAreNamed) {
+  EXPECT_THAT([] { sceneFromToml("no/such/scene.toml"); },
+              ThrowsMessage<InputError>("no/such/scene.toml: found no such file, allowed a scene file, tower:R with R rows, or a "
+                                        "bit code such as (010)-(111)"));
+  EXPECT_THAT([] { sceneFromToml(SPRINGTOWER_SOURCE_DIR "/scenes"); },
+              ThrowsMessage<InputError>(SPRINGTOWER_SOURCE_DIR "/scenes: found a folder, allowed a scene file"));
+  EXPECT_THAT([] { sceneFromToml("no\nsuch"); },
+              ThrowsMessage<InputError>(testing::StartsWith("no\\x0asuch: found no such file")));
+}
+
+TEST(ExampleScenes, AllLoad) {
+  int count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(kScenes)) {
+    EXPECT_NO_THROW(sceneFromToml(entry.path().string())) << entry.path();
+    ++count;
+  }
+  EXPECT_GE(count, 12);
+}
+
+struct ShownKey {
+  std::string value;
+  std::string comment;
+};
+
+// A line "key = value  # comment" of the annotated example; the key may be commented out.
+ShownKey shownIn(const std::vector<std::string>& lines, std::string_view key) {
+  const std::string start = fmt::format("{} = ", key);
+  for (const std::string& line : lines) {
+    const std::string shown = line.starts_with("# ") ? line.substr(2) : line;
+    if (!shown.starts_with(start)) continue;
+    const std::size_t comment = shown.find(" # ");
+    if (comment == std::string::npos) return {shown.substr(start.size()), ""};
+    return {shown.substr(start.size(), comment - start.size()), shown.substr(comment + 3)};
+  }
+  return {};
+}
+
+std::vector<std::string> linesOf(const std::string& path) {
+  std::ifstream stream(path);
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+// The annotated example is the reference for users: it must show every setting, with the default that is in force.
+TEST(ExampleScenes, AnnotatedOneShowsEverySettingWithItsDefault) {
+  const std::vector<std::string> lines = linesOf(kScenes + "annotated.toml");
+  for (const SettingRow& row : settingTable()) {
+    const ShownKey shown = shownIn(lines, row.key);
+    ASSERT_FALSE(shown.value.empty()) << row.key;
+    const bool isFlag = std::holds_alternative<bool Settings::*>(row.member);
+    const double value = isFlag ? (shown.value.starts_with("true") ? 1.0 : 0.0) : std::stod(shown.value);
+    EXPECT_EQ(value, numberOf(Settings{}, row).value_or(kBlockTolerance_m)) << row.key;
+    const std::string unit = row.unit.empty() ? "" : std::string(row.unit) + ",";
+    EXPECT_THAT(shown.comment, testing::StartsWith(unit)) << row.key;
+    EXPECT_FALSE(shown.comment.empty()) << row.key;
+  }
+}
+
+TEST(ExampleScenes, AnnotatedOneIsTheDefaultTowerAndABlock) {
+  const Scene scene = sceneFromToml(kScenes + "annotated.toml");
+  const Scene tower = towerScene(18);
+  ASSERT_EQ(scene.blocks.size(), 55U);
+  for (std::size_t b = 0; b < 54; ++b) {
+    EXPECT_EQ(scene.blocks[b].centre, tower.blocks[b].centre);
+    EXPECT_EQ(scene.blocks[b].dimensions, tower.blocks[b].dimensions);
+    EXPECT_EQ(scene.blocks[b].mass, tower.blocks[b].mass);
+  }
+  const BlockSpec standard;
+  EXPECT_EQ(scene.blocks[54].dimensions, standard.dimensions);
+  EXPECT_EQ(scene.blocks[54].mass, standard.mass);
+  EXPECT_EQ(scene.seconds, tower.seconds);
+  EXPECT_EQ(scene.staticFriction, tower.staticFriction);
+  EXPECT_EQ(scene.kineticFriction, tower.kineticFriction);
+  EXPECT_EQ(scene.gravity.magnitude, tower.gravity.magnitude);
+  EXPECT_EQ(scene.gravity.tilt_deg, tower.gravity.tilt_deg);
+  EXPECT_EQ(scene.settings.method, Settings{}.method);
+  EXPECT_EQ(scene.settings.inertia, Settings{}.inertia);
+  EXPECT_EQ(scene.settings.sleep, Settings{}.sleep);
+}
+
+TEST(ExampleScenes, KeysThatAreCommentedOutAreKeysThatAreAllowed) {
+  std::string text;
+  for (const std::string& line : linesOf(kScenes + "annotated.toml")) {
+    const std::string bare = line.starts_with("# ") ? line.substr(2) : line;
+    const bool opensTable = bare.starts_with("[[");
+    // Keys that contradict one that is shown stay commented out.
+    const bool isKey = bare.find(" = ") == bare.find(' ') && bare.find(' ') != std::string::npos && !bare.starts_with("code") &&
+                       !bare.starts_with("block") && !bare.starts_with("static") && !bare.starts_with("kinetic");
+    text += (opensTable || isKey ? bare : line) + "\n";
+  }
+  const Scene scene = fromText(text);
+  ASSERT_EQ(scene.forces.size(), 1U);
+  EXPECT_EQ(scene.forces[0].block, 52);
+  EXPECT_NEAR(scene.blocks[27].dimensions.z(), 0.0179, 1e-17);
+  EXPECT_EQ(scene.settings.tolerance_m, kBlockTolerance_m);
+}
+
+}  // namespace
+}  // namespace springtower

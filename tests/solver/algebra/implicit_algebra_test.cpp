@@ -1,0 +1,219 @@
+#include "solver/algebra/block_ldlt.h"
+#include "solver/algebra/eigen_llt.h"
+#include "solver/block/inertia.h"
+#include "solver/block/modes.h"
+#include "solver/block/springs.h"
+#include "tests/support/block_scenes.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <gtest/gtest.h>
+#include <numeric>
+#include <random>
+#include <vector>
+
+namespace springtower {
+namespace {
+
+constexpr std::size_t kNoLimit = 1000000;
+constexpr Eigen::Index kNode = static_cast<Eigen::Index>(kNodeSize);
+
+// Nodes coupled as the blocks of a tower of rows of three: each to the three below.
+std::vector<BlockPair> towerEdges(std::int32_t rows) {
+  std::vector<BlockPair> edges;
+  for (std::int32_t row = 1; row < rows; ++row) {
+    for (std::int32_t i = 0; i < 3; ++i) {
+      for (std::int32_t k = 0; k < 3; ++k) edges.push_back({3 * row + i, 3 * (row - 1) + k});
+    }
+  }
+  return edges;
+}
+
+// A random matrix of that pattern, positive definite as its diagonal outweighs the rest; put into `matrix` and returned in full.
+Eigen::MatrixXd randomMatrix(const std::vector<BlockPair>& edges, BlockCholesky& matrix) {
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> number(-1.0, 1.0);
+  const auto count = static_cast<Eigen::Index>(matrix.nodeCount());
+  Eigen::MatrixXd full = Eigen::MatrixXd::Zero(kNode * count, kNode * count);
+  const auto draw = [&] { return Eigen::MatrixXd::NullaryExpr(kNode, kNode, [&] { return number(random); }); };
+  clear(matrix);
+  const auto put = [](const Eigen::MatrixXd& block, float* to) {
+    for (Eigen::Index i = 0; i < kNode; ++i) {
+      for (Eigen::Index k = 0; k < kNode; ++k) to[kNode * i + k] = static_cast<float>(block(i, k));
+    }
+  };
+  for (const BlockPair& edge : edges) {
+    const Eigen::MatrixXd block = draw();
+    full.block(kNode * edge.a, kNode * edge.b, kNode, kNode) = block;
+    full.block(kNode * edge.b, kNode * edge.a, kNode, kNode) = block.transpose();
+    const BlockSlot slot = slotOf(matrix, edge.a, edge.b);
+    EXPECT_GE(slot.at, 0);
+    put(slot.firstIsRow ? block : Eigen::MatrixXd(block.transpose()),
+        matrix.lower.data() + kNodeMatrix * static_cast<std::size_t>(slot.at));
+  }
+  for (Eigen::Index n = 0; n < count; ++n) {
+    const Eigen::MatrixXd half = draw();
+    const Eigen::MatrixXd block = half + half.transpose() + 80.0 * Eigen::MatrixXd::Identity(kNode, kNode);
+    full.block(kNode * n, kNode * n, kNode, kNode) = block;
+    put(block, matrix.diagonal.data() + kNodeMatrix * static_cast<std::size_t>(matrix.position[static_cast<std::size_t>(n)]));
+  }
+  return full;
+}
+
+// In float with some hundred additions an entry: 1e-5 of the largest entry of the answer.
+TEST(BlockCholesky, SolvesAsADenseFactorisationDoes) {
+  const std::int32_t rows = 7;
+  std::vector<std::int32_t> order(static_cast<std::size_t>(3 * rows));
+  std::iota(order.begin(), order.end(), 0);
+  for (const bool shuffled : {false, true}) {
+    if (shuffled) std::shuffle(order.begin(), order.end(), std::mt19937_64(2));
+    const std::vector<BlockPair> edges = towerEdges(rows);
+    BlockCholesky matrix;
+    ASSERT_TRUE(analyse(order, edges, kNoLimit, matrix));
+    const Eigen::MatrixXd full = randomMatrix(edges, matrix);
+    Eigen::VectorXd values = Eigen::VectorXd::LinSpaced(full.rows(), -1.0, 1.0);
+    const Eigen::VectorXd expected = full.ldlt().solve(values);
+    ASSERT_TRUE(factorise(matrix));
+    solve(matrix, {values.data(), static_cast<std::size_t>(values.size())});
+    EXPECT_LT((values - expected).cwiseAbs().maxCoeff(), 1e-5 * expected.cwiseAbs().maxCoeff()) << "shuffled " << shuffled;
+  }
+}
+
+// In double, of a matrix rounded to float; in a copy to the last bit.
+TEST(SparseFactors, SolveAsADenseFactorisationDoes) {
+  const std::int32_t rows = 7;
+  std::vector<std::int32_t> order(static_cast<std::size_t>(3 * rows));
+  std::iota(order.begin(), order.end(), 0);
+  std::shuffle(order.begin(), order.end(), std::mt19937_64(2));
+  const std::vector<BlockPair> edges = towerEdges(rows);
+  BlockCholesky matrix;
+  ASSERT_TRUE(analyse(order, edges, kNoLimit, matrix));
+  const Eigen::MatrixXd full = randomMatrix(edges, matrix).cast<float>().cast<double>();
+  std::vector<BlockSlot> slots(1);  // of a contact with the floor
+  for (const BlockPair& edge : edges) slots.push_back(slotOf(matrix, edge.a, edge.b));
+  SparseFactors factors;
+  ASSERT_TRUE(factorise(matrix, slots, factors));
+  const Eigen::VectorXd right = Eigen::VectorXd::LinSpaced(full.rows(), -1.0, 1.0);
+  const Eigen::VectorXd expected = full.ldlt().solve(right);
+  Eigen::VectorXd values = right;
+  solve(matrix, factors, {values.data(), static_cast<std::size_t>(values.size())});
+  EXPECT_LT((values - expected).cwiseAbs().maxCoeff(), 1e-12 * expected.cwiseAbs().maxCoeff());
+  SparseFactors copy(factors);
+  Eigen::VectorXd again = right;
+  solve(matrix, copy, {again.data(), static_cast<std::size_t>(again.size())});
+  EXPECT_EQ(again, values);
+  matrix.diagonal[kNodeMatrix * 4 + kNodeSize * 3 + 3] = -80.0F;
+  EXPECT_FALSE(factorise(matrix, slots, factors)) << "not positive definite";
+}
+
+TEST(BlockCholesky, SaysWhenAMatrixIsNotPositiveDefinite) {
+  const std::vector<BlockPair> edges = towerEdges(3);
+  std::vector<std::int32_t> order(9);
+  std::iota(order.begin(), order.end(), 0);
+  BlockCholesky matrix;
+  ASSERT_TRUE(analyse(order, edges, kNoLimit, matrix));
+  randomMatrix(edges, matrix);
+  matrix.diagonal[kNodeMatrix * 4 + kNodeSize * 3 + 3] = -80.0F;
+  EXPECT_FALSE(factorise(matrix));
+}
+
+// Eliminated bottom up, the matrix of a tower is a band three blocks wide: nothing fills in but the rows' own couplings.
+TEST(BlockCholesky, ATowerFillsInNoMoreThanItsRows) {
+  const std::int32_t rows = 10;
+  std::vector<std::int32_t> order(static_cast<std::size_t>(3 * rows));
+  std::iota(order.begin(), order.end(), 0);
+  BlockCholesky matrix;
+  ASSERT_TRUE(analyse(order, towerEdges(rows), kNoLimit, matrix));
+  EXPECT_EQ(matrix.blockCount(), static_cast<std::size_t>((rows - 1) * 9 + (rows - 1) * 3));
+  EXPECT_FALSE(analyse(order, towerEdges(rows), 100, matrix)) << "more than a hundred products";
+}
+
+struct JacobianTest : ::testing::TestWithParam<Inertia> {};
+
+std::pair<std::size_t, Eigen::Index> at(Eigen::Index i) {
+  return {static_cast<std::size_t>(i / 3), i % 3};
+}
+
+// The block's 24 x 24 matrix: its springs differentiated by central differences, and its mass.
+Eigen::MatrixXd fullMatrix(const Simulation& simulation, Inertia inertia, double rate, double springFactor) {
+  const std::vector<std::int32_t> blocks = {0};
+  const std::vector<AffineField> none(1);
+  const auto forces = [&](Eigen::Index moved, double by) {
+    MotionState state = simulation.state;
+    Vec3 x = state.position.at(0, at(moved).first);
+    x[at(moved).second] += by;
+    state.position.set(0, at(moved).first, x);
+    CornerArray force;
+    force.resize(1);
+    springForces(simulation.model, state, blocks, none, force);
+    Eigen::VectorXd values(24);
+    for (Eigen::Index i = 0; i < 24; ++i) values[i] = force.at(0, at(i).first)[at(i).second];
+    return values;
+  };
+  const double step = 1e-8;
+  Eigen::MatrixXd full(24, 24);
+  for (Eigen::Index i = 0; i < 24; ++i) full.col(i) = springFactor * (forces(i, -step) - forces(i, step)) / (2.0 * step);
+  CornerArray unit[2];
+  for (Eigen::Index i = 0; i < 24; ++i) {
+    for (Eigen::Index k = 0; k < 24; ++k) {
+      for (CornerArray& field : unit) {
+        field = CornerArray{};
+        field.resize(1);
+      }
+      unit[0].set(0, at(i).first, Vec3::Unit(at(i).second));
+      unit[1].set(0, at(k).first, Vec3::Unit(at(k).second));
+      full(i, k) += rate * simulation.model.mass[0] * massProduct(inertia, unit[0], unit[1], 0);
+    }
+  }
+  return full;
+}
+
+// Against the block's 24 x 24 matrix, its springs differentiated by central differences: at steps of 1e-7 of the block these are
+// right to 1e-7.
+TEST_P(JacobianTest, SolvesAsTheFullMatrixDoes) {
+  Scene scene = oneBlockScene(false);
+  scene.settings.inertia = GetParam();
+  Simulation simulation(scene);
+  const double rate = 1.0 / (3e-3 * 3e-3);
+  const double springFactor = 1.01;
+  const Eigen::MatrixXd full = fullMatrix(simulation, GetParam(), rate, springFactor);
+  Eigen::VectorXd load(24);
+  CornerArray force;
+  force.resize(1);
+  for (std::size_t c = 0; c < kCorners; ++c) {
+    const double d = static_cast<double>(c);
+    const Vec3 f(1.0 + 0.3 * d, -0.7 * d * d, 2.0 - std::sin(d));
+    force.set(0, c, f);
+    load.segment<3>(3 * static_cast<Eigen::Index>(c)) = f;
+  }
+  const Eigen::VectorXd expected = full.fullPivLu().solve(load);
+
+  const BlockJacobian jacobian = blockJacobian(simulation.model, GetParam(), 0, rate, springFactor);
+  ModeVectors residual;
+  modeForces(force, 0, residual);
+  ModeVectors reduced = residual;
+  eliminateWarps(jacobian, reduced);
+  Eigen::Matrix<double, 12, 12> matrix;
+  Eigen::Matrix<double, 12, 1> right;
+  for (std::size_t i = 0; i < kAffineFreedoms; ++i) {
+    right[static_cast<Eigen::Index>(i)] = reduced[i / 3][i % 3];
+    for (std::size_t k = 0; k < kAffineFreedoms; ++k)
+      matrix(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)) = jacobian.affine[i][k];
+  }
+  const Eigen::Matrix<double, 12, 1> affine = matrix.ldlt().solve(right);
+  ModeVectors change{};
+  for (std::size_t i = 0; i < kAffineFreedoms; ++i) change[i / 3][i % 3] = affine[static_cast<Eigen::Index>(i)];
+  recoverWarps(jacobian, residual, change);
+  CornerArray moved;
+  moved.resize(1);
+  addModes(change, moved, 0);
+  for (Eigen::Index i = 0; i < 24; ++i) {
+    EXPECT_NEAR(moved.at(0, at(i).first)[at(i).second], expected[i], 1e-5 * expected.cwiseAbs().maxCoeff()) << i;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Inertias, JacobianTest, ::testing::Values(Inertia::cuboid, Inertia::lumped),
+                         [](const auto& tested) { return std::string(nameOf(tested.param)); });
+
+}  // namespace
+}  // namespace springtower

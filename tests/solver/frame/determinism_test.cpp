@@ -1,0 +1,273 @@
+#include "core/random.h"
+#include "core/scene/scene.h"
+#include "solver/world/engine.h"
+#include "solver/world/simulation.h"
+
+#include <algorithm>
+#include <functional>
+#include <gtest/gtest.h>
+#include <oneapi/tbb/global_control.h>
+#include <oneapi/tbb/task_arena.h>
+#include <string>
+
+namespace springtower {
+namespace {
+
+// The state after some frames on a number of threads. The arena asks for as many even where the machine has fewer cores.
+std::uint64_t hashAfter(
+    const Scene& scene, int frames, int threads, const std::function<void(const Simulation&)>& look = [](const Simulation&) {}) {
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+  tbb::task_arena arena(threads);
+  return arena.execute([&] {
+    Simulation simulation(scene);
+    for (int frame = 0; frame < frames; ++frame) stepFrame(simulation);
+    look(simulation);
+    return stateHash(simulation);
+  });
+}
+
+// All hashes are compared bit for bit: there is no tolerance in "the same result on any machine's cores".
+void expectSameOnAnyThreads(const Scene& scene, int frames) {
+  const std::uint64_t one = hashAfter(scene, frames, 1);
+  EXPECT_EQ(hashAfter(scene, frames, 1), one) << "twice in one process";
+  EXPECT_EQ(hashAfter(scene, frames, 2), one);
+  EXPECT_EQ(hashAfter(scene, frames, 4), one);
+}
+
+Scene unevenTower(int rows) {
+  TowerOptions options;
+  options.heightsSigma_m = 0.0002;
+  options.seed = 3;
+  return towerScene(rows, options);
+}
+
+// Many islands: they run side by side.
+Scene manyTowers() {
+  const Scene one = unevenTower(2);
+  Scene scene = one;
+  scene.blocks.clear();
+  for (int x = 0; x < 10; ++x) {
+    for (int y = 0; y < 10; ++y) {
+      for (BlockSpec block : one.blocks) {
+        block.centre += Vec3(0.2 * x, 0.2 * y, 0.0);
+        scene.blocks.push_back(block);
+      }
+    }
+  }
+  scene.name = "100 towers";
+  return scene;
+}
+
+// A thousand blocks, each turned at random by up to `mostTurn`, in a lattice without overlap. All move towards the axis and the
+// floor, the faster the farther they are, so that each meets its neighbours within a few frames.
+Scene pile(double mostTurn, double inwards_hz) {
+  RandomStream random(7, 0);
+  const auto signedUnit = [&] { return 2.0 * random.uniform() - 1.0; };
+  std::vector<BlockSpec> blocks(1000);
+  Vec3 cell = Vec3::Zero();  // the largest bounding box of any block
+  for (BlockSpec& block : blocks) {
+    Vec3 axis(signedUnit(), signedUnit(), signedUnit());
+    while (axis.norm() < 0.1) axis = Vec3(signedUnit(), signedUnit(), signedUnit());
+    block.orientation = Eigen::AngleAxisd(mostTurn * random.uniform(), axis.normalized());
+    cell = cell.cwiseMax(block.orientation.toRotationMatrix().cwiseAbs() * block.dimensions);
+  }
+  cell *= 1.001;
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    const Vec3 place(static_cast<double>(b % 10), static_cast<double>(b / 10 % 10), static_cast<double>(b / 100));
+    blocks[b].centre = cell.cwiseProduct(place - Vec3(4.5, 4.5, -0.5));
+    blocks[b].velocity = -inwards_hz * blocks[b].centre;
+  }
+  Scene scene;
+  scene.name = "a pile";
+  scene.blocks = blocks;
+  return scene;
+}
+
+// Five full towers in a row, end against end: the blocks along it meet those of the next tower with their small faces.
+Scene touchingTowers() {
+  const Scene one = towerScene(18);
+  Scene scene = one;
+  scene.blocks.clear();
+  for (int x = 0; x < 5; ++x) {
+    for (BlockSpec block : one.blocks) {
+      block.centre.x() += kBlockLength_m * x;
+      scene.blocks.push_back(block);
+    }
+  }
+  scene.name = "touching towers";
+  return scene;
+}
+
+TEST(Determinism, OneTowerIsTheSameOnAnyThreads) {
+  expectSameOnAnyThreads(unevenTower(18), 60);
+}
+
+TEST(Determinism, ManyTowersAreTheSameOnAnyThreads) {
+  const Scene scene = manyTowers();
+  Simulation simulation(scene);
+  stepFrame(simulation);
+  EXPECT_EQ(simulation.engine->islands.count(), 100U);
+  expectSameOnAnyThreads(scene, 18);
+}
+
+// What the island has met and how it was stepped on one thread; two and four come to the same state.
+Counters sameInOneLargeIsland(const Scene& scene, int frames) {
+  Counters counters;
+  const std::uint64_t one = hashAfter(scene, frames, 1, [&](const Simulation& simulation) {
+    const Islands& islands = simulation.engine->islands;
+    ASSERT_EQ(islands.count(), 1U) << "all are connected";
+    EXPECT_EQ(islands.island(0).size(), scene.blocks.size());
+    EXPECT_GE(scene.blocks.size(), kParallelBlocks) << "so that its kernels run on many threads";
+    counters = simulation.counters;
+  });
+  EXPECT_EQ(hashAfter(scene, frames, 2), one);
+  EXPECT_EQ(hashAfter(scene, frames, 4), one);
+  return counters;
+}
+
+// Much turned and fast, and as soft as few explicit steps ask for: what is compared are bits.
+TEST(Determinism, ASoftPileIsTheSameOnAnyThreads) {
+  Scene scene = pile(0.3, 4.0);
+  scene.settings.method = Method::semiImplicitEuler;
+  scene.settings.substeps = 40;
+  const Counters counters = sameInOneLargeIsland(scene, 3);
+  EXPECT_GT(counters.contactsBorn, scene.blocks.size()) << "two blocks to a contact: each has met two";
+}
+
+// As users have it: the default method and tolerance, which take 500 to 900 steps a frame while a thousand blocks hit one
+// another. A block is turned by a degree at most and meets its neighbours within these five frames: three runs of some 4 s of
+// processor time each. Blocks as fast as those above ask for thousands of steps, half a minute of it a frame.
+TEST(Determinism, APileIsTheSameOnAnyThreads) {
+  const Scene scene = pile(0.02, 0.5);
+  ASSERT_EQ(scene.settings.method, Method::implicit);
+  const Counters counters = sameInOneLargeIsland(scene, 5);
+  EXPECT_GT(counters.contactsBorn, 5U * scene.blocks.size()) << "each has met most of those around it, at several points";
+  EXPECT_EQ(counters.contactsBornPenetrating, 0U);
+}
+
+struct Resting {
+  Scene scene;
+  int frames;
+  const char* name;
+};
+
+class RestingTest : public ::testing::TestWithParam<Resting> {};
+
+// What stands is stepped implicitly in every frame, while gravity sways it twice a second: too little to part what touches,
+// enough to bend it.
+TEST_P(RestingTest, ALargeIslandIsTheSameOnAnyThreads) {
+  Scene scene = GetParam().scene;
+  ASSERT_EQ(scene.settings.method, Method::implicit);
+  scene.settings.sleep = Sleep::off;
+  scene.gravity.sway_deg = 0.1;
+  scene.gravity.sway_hz = 2.0;
+  const Counters counters = sameInOneLargeIsland(scene, GetParam().frames);
+  EXPECT_GE(counters.implicitSteps, counters.frames);
+  EXPECT_GT(counters.implicitIterations, counters.implicitSteps) << "they had something to solve";
+  EXPECT_EQ(counters.handedOver, 0U) << "no step was left to explicit ones";
+}
+
+INSTANTIATE_TEST_SUITE_P(Determinism, RestingTest,
+                         ::testing::Values(Resting{towerScene(90), 60, "OneTallTower"},
+                                           Resting{touchingTowers(), 20, "TouchingTowers"}),
+                         [](const auto& tested) { return std::string(tested.param.name); });
+
+class SnapshotTest : public ::testing::TestWithParam<Method> {};
+
+void step(Simulation& simulation, std::uint64_t frames) {
+  for (std::uint64_t frame = 0; frame < frames; ++frame) stepFrame(simulation);
+}
+
+// A snapshot of frame `taken` gives the state of frame `end` again, as often as it is restored and wherever. Returns what came
+// between the two.
+Counters expectSameFuture(const Scene& scene, std::uint64_t taken, std::uint64_t end) {
+  Simulation undisturbed(scene);
+  step(undisturbed, end);
+
+  Simulation simulation(scene);
+  step(simulation, taken);
+  EXPECT_EQ(std::count(simulation.asleep.begin(), simulation.asleep.end(), std::uint8_t{1}), 0);
+  const auto snapshot = takeSnapshot(simulation);
+  const std::uint64_t then = stateHash(simulation);
+  const Counters before = simulation.counters;
+  step(simulation, end - taken);
+  EXPECT_EQ(stateHash(simulation), stateHash(undisturbed)) << "taking a snapshot changes nothing";
+  EXPECT_NE(stateHash(simulation), then);
+  step(simulation, 3);
+  for (int repeat = 0; repeat < 2; ++repeat) {
+    restoreSnapshot(simulation, *snapshot);
+    EXPECT_EQ(stateHash(simulation), then);
+    EXPECT_EQ(simulation.frame, taken);
+    step(simulation, end - taken);
+    EXPECT_EQ(stateHash(simulation), stateHash(undisturbed));
+    EXPECT_EQ(simulation.counters.steps, undisturbed.counters.steps);
+    EXPECT_EQ(simulation.counters.implicitIterations, undisturbed.counters.implicitIterations);
+    EXPECT_EQ(simulation.time_s, undisturbed.time_s);
+  }
+  // The state of another simulation of the scene is taken over just as well.
+  Simulation other(scene);
+  restoreSnapshot(other, *snapshot);
+  step(other, end - taken);
+  EXPECT_EQ(stateHash(other), stateHash(undisturbed));
+  Counters between;
+  between.implicitSteps = simulation.counters.implicitSteps - before.implicitSteps;
+  between.implicitIterations = simulation.counters.implicitIterations - before.implicitIterations;
+  between.handedOver = simulation.counters.handedOver - before.handedOver;
+  return between;
+}
+
+// Rows that drop from 4 mm: they meet at 29 ms, so that half a second holds impacts and settling. The snapshot is taken among
+// them.
+TEST_P(SnapshotTest, ARestoredFallRepeatsItsFuture) {
+  TowerOptions options;
+  options.startGap_m = 0.004;
+  options.heightsSigma_m = 0.0002;
+  Scene scene = towerScene(3, options);
+  scene.settings.method = GetParam();
+  expectSameFuture(scene, 5, 30);
+}
+
+// Gravity sways and the middle block of the middle row is pushed along, so that it slides under what it bears; the snapshot is
+// taken while both go on. Implicit steps, which have a history of their own to restore, take all of these frames.
+TEST_P(SnapshotTest, ARestoredSwayRepeatsItsFuture) {
+  Scene scene = bitCodeScene("(101)-(111)-(101)");
+  scene.settings.method = GetParam();
+  scene.gravity.sway_deg = 0.5;
+  scene.gravity.sway_hz = 2.0;
+  scene.forces.push_back({3, -1, Vec3(0.0, 0.2, 0.0), 0.1, 0.3});
+  const Counters between = expectSameFuture(scene, 10, 25);
+  if (isImplicit(GetParam())) {
+    EXPECT_GE(between.implicitSteps, 15U) << "in each frame";
+    EXPECT_GT(between.implicitIterations, between.implicitSteps) << "friction that slides turns with what slides";
+    EXPECT_EQ(between.handedOver, 0U);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, SnapshotTest,
+                         ::testing::Values(Method::implicit, Method::implicitEuler, Method::implicitEigen,
+                                           Method::semiImplicitEuler, Method::midpoint, Method::rungeKutta4, Method::report,
+                                           Method::rigidPgs, Method::rigidLcp, Method::xpbd),
+                         [](const auto& tested) {
+                           std::string name(nameOf(tested.param));
+                           std::replace(name.begin(), name.end(), '-', '_');
+                           return name;
+                         });
+
+// Sleep is part of a state: a snapshot of a sleeping tower sleeps, whatever the simulation that takes it over was doing.
+TEST(Snapshot, KeepsSleep) {
+  const Scene scene = towerScene(2);
+  Simulation simulation(scene);
+  for (int frame = 0; frame < 240; ++frame) stepFrame(simulation);
+  ASSERT_EQ(std::count(simulation.asleep.begin(), simulation.asleep.end(), std::uint8_t{1}), 6);
+  const auto snapshot = takeSnapshot(simulation);
+  Simulation awake(scene);
+  for (int frame = 0; frame < 3; ++frame) stepFrame(awake);
+  restoreSnapshot(awake, *snapshot);
+  EXPECT_EQ(stateHash(awake), stateHash(simulation));
+  stepFrame(awake);
+  EXPECT_EQ(awake.substeps, 0);
+  EXPECT_EQ(stateHash(awake), stateHash(simulation));
+}
+
+}  // namespace
+}  // namespace springtower

@@ -1,0 +1,137 @@
+// Scenes of rectangles: what keeps a motion in a plane, and the report's two prototypes in it.
+#include "core/error.h"
+#include "core/scene/scene.h"
+#include "solver/metrics/measures.h"
+#include "solver/metrics/penetration.h"
+#include "tests/support/block_scenes.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <string>
+
+namespace springtower {
+namespace {
+
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+Scene prototype(Method method) {
+  Scene scene = sceneFromToml(std::string(SPRINGTOWER_SOURCE_DIR) + "/scenes/prototypes.toml");
+  scene.settings.method = method;
+  scene.settings.sleep = Sleep::off;
+  return scene;
+}
+
+// Largest distance of any corner from the mirror image, in the plane y = 0, of its partner across a block's second axis.
+double asymmetry(const CornerArray& position) {
+  double largest = 0.0;
+  for (std::size_t b = 0; b < position.blockCount(); ++b) {
+    for (const std::size_t c : {0U, 1U, 4U, 5U}) {
+      Vec3 image = position.at(b, c | 2U);
+      image.y() = -image.y();
+      largest = std::max(largest, (position.at(b, c) - image).norm());
+    }
+  }
+  return largest;
+}
+
+struct Outcome {
+  double meanPenetration_m = 0.0;  // deepest of each frame of the last half second, mean
+  double strain = 0.0;             // largest of the same
+  double asymmetry_m = 0.0;
+  bool atRest = false;    // in the end, by the rule for sleep
+  double lowest_m = 0.0;  // centre of the lower row's blocks in the end
+};
+
+Outcome outcomeOf(const Scene& scene) {
+  Simulation simulation(scene);
+  stepFor(simulation, 4.5);
+  Outcome outcome;
+  PenetrationWorkspace workspace;
+  constexpr int kFrames = 30;
+  for (int frame = 0; frame < kFrames; ++frame) {
+    stepFrame(simulation);
+    const CornerArray& position = simulation.state.position;
+    outcome.meanPenetration_m += maxPenetration(position, true, workspace).depth / kFrames;
+    outcome.strain = std::max(outcome.strain, maxStrain(simulation.model, position));
+    outcome.asymmetry_m = std::max(outcome.asymmetry_m, asymmetry(position));
+  }
+  outcome.atRest = atRest(simulation);
+  outcome.lowest_m = std::min(centre(simulation.state.position, 0).z(), centre(simulation.state.position, 1).z());
+  return outcome;
+}
+
+// Report Figure 3.2: "the collision routine could not be time limited". Pivoting brings the stack to rest, and it stays in the
+// plane.
+TEST(Prototypes, RigidRectanglesComeToRest) {
+  const Outcome rigid = outcomeOf(prototype(Method::rigidLcp));
+  EXPECT_LT(rigid.meanPenetration_m, 5e-4);
+  EXPECT_LT(rigid.strain, 1e-9) << "rigid";
+  EXPECT_LT(rigid.asymmetry_m, 1e-12);
+  EXPECT_TRUE(rigid.atRest);
+  EXPECT_NEAR(rigid.lowest_m, 0.5 * kBlockHeight_m, 5e-4);
+}
+
+// Report Figure 3.4: "deformation was barely noticeable". A row gives way by no more than the tolerance. With as many steps in
+// every frame, as the report has, and as many as the tolerance needs.
+TEST(Prototypes, SprungRectanglesComeToRest) {
+  for (const int substeps : {100, 0}) {
+    Scene scene = prototype(Method::semiImplicitEuler);
+    scene.settings.substeps = substeps;
+    scene.settings.tolerance_m = toleranceOf(scene);
+    const Outcome sprung = outcomeOf(scene);
+    const double tolerance_m = kBlockTolerance_m;
+    EXPECT_LT(sprung.meanPenetration_m, tolerance_m);
+    EXPECT_LT(sprung.strain, tolerance_m / kBlockHeight_m);
+    EXPECT_LT(sprung.asymmetry_m, 1e-12);
+    EXPECT_TRUE(sprung.atRest) << substeps << " steps";
+    EXPECT_NEAR(sprung.lowest_m, 0.5 * kBlockHeight_m, tolerance_m);
+  }
+}
+
+// A blow across the plane moves nothing; the same blow moves the same stack where the scene is in space.
+TEST(Plane, NothingLeavesIt) {
+  for (const Method method : {Method::implicit, Method::midpoint, Method::rigidPgs}) {
+    Scene scene = prototype(method);
+    const auto across = [&] {
+      Simulation simulation(scene);
+      stepFrame(simulation);
+      kick(simulation, 0, Vec3(0.0, 0.5, 0.0));
+      stepFor(simulation, 0.1);
+      return std::abs(centre(simulation.state.position, 0).y());
+    };
+    EXPECT_LT(across(), 1e-15);
+    scene.plane = false;
+    EXPECT_GT(across(), 1e-3);
+  }
+}
+
+TEST(Plane, RefusesScenesThatAreNotInIt) {
+  const auto refusal = [](const auto& change) {
+    Scene scene = oneBlockScene(true);
+    scene.plane = true;
+    checkScene(scene, "s");
+    change(scene);
+    return [scene] { checkScene(scene, "s"); };
+  };
+  EXPECT_THAT(refusal([](Scene& s) { s.blocks[0].centre.y() = 0.01; }),
+              ThrowsMessage<InputError>(HasSubstr("s: block 0: centre y: found 0.01")));
+  EXPECT_THAT(refusal([](Scene& s) { s.blocks[0].spin.z() = 1.0; }), ThrowsMessage<InputError>(HasSubstr("spin z: found 1")));
+  EXPECT_THAT(refusal([](Scene& s) { s.blocks[0].velocity.y() = 1.0; }),
+              ThrowsMessage<InputError>(HasSubstr("velocity y: found 1")));
+  EXPECT_THAT(refusal([](Scene& s) { s.blocks[0].orientation = Eigen::AngleAxisd(0.1, Vec3::UnitZ()); }),
+              ThrowsMessage<InputError>(HasSubstr("turn out of the plane")));
+  EXPECT_THAT(refusal([](Scene& s) { s.gravity.tilt_deg = s.gravity.direction_deg = 30.0; }),
+              ThrowsMessage<InputError>(HasSubstr("gravity: y")));
+  EXPECT_THAT(refusal([](Scene& s) {
+                s.forces.push_back({0, -1, Vec3::UnitY(), 0.0, 1.0});
+              }),
+              ThrowsMessage<InputError>(HasSubstr("force 0: force y: found 1")));
+  EXPECT_THAT(refusal([](Scene& s) {
+                s.forces.push_back({0, 3, Vec3::UnitX(), 0.0, 1.0});
+              }),
+              ThrowsMessage<InputError>(HasSubstr("force 0: corner")));
+}
+
+}  // namespace
+}  // namespace springtower

@@ -1,0 +1,297 @@
+// What implicit steps know of contacts beyond their symmetric factors, against the forces themselves and a dense solution.
+
+#include "solver/implicit/friction_tangent.h"
+
+#include "core/scene/scene.h"
+#include "solver/contact/evaluate_forces.h"
+#include "solver/contact/query.h"
+#include "solver/implicit/gmres.h"
+#include "solver/implicit/run.h"
+#include "solver/implicit/system.h"
+#include "solver/world/island_step.h"
+#include "solver/world/simulation.h"
+#include "tests/support/block_scenes.h"
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <gtest/gtest.h>
+#include <random>
+#include <vector>
+
+namespace springtower {
+namespace {
+
+constexpr std::size_t kDrawn = 4;  // middle block of the middle row
+
+// Three rows, the middle block of the second drawn with half more than friction holds, until it slides between its neighbours.
+struct DrawnBlock {
+  DrawnBlock() {
+    step.drift_s = 0.25 * simulation.scene.settings.frame_s;
+    effective_s = endShare(Method::implicit) * step.drift_s;
+    evaluateForces(step, simulation.state, simulation.engine->stepVelocity, step.drift_s, Memory::trial);
+    island().moved = true;
+    island().near = true;
+  }
+
+  static Scene scene() {
+    Scene scene = towerScene(3);
+    scene.settings.sleep = Sleep::off;
+    scene.settings.method = Method::implicit;
+    const BlockSpec& drawn = scene.blocks[kDrawn];
+    const double held_n = 3.0 * scene.staticFriction * drawn.mass * kStandardGravity_m_s2;
+    scene.forces.push_back({static_cast<int>(kDrawn), -1, 1.5 * held_n * (drawn.orientation * Vec3::UnitX()), 0.5, 1.0});
+    return scene;
+  }
+
+  static Simulation sliding() {
+    Simulation simulation(scene());
+    stepFor(simulation, 0.55);
+    return simulation;
+  }
+
+  // New factors for the contacts as they stand.
+  bool factorise() {
+    for (std::size_t at = 0; at < island().touching.size(); ++at) island().mask[at] = contactMask(step, island(), at);
+    setJacobians(step, effective_s);
+    return assemble(step, island(), effective_s);
+  }
+
+  // The tangents' forces at displacements of one freedom each, by columns.
+  Eigen::MatrixXd tangentMatrix() {
+    const auto size = static_cast<Eigen::Index>(kNodeSize * step.blocks.size());
+    Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(size, size);
+    for (Eigen::Index i = 0; i < size; ++i) {
+      const Eigen::VectorXd unit = Eigen::VectorXd::Unit(size, i);
+      addTangentForces(island().tangents, {unit.data(), static_cast<std::size_t>(size)},
+                       {matrix.col(i).data(), static_cast<std::size_t>(size)});
+    }
+    return matrix;
+  }
+
+  ImplicitIsland& island() { return simulation.engine->implicitIslands[0]; }
+
+  // Moves the step's end by displacements [node][12], and finds the forces there.
+  void move(const std::vector<double>& displacement) {
+    Simulation& s = simulation;
+    for (const std::int32_t block : step.blocks) {
+      const auto b = static_cast<std::size_t>(block);
+      const double* d = displacement.data() + kNodeSize * static_cast<std::size_t>(s.engine->nodeOf[b]);
+      for (std::size_t a = 0; a < 3; ++a) {
+        for (std::size_t c = 0; c < kCorners; ++c) {
+          double moved = d[a];
+          for (std::size_t side = 0; side < 3; ++side) moved += 0.5 * cornerSide(c, side) * d[3 + 3 * side + a];
+          s.state.position.values(a, b)[c] += moved;
+          s.state.velocity.values(a, b)[c] += moved / effective_s;
+          s.engine->stepVelocity.values(a, b)[c] += moved / step.drift_s;
+        }
+      }
+    }
+    evaluateForces(step, s.state, s.engine->stepVelocity, step.drift_s, Memory::trial);
+  }
+
+  // What contacts put on the blocks if the step's end were moved by displacements; both [node][12].
+  std::vector<double> contactForcesAt(const std::vector<double>& displacement) {
+    Simulation& s = simulation;
+    const auto place = s.state;
+    const CornerArray carried = s.engine->stepVelocity;
+    move(displacement);
+    std::vector<double> force(displacement.size());
+    for (const std::int32_t block : step.blocks) {
+      const auto b = static_cast<std::size_t>(block);
+      const AffineField& on = s.engine->contactForce[b];
+      double* f = force.data() + kNodeSize * static_cast<std::size_t>(s.engine->nodeOf[b]);
+      for (std::size_t a = 0; a < 3; ++a) {
+        f[a] = on.centre[a];
+        for (std::size_t side = 0; side < 3; ++side) f[3 + 3 * side + a] = on.side[side][a];
+      }
+    }
+    s.state = place;
+    s.engine->stepVelocity = carried;
+    return force;
+  }
+
+  Simulation simulation = sliding();
+  Counters counters;
+  StageTimes times;
+  IslandStep step{
+      simulation, *simulation.engine,    simulation.engine->islands.island(0), simulation.engine->islandPairs, counters,
+      times,      contactLaw(simulation)};
+  double effective_s = 0.0;
+};
+
+std::vector<double> randomVector(std::size_t count, double size) {
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> number(-size, size);
+  std::vector<double> values(count);
+  for (double& value : values) value = number(random);
+  return values;
+}
+
+// With factors that know of no contact the tangents are the contacts' whole derivative, dashpots and friction that follows the
+// normal force included. Central differences over so small a way, against some tenths of a micrometre that contacts are deep:
+// within a part in a thousand of the largest force, which friction alone, at 0.4 of the normal forces, is far above.
+void expectTangentsToBeTheDerivative(DrawnBlock& drawn, double way_m) {
+  ImplicitIsland& island = drawn.island();
+  island.mask.assign(island.touching.size(), 0);
+  island.factorTangents.clear();
+  findTangents(drawn.step, island, drawn.effective_s);
+  const std::vector<double> way = randomVector(kNodeSize * drawn.step.blocks.size(), way_m);
+  std::vector<double> back(way.size());
+  for (std::size_t i = 0; i < way.size(); ++i) back[i] = -way[i];
+  const std::vector<double> after = drawn.contactForcesAt(way);
+  const std::vector<double> before = drawn.contactForcesAt(back);
+  std::vector<double> told(way.size());
+  addTangentForces(island.tangents, way, told);
+  double largest = 0.0;
+  for (const double force : told) largest = std::max(largest, std::abs(force));
+  for (std::size_t i = 0; i < way.size(); ++i) EXPECT_NEAR(told[i], 0.5 * (after[i] - before[i]), 1e-3 * largest) << "row " << i;
+}
+
+TEST(ContactTangent, IsTheDerivativeOfTheContactsForces) {
+  DrawnBlock drawn;
+  int sliding = 0;
+  for (std::size_t at = 0; at < drawn.island().touching.size(); ++at)
+    sliding += contactMask(drawn.step, drawn.island(), at) > 0xFFU ? 1 : 0;
+  ASSERT_GE(sliding, 6) << "the block slides on three and under three";
+  expectTangentsToBeTheDerivative(drawn, 1e-9);
+}
+
+// A block that is lifted: its points still touch, but lift faster than their springs follow.
+TEST(ContactTangent, ATouchingPointThatDoesNotPushResistsNothing) {
+  constexpr std::size_t kLifted = 7;  // the middle block of the top row
+  constexpr double kLift_m = 6.5e-6;  // of 8 micrometres that its points are deep
+  DrawnBlock drawn;
+  const Engine& engine = *drawn.simulation.engine;
+  std::vector<double> lift(kNodeSize * drawn.step.blocks.size());
+  lift[kNodeSize * static_cast<std::size_t>(engine.nodeOf[kLifted]) + 2] = kLift_m;
+  drawn.move(lift);
+  std::ptrdiff_t unpressed = 0;
+  for (const std::int32_t pair : drawn.island().touching) {
+    const PointMemory& points = engine.trial[static_cast<std::size_t>(pair)];
+    unpressed += std::count(points.live.begin(), points.live.end(), kUnpressed);
+  }
+  ASSERT_GE(unpressed, 2);
+  expectTangentsToBeTheDerivative(drawn, 1e-9);
+}
+
+// A block that comes down on its supports within the step: at its end each point pushes as one that has been pressed since it
+// reached the surface, by no more than its depth asks for. A dashpot of the full speed would push as hard from no depth at all,
+// here two and a half times as hard, and no place of the block would balance a force between that and none.
+TEST(ContactTangent, APointThatIsReachedInTheStepPushesFromNothing) {
+  constexpr std::int32_t kLanding = 7;  // the middle block of the top row
+  constexpr double kLift_m = 6.5e-6;    // of 8 micrometres that its points are deep
+  constexpr double kSpeed_m_s = 0.1;
+  DrawnBlock drawn;
+  Engine& engine = *drawn.simulation.engine;
+  for (const std::int32_t pair : drawn.island().touching) {
+    Manifold& manifold = engine.pairs[static_cast<std::size_t>(pair)].manifold;
+    if (manifold.upper == kLanding || manifold.lower == kLanding) static_cast<PointMemory&>(manifold) = PointMemory{};
+  }
+  std::vector<double> lift(kNodeSize * drawn.step.blocks.size());
+  lift[kNodeSize * static_cast<std::size_t>(engine.nodeOf[static_cast<std::size_t>(kLanding)]) + 2] = kLift_m;
+  drawn.move(lift);
+  for (std::size_t c = 0; c < kCorners; ++c) drawn.simulation.state.velocity.add(kLanding, c, Vec3(0.0, 0.0, -kSpeed_m_s));
+  drawn.move(std::vector<double>(lift.size()));
+
+  const ContactLaw& law = drawn.step.law;
+  double most = 0.0;
+  int pushing = 0;
+  for (const std::int32_t pair : drawn.island().touching) {
+    const Manifold& manifold = engine.pairs[static_cast<std::size_t>(pair)].manifold;
+    if (manifold.upper != kLanding && manifold.lower != kLanding) continue;
+    const PointForces points = forcesNow(drawn.simulation, manifold);
+    for (std::size_t i = 0; i < static_cast<std::size_t>(manifold.count); ++i) {
+      if (!(points.depth[i] > 0.0)) continue;
+      ++pushing;
+      most += law.stiffness_n_m * points.depth[i] * (1.0 + law.relaxingRatio + law.dampingTime_s / drawn.step.drift_s);
+    }
+  }
+  ASSERT_GE(pushing, 4);
+  EXPECT_GT(engine.contactForce[kLanding].centre[2], 0.5 * most);
+  EXPECT_LT(engine.contactForce[kLanding].centre[2], 1.01 * most) << "of which friction lifts by what the block leans";
+  expectTangentsToBeTheDerivative(drawn, 1e-10);
+}
+
+// What the factors know and what the contacts are then differ by what is not symmetric alone.
+TEST(ContactTangent, FactorsLackWhatIsNotSymmetric) {
+  DrawnBlock drawn;
+  ImplicitIsland& island = drawn.island();
+  ASSERT_TRUE(drawn.factorise());
+  ASSERT_FALSE(island.factorTangents.empty());
+  findTangents(drawn.step, island, drawn.effective_s);
+  const Eigen::MatrixXd lacking = drawn.tangentMatrix();
+  const double symmetric = (0.5 * (lacking + lacking.transpose())).norm();
+  const double rest = (0.5 * (lacking - lacking.transpose())).norm();
+  EXPECT_GT(rest, 0.0);
+  // s n^T, with s across n, is half symmetric and half not.
+  EXPECT_NEAR(symmetric, rest, 0.01 * rest);
+}
+
+// The solution with tangents against a dense one: forces left over are within what was allowed, and ten times as much without.
+TEST(CoupledSolve, SolvesWithTangents) {
+  DrawnBlock drawn;
+  ImplicitIsland& island = drawn.island();
+  ASSERT_TRUE(drawn.factorise());
+  findTangents(drawn.step, island, drawn.effective_s);
+  const std::size_t count = kNodeSize * drawn.step.blocks.size();
+  const auto size = static_cast<Eigen::Index>(count);
+  const Eigen::MatrixXd tangent = drawn.tangentMatrix();
+  Eigen::MatrixXd inverse(size, size);  // of what the factors are of
+  for (Eigen::Index i = 0; i < size; ++i) {
+    island.affine.assign(count, 0.0);
+    island.affine[static_cast<std::size_t>(i)] = 1.0;
+    solve(drawn.step, island);
+    inverse.col(i) = Eigen::Map<const Eigen::VectorXd>(island.affine.data(), size);
+  }
+  const std::vector<double> force = randomVector(count, 1e-2);
+  const Eigen::VectorXd right = Eigen::Map<const Eigen::VectorXd>(force.data(), size);
+  const Eigen::PartialPivLU<Eigen::MatrixXd> matrix(inverse);
+  const auto left = [&](const Eigen::VectorXd& moved) { return (right - matrix.solve(moved) + tangent * moved).norm(); };
+  constexpr double kAllowed_n = 1e-4;
+  EXPECT_GT(left(inverse * right), 10.0 * kAllowed_n);
+  island.affine = force;
+  EXPECT_TRUE(solveCoupled(drawn.step, island, kAllowed_n));
+  EXPECT_LT(left(Eigen::Map<const Eigen::VectorXd>(island.affine.data(), size)), 2.0 * kAllowed_n);  // in float
+}
+
+// Sets a force that draws a block steadily: what it took so far, and half of what would mend its speed within a frame.
+void draw(Simulation& simulation, int block, const Vec3& way, double& held_n) {
+  constexpr double kSpeed_m_s = 0.04;
+  const double frame_s = simulation.scene.settings.frame_s;
+  const auto b = static_cast<std::size_t>(block);
+  const double missing_n = simulation.model.mass[b] / frame_s * (kSpeed_m_s - centre(simulation.state.velocity, b).dot(way));
+  held_n += 0.2 * missing_n;
+  simulation.scene.forces = {{block, -1, (held_n + 0.5 * missing_n) * way, simulation.time_s, simulation.time_s + 1.5 * frame_s}};
+  stepFrame(simulation);
+}
+
+// Friction on a drawn block follows the loads on it, which no symmetric matrix tells: with that alone a step took three
+// iterations and a frame more than one new factorisation. With the contacts' tangents beside the factors most steps take one.
+TEST(CoupledSolve, ADrawnBlockTakesHardlyMoreThanAnIterationAStep) {
+  constexpr int kBlock = 28;  // the middle of row 10
+  constexpr int kFrames = 24;
+  Scene scene = towerScene(18);
+  scene.settings.sleep = Sleep::off;
+  scene.settings.method = Method::implicit;
+  scene.settings.tolerance_m = 1e-5;
+  scene.settings.substeps = 4;
+  scene.settings.forceUnstable = true;
+  const Vec3 way = scene.blocks[kBlock].orientation * Vec3::UnitX();
+  Simulation simulation(scene);
+  stepFor(simulation, 1.0);
+  const auto drawn = [&] { return centre(simulation.state.position, kBlock).dot(way); };
+  const double lay = drawn();
+  double held_n = 0.0;
+  for (int frame = 0; frame < 300 && drawn() - lay < 0.005; ++frame) draw(simulation, kBlock, way, held_n);
+  const double start = drawn();
+  const Counters before = simulation.counters;
+  for (int frame = 0; frame < kFrames; ++frame) draw(simulation, kBlock, way, held_n);
+  EXPECT_NEAR(drawn() - start, 0.04 * kFrames * scene.settings.frame_s, 0.002) << "it slides all the time";
+  const auto steps = static_cast<double>(simulation.counters.implicitSteps - before.implicitSteps);
+  EXPECT_EQ(steps, 4.0 * kFrames);
+  EXPECT_LE(static_cast<double>(simulation.counters.implicitIterations - before.implicitIterations), 1.5 * steps);
+  EXPECT_LE(simulation.counters.factorisations - before.factorisations, kFrames / 3U);
+}
+
+}  // namespace
+}  // namespace springtower

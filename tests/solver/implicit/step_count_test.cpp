@@ -1,0 +1,133 @@
+// How many steps a frame implicit steps take: as many as what rings asks for.
+
+#include "solver/implicit/step_count.h"
+
+#include "core/scene/scene.h"
+#include "solver/contact/query.h"
+#include "solver/implicit/run.h"
+#include "solver/world/island_step.h"
+#include "solver/world/simulation.h"
+#include "tests/support/block_scenes.h"
+
+#include <cmath>
+#include <gtest/gtest.h>
+#include <vector>
+
+namespace springtower {
+namespace {
+
+// A block in the air, whose steps the tests make up.
+struct RingingBlock {
+  RingingBlock() {
+    step.drift_s = 0.25 * simulation.scene.settings.frame_s;
+    step.gravity = simulation.scene.gravity.at(0.0);
+  }
+
+  BlockClock& clock() { return simulation.engine->clock[0]; }
+
+  // A step that ends at time `end_s` of a swing of angular frequency `omega` along x.
+  void swing(double omega, double end_s) {
+    const double h = step.drift_s;
+    const auto speed = [&](double time_s) { return 0.01 * std::cos(omega * time_s); };
+    note(speed(end_s - 2.0 * h), speed(end_s - h), speed(end_s));
+  }
+
+  // A step under an acceleration along x.
+  void push(double acceleration_m_s2) {
+    const Engine& engine = *simulation.engine;
+    const double before = simulation.state.velocity.values(0, 0)[0];
+    note(engine.previousVelocity.values(0, 0)[0], before, before + acceleration_m_s2 * step.drift_s);
+  }
+
+  // A step in which all goes from speed `before` to `now` along x, after one from `first`.
+  void note(double first, double before, double now) {
+    Engine& engine = *simulation.engine;
+    const double h = step.drift_s;
+    const double effective_s = endShare(Method::implicit) * h;
+    const double last = before - first;
+    for (std::size_t c = 0; c < kCorners; ++c) {
+      simulation.state.velocity.values(0, 0)[c] = now;
+      engine.previousVelocity.values(0, 0)[c] = before;
+      for (std::size_t a = 0; a < 3; ++a) {
+        const double speed = engine.previousVelocity.values(a, 0)[c];
+        const double change = a == 0 ? last : 0.0;
+        engine.history.values(a, 0)[c] = 0.1;
+        engine.target.values(a, 0)[c] =
+            0.1 + effective_s * (speed + change / 3.0) + effective_s * effective_s * step.gravity[static_cast<Eigen::Index>(a)];
+      }
+    }
+    clock().history_s = h;
+    noteRinging(step, effective_s);
+  }
+
+  static Scene scene() {
+    Scene scene = oneBlockScene(false);
+    scene.settings.method = Method::implicit;
+    return scene;
+  }
+
+  Simulation simulation{scene()};
+  std::vector<std::int32_t> blocks{0};
+  std::vector<std::int32_t> pairs;
+  Counters counters;
+  StageTimes times;
+  IslandStep step{simulation, *simulation.engine, blocks, pairs, counters, times, contactLaw(simulation)};
+};
+
+// Means over some frames waver about the truth while a swing speeds up and slows down: by a few hundredths here.
+TEST(Ringing, IsNotedWithItsFrequency) {
+  for (const double omega : {40.0, 80.0}) {
+    RingingBlock block;
+    for (int i = 0; i < 240; ++i) {
+      block.swing(omega, (i + 1) * block.step.drift_s);
+      if (i < 120) continue;
+      EXPECT_NEAR(std::sqrt(std::sqrt(block.clock().jerk / block.clock().motion)), omega, 0.05 * omega) << "step " << i;
+    }
+  }
+}
+
+// A frame of n steps damps a swing by (w T)^4 / (4 n^3), of which a 150th is allowed: n = cbrt(37.5 (w T)^4), rounded up.
+TEST(Ringing, StepsFollowItsFrequency) {
+  RingingBlock block;
+  const double frame_s = block.simulation.scene.settings.frame_s;
+  const auto stepsAt = [&](double turn, int present) {
+    block.clock().motion = 1.0;
+    block.clock().jerk = std::pow(turn / frame_s, 4.0);
+    return stepsForRinging(block.step, present);
+  };
+  EXPECT_EQ(stepsAt(0.1, 1), 1);
+  EXPECT_EQ(stepsAt(0.6, 1), 2);   // 1.69
+  EXPECT_EQ(stepsAt(1.0, 1), 4);   // 3.35
+  EXPECT_EQ(stepsAt(1.4, 1), 6);   // 5.24
+  EXPECT_EQ(stepsAt(10.0, 1), 8);  // 72, of which there are at most 8
+  EXPECT_EQ(stepsAt(1.0, 5), 5) << "half as much damping would ask for 4.2, so five steps stay five";
+  EXPECT_EQ(stepsAt(0.6, 5), 3) << "but not where they are more than that";
+}
+
+// A force that jumps at each frame, as a user's does, in one of eight steps: that looks the faster the finer these are, and yet
+// they become fewer.
+TEST(Ringing, JumpsOfTheForceDoNotKeepTheStepsFine) {
+  constexpr int kSteps = 8;
+  RingingBlock block;
+  block.step.drift_s = block.simulation.scene.settings.frame_s / kSteps;
+  for (int frame = 0; frame < 60; ++frame) {
+    for (int i = 0; i < kSteps; ++i) block.push(frame % 2 == 0 ? 2.0 : -2.0);
+  }
+  EXPECT_LE(stepsForRinging(block.step, kSteps), kSteps / 2 + 1);
+}
+
+TEST(Ringing, OfWhatIsCalmIsNotFollowed) {
+  RingingBlock block;
+  const double frame_s = block.simulation.scene.settings.frame_s;
+  const double calm = calmSpeed(block.simulation);
+  const auto stepsAt = [&](double speed) {
+    block.clock().motion = block.simulation.model.mass[0] * static_cast<double>(kCorners) * speed * speed;
+    block.clock().jerk = std::pow(2.0 / frame_s, 4.0) * block.clock().motion;
+    return stepsForRinging(block.step, 1);
+  };
+  EXPECT_EQ(stepsAt(10.0 * calm), 8);
+  EXPECT_EQ(stepsAt(0.01 * calm), 1);
+}
+
+}  // namespace
+}  // namespace springtower

@@ -1,0 +1,157 @@
+// Islands of more than 60 blocks: the matrix of an implicit step is no narrow band, and factors cost as much as dozens of
+// solutions.
+#include "core/scene/scene.h"
+#include "solver/metrics/measures.h"
+#include "solver/metrics/penetration.h"
+#include "solver/world/engine.h"
+#include "solver/world/simulation.h"
+#include "tests/support/block_scenes.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <gtest/gtest.h>
+#include <oneapi/tbb/global_control.h>
+
+namespace springtower {
+namespace {
+
+constexpr double kGap_m = 0.0004;
+
+void place(Scene& scene, const Vec3& centre, const Vec3& dimensions, double mass) {
+  BlockSpec block;
+  block.centre = centre;
+  block.dimensions = dimensions;
+  block.mass = mass;
+  scene.blocks.push_back(block);
+}
+
+// Running bond, half bricks at the ends of every other row; awake.
+Scene wallScene(int columns, int rows) {
+  Scene scene;
+  scene.settings.sleep = Sleep::off;
+  const BlockSpec brick;
+  const Vec3 whole = brick.dimensions;
+  const double pitch = whole.x() + kGap_m;
+  const Vec3 half(0.5 * (whole.x() - kGap_m), whole.y(), whole.z());
+  for (int row = 0; row < rows; ++row) {
+    const double z = (row + 0.5) * whole.z();
+    const int wholes = row % 2 == 0 ? columns : columns - 1;
+    for (int i = 0; i < wholes; ++i) place(scene, Vec3((i - 0.5 * (wholes - 1)) * pitch, 0.0, z), whole, brick.mass);
+    const double end = 0.5 * (columns * pitch - kGap_m) - 0.5 * half.x();
+    for (int side = -1; row % 2 == 1 && side <= 1; side += 2)
+      place(scene, Vec3(side * end, 0.0, z), half, brick.mass * half.x() / whole.x());
+  }
+  return scene;
+}
+
+// Cubes of 20 mm, each on two of the row below, but for the lowest.
+Scene pyramidScene(int rows) {
+  Scene scene;
+  scene.settings.sleep = Sleep::off;
+  const BlockSpec brick;
+  const double side = 0.02;
+  const double mass = brick.mass * side * side * side / brick.dimensions.prod();
+  const double pitch = side + kGap_m;
+  for (int row = 0; row < rows; ++row) {
+    for (int i = 0; i < rows - row; ++i)
+      place(scene, Vec3((i - 0.5 * (rows - row - 1)) * pitch, 0.0, (row + 0.5) * side), Vec3::Constant(side), mass);
+  }
+  return scene;
+}
+
+double deepest(const Simulation& simulation) {
+  PenetrationWorkspace workspace;
+  return maxPenetration(simulation.state.position, true, workspace).depth;
+}
+
+// What moved farthest, m.
+double farthest(const CornerArray& before, const CornerArray& now) {
+  double most = 0.0;
+  for (std::size_t b = 0; b < now.blockCount(); ++b) most = std::max(most, (centre(now, b) - centre(before, b)).norm());
+  return most;
+}
+
+// After a second nothing moves any more and no equation is solved: a frame evaluates the forces and is done. It used to take 233
+// explicit steps a frame.
+TEST(WideIsland, AWallRestsWithoutASolution) {
+  Simulation simulation(wallScene(20, 12));
+  stepFor(simulation, 1.0);
+  const CornerArray before = simulation.state.position;
+  const Counters then = simulation.counters;
+  stepFor(simulation, 1.0);
+  EXPECT_EQ(simulation.counters.handedOver, 0U);
+  EXPECT_EQ(simulation.counters.implicitSteps - then.implicitSteps, 60U) << "one step a frame";
+  EXPECT_EQ(simulation.counters.implicitIterations, then.implicitIterations);
+  EXPECT_EQ(simulation.counters.factorisations, then.factorisations);
+  EXPECT_LE(deepest(simulation), simulation.tolerance_m);
+  EXPECT_LE(farthest(before, simulation.state.position), 1e-6 / 60.0) << "0.001 mm a minute";
+}
+
+// Weight goes down a pyramid along its sides, and thousands of points slide before it rests: without what friction does as normal
+// forces change, the search for its equilibrium ended or not as rounding had it.
+TEST(WideIsland, APyramidOf40RowsBeginsInEquilibrium) {
+  Simulation simulation(pyramidScene(40));
+  const CornerArray start = simulation.state.position;
+  stepFor(simulation, 0.5);
+  EXPECT_EQ(simulation.counters.handedOver, 0U);
+  EXPECT_LE(deepest(simulation), simulation.tolerance_m);
+  const CornerArray before = simulation.state.position;
+  stepFor(simulation, 0.5);
+  EXPECT_LE(farthest(before, simulation.state.position), 1e-6 / 60.0);
+  EXPECT_LE(farthest(start, simulation.state.position), 40.0 * simulation.tolerance_m) << "a row sags by a tolerance at most";
+}
+
+// A brick in the middle is pushed across the wall by a little more than friction bears, on its lower and its upper face, for 0.03
+// s: then friction stops it. Points slide and let go; the order of elimination stays, and no step falls back on explicit ones.
+TEST(WideIsland, ABrickIsPushedOutOfAWallByImplicitSteps) {
+  Scene scene = wallScene(20, 12);
+  const int pushed = 130;
+  const BlockSpec& brick = scene.blocks[static_cast<std::size_t>(pushed)];
+  const double rowsAbove = 11.5 - brick.centre.z() / brick.dimensions.z();
+  const double friction_n = 0.4 * kStandardGravity_m_s2 * brick.mass * (2.0 * rowsAbove + 1.0);
+  const double excess = 0.25;
+  const double push_s = 0.03;
+  scene.forces.push_back({pushed, -1, Vec3(0.0, (1.0 + excess) * friction_n, 0.0), 0.5, 0.5 + push_s});
+  Simulation simulation(scene);
+  stepFor(simulation, 0.5);
+  const Vec3 start = centre(simulation.state.position, pushed);
+  stepFor(simulation, 1.0);
+  const double moved = centre(simulation.state.position, pushed).y() - start.y();
+  // Driven by `excess` of friction for push_s, then stopped by all of it; walls do not share their weight evenly.
+  const double expected = 0.5 * excess * friction_n / brick.mass * push_s * push_s * (1.0 + excess);
+  EXPECT_GT(moved, 0.3 * expected);
+  EXPECT_LT(moved, 3.0 * expected);
+  EXPECT_EQ(simulation.counters.handedOver, 0U);
+  EXPECT_LE(deepest(simulation), 2.0 * simulation.tolerance_m);
+}
+
+// A chain of rows fills in least from the bottom up, however long it is; a wall does not.
+TEST(WideIsland, IsEliminatedInTheOrderThatFillsInLess) {
+  const auto fromBelow = [](const Scene& scene) {
+    Simulation simulation(scene);
+    stepFrame(simulation);
+    const EliminationOrder& order = simulation.engine->implicitIslands[0].order;
+    return std::is_sorted(order.nodes.begin(), order.nodes.end(), [&](std::int32_t p, std::int32_t q) {
+      return order.centre[static_cast<std::size_t>(p)].z() + 1e-3 < order.centre[static_cast<std::size_t>(q)].z();
+    });
+  };
+  Scene tower = towerScene(30);
+  tower.settings.sleep = Sleep::off;
+  EXPECT_TRUE(fromBelow(tower));
+  EXPECT_FALSE(fromBelow(wallScene(20, 12)));
+}
+
+TEST(WideIsland, HasTheSameBitsOnAnyNumberOfThreads) {
+  std::uint64_t hashes[2] = {};
+  for (const std::size_t threads : {1U, 4U}) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    Simulation simulation(wallScene(28, 11));
+    kick(simulation, simulation.model.blockCount() - 1, Vec3(0.0, 0.05, 0.0));
+    stepFor(simulation, 0.25);
+    hashes[threads == 1 ? 0 : 1] = stateHash(simulation);
+  }
+  EXPECT_EQ(hashes[0], hashes[1]);
+}
+
+}  // namespace
+}  // namespace springtower

@@ -1,0 +1,149 @@
+#include "core/random.h"
+#include "core/scene/scene.h"
+#include "solver/block/inertia.h"
+#include "solver/metrics/measures.h"
+#include "solver/runner/run.h"
+#include "solver/world/engine.h"
+#include "solver/world/simulation.h"
+#include "solver/world/stiffness.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <gtest/gtest.h>
+
+namespace springtower {
+namespace {
+
+bool anyFalls(const Simulation& simulation) {
+  const std::vector<BlockClock>& clock = simulation.engine->clock;
+  return std::any_of(clock.begin(), clock.end(), [](const BlockClock& block) { return block.falls; });
+}
+
+class FineCollapseTest : public ::testing::TestWithParam<double> {};
+
+// A tower goes over with tolerances that would have it take 1200 to 4000 explicit steps a frame: while it falls rigid steps carry
+// it. All the same nothing gets deeper than a block's twentieth, no energy comes in, and what has come to rest lies as if it had
+// been laid there.
+TEST_P(FineCollapseTest, TakesNoMoreStepsThanImpactsAskFor) {
+  Scene scene = towerScene(18);
+  scene.settings.sleep = Sleep::off;
+  scene.settings.tolerance_m = GetParam();
+  scene.gravity.tilt_deg = 14.5;
+  Simulation simulation(scene);
+  RunOptions options;
+  options.seconds = 1.0;
+  const RunResult falling = runScene(simulation, options);
+  EXPECT_FALSE(falling.standing.stands);
+  EXPECT_TRUE(anyFalls(simulation));
+  EXPECT_LT(simulation.counters.contactEvaluations, 60U * 40000U) << "a standing tower's 594 points twice in 34 steps a frame";
+  options.seconds = 5.0;
+  const RunResult lying = runScene(simulation, options);
+  EXPECT_LE(std::max(falling.deepest.depth, lying.deepest.depth), 1e-3);
+  EXPECT_EQ(lying.counters.contactsBornPenetrating, 0U);
+  for (const RunResult& result : {falling, lying}) {
+    ASSERT_TRUE(result.maxEnergyRise);
+    // Half way down, where the second run starts, the energy against the floor may be anything, even none.
+    const double scale = std::abs(result.energyStart.total() / falling.energyStart.total());
+    EXPECT_LE(scale * *result.maxEnergyRise, 1e-6) << "of the standing tower's energy";
+  }
+  PenetrationWorkspace workspace;
+  EXPECT_LE(maxPenetration(simulation.state.position, true, workspace).depth, 1e-4);
+}
+
+INSTANTIATE_TEST_SUITE_P(Tolerances, FineCollapseTest, ::testing::Values(1e-5, 1.3e-5, 2e-5, 3e-5),
+                         [](const auto& tested) { return std::to_string(std::lround(1e6 * tested.param)) + "um"; });
+
+// Three rows land from 2 cm by rigid steps. What lies then is handed back to implicit steps and comes to rest, no deeper than the
+// blocks of an uneven tower or a heap.
+TEST(Falling, WhatHasLandedIsHandedBackAndRests) {
+  Scene scene = towerScene(3);
+  for (BlockSpec& block : scene.blocks) block.centre.z() += 0.02;
+  scene.settings.sleep = Sleep::off;
+  scene.settings.tolerance_m = 1e-5;
+  Simulation simulation(scene);
+  bool fell = false;
+  for (int frame = 0; frame < 60; ++frame) {
+    stepFrame(simulation);
+    fell = fell || anyFalls(simulation);
+  }
+  EXPECT_TRUE(fell);
+  EXPECT_FALSE(anyFalls(simulation));
+  PenetrationWorkspace workspace;
+  EXPECT_LE(maxPenetration(simulation.state.position, true, workspace).depth, 1e-4);
+  EXPECT_LT(rootMeanSquareCornerSpeed(simulation.state.velocity), 1e-6);
+}
+
+// Three blocks side by side are thrown and spin in the air, near each other but not touching yet: rigid steps carry them as free
+// bodies. A cuboid that turns about none of its axes tumbles, and keeps its angular momentum.
+TEST(Falling, BlocksInTheAirFlyAndTumbleAsFreeBodies) {
+  Scene scene = towerScene(1);
+  for (BlockSpec& block : scene.blocks) {
+    block.centre += Vec3(0.0, 2.0 * block.centre.y(), 1.0);
+    block.velocity = {0.3, 0.0, 1.0};
+    block.spin = {3.0, 2.0, 10.0};
+  }
+  Simulation simulation(scene);
+  const auto momentum = [&](std::size_t b) {
+    const RigidMotion motion = rigidMotion(simulation.state, b);
+    Vec3 sum = Vec3::Zero();
+    for (std::size_t c = 0; c < kCorners; ++c)
+      sum += (simulation.state.position.at(b, c) - motion.centre).cross(simulation.state.velocity.at(b, c) - motion.velocity);
+    return sum;
+  };
+  const Vec3 before = momentum(1);
+  const Vec3 from = centre(simulation.state.position, 1);
+  for (int frame = 0; frame < 7; ++frame) stepFrame(simulation);
+  EXPECT_TRUE(anyFalls(simulation));
+  EXPECT_EQ(simulation.counters.contactsBorn, 0U);
+  const double time = 7.0 / 60.0;
+  const Vec3 expected = from + Vec3(0.3 * time, 0.0, time - 0.5 * kStandardGravity_m_s2 * time * time);
+  EXPECT_LT((centre(simulation.state.position, 1) - expected).norm(), 1e-6);
+  EXPECT_LT((momentum(1) - before).norm(), 1e-6 * before.norm());
+}
+
+// Twenty blocks above one another, askew anyhow.
+Scene blocksInTheAir(std::uint64_t seed, double spacing_m) {
+  RandomStream random(seed, 0);
+  const auto within = [&](double most) { return most * (random.uniform() - 0.5); };
+  Scene scene;
+  for (int i = 0; i < 20; ++i) {
+    BlockSpec block;
+    block.centre.x() = within(0.22);
+    block.centre.y() = within(0.22);
+    block.centre.z() = 0.06 + spacing_m * i;
+    for (int axis = 0; axis < 3; ++axis) block.orientation = block.orientation * Eigen::AngleAxisd(within(2.0), Vec3::Unit(axis));
+    scene.blocks.push_back(block);
+  }
+  return scene;
+}
+
+// They are no tower that might sway over, however little of one is above the next: at most their whole weight, three times over
+// for tops that differ, rests on a contact. Such heaps were given up to 380 MN/m and burst in their first step.
+TEST(Falling, BlocksInTheAirAreAsStiffAsTheirWeightAsks) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    for (const double spacing_m : {0.06, 0.09}) {
+      const Scene scene = blocksInTheAir(seed, spacing_m);
+      const double weight_n = 20.0 * scene.blocks[0].mass * scene.gravity.magnitude;
+      const double tolerance_m = toleranceOf(scene);
+      EXPECT_LE(stiffnessForTolerance(estimateLoads(scene), tolerance_m).contact_n_m, 3.0 * weight_n / tolerance_m)
+          << "seed " << seed << ", " << spacing_m;
+    }
+    Simulation simulation(blocksInTheAir(seed, 0.09));  // more than the longest diagonal
+    for (int frame = 0; frame < 20; ++frame) stepFrame(simulation);
+  }
+}
+
+// What flies above a tower makes it no stiffer against swaying.
+TEST(Falling, ABlockHighAboveATowerLeavesItsStiffness) {
+  Scene scene = towerScene(72);
+  const double alone_n_m = Simulation(scene).contactStiffness_n_m;
+  BlockSpec flying = scene.blocks.back();
+  flying.centre.z() += 10.0;
+  flying.orientation = Eigen::AngleAxisd(0.5, Vec3::UnitX());
+  scene.blocks.push_back(flying);
+  EXPECT_LT(Simulation(scene).contactStiffness_n_m, 1.1 * alone_n_m);
+}
+
+}  // namespace
+}  // namespace springtower

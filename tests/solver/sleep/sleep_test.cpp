@@ -1,0 +1,235 @@
+#include "core/scene/scene.h"
+#include "solver/hand/moves.h"
+#include "solver/runner/run.h"
+#include "tests/solver/hand/take.h"
+
+#include <algorithm>
+#include <ctime>
+#include <gtest/gtest.h>
+
+namespace springtower {
+namespace {
+
+std::size_t asleepBlocks(const Simulation& simulation) {
+  return static_cast<std::size_t>(std::count(simulation.asleep.begin(), simulation.asleep.end(), std::uint8_t{1}));
+}
+
+bool allAsleep(const Simulation& simulation) {
+  return asleepBlocks(simulation) == simulation.asleep.size();
+}
+
+// Steps until all blocks sleep, at most for a time.
+void stepUntilAsleep(Simulation& simulation, double seconds) {
+  while (!allAsleep(simulation) && simulation.time_s < seconds) stepFrame(simulation);
+}
+
+// The full tower settles in 3 s; 5 s are promised. A sleeping scene is skipped altogether: no steps, no pair tests, nothing
+// moves.
+TEST(Sleep, TheFullTowerSleepsWithinFiveSecondsAndThenCostsNothing) {
+  Simulation simulation(towerScene(18));
+  stepUntilAsleep(simulation, 5.0);
+  ASSERT_EQ(asleepBlocks(simulation), 54U);
+  const Counters before = simulation.counters;
+  const std::uint64_t hash = stateHash(simulation);
+  constexpr int kFrames = 2000;
+  const std::clock_t start = std::clock();
+  for (int frame = 0; frame < kFrames; ++frame) stepFrame(simulation);
+  const double cost_ms = 1e3 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC / kFrames;
+  EXPECT_LT(cost_ms, 0.02) << "processor time, promised for a frame; a frame awake costs a hundred times as much";
+  EXPECT_EQ(simulation.substeps, 0);
+  EXPECT_EQ(simulation.counters.frames, before.frames + kFrames);
+  EXPECT_EQ(simulation.counters.steps, before.steps);
+  EXPECT_EQ(simulation.counters.blockPairs, before.blockPairs);
+  EXPECT_EQ(simulation.counters.contactEvaluations, before.contactEvaluations);
+  EXPECT_EQ(stateHash(simulation), hash);
+}
+
+// A pull of a hundredth of the block's weight: far inside the friction cone, and half of what neighbours must feel to wake. It
+// wakes the block it acts on, no other, and moves nothing by more than its contacts' give. When it ends the block sleeps again.
+TEST(Sleep, AWeakForceWakesItsBlockAlone) {
+  Scene scene = towerScene(3);
+  constexpr int kBlock = 7;
+  scene.forces.push_back({kBlock, -1, Vec3(0.01 * kBlockMass_kg * 9.81, 0.0, 0.0), 4.0, 4.2});
+  Simulation simulation(scene);
+  stepUntilAsleep(simulation, 3.9);
+  ASSERT_TRUE(allAsleep(simulation));
+  while (simulation.frame < 240) stepFrame(simulation);
+  ASSERT_TRUE(allAsleep(simulation)) << "a force that does not act yet wakes nobody";
+  const CornerArray still = simulation.state.position;
+  for (int frame = 0; frame < 12; ++frame) {
+    stepFrame(simulation);
+    EXPECT_EQ(simulation.asleep[kBlock], 0);
+    EXPECT_GT(simulation.substeps, 0);
+    EXPECT_EQ(asleepBlocks(simulation), 8U);
+  }
+  stepUntilAsleep(simulation, 8.0);
+  EXPECT_TRUE(allAsleep(simulation));
+  EXPECT_LT(largestCornerMove(still, simulation.state.position), 5e-6) << "a tenth of the tolerance";
+}
+
+// Friction holds the middle block of the second row of five, with three rows on it: each of its two faces bears at most the
+// weight of twelve blocks, so 0.4 x 2 x 12 weights or 1.9 N hold it at the very most. 4 N pull it out along its length, at more
+// than 80 m/s2, and its neighbours have to notice.
+TEST(Sleep, AStrongPullMovesBlocks) {
+  Scene scene = towerScene(5);
+  constexpr int kBlock = 4;
+  scene.forces.push_back({kBlock, -1, Vec3(0.0, 4.0, 0.0), 4.0, 4.05});
+  Simulation simulation(scene);
+  stepUntilAsleep(simulation, 3.9);
+  ASSERT_TRUE(allAsleep(simulation));
+  while (simulation.frame < 240) stepFrame(simulation);
+  const CornerArray still = simulation.state.position;
+  std::size_t fewestAsleep = simulation.asleep.size();
+  for (int frame = 0; frame < 12; ++frame) {
+    stepFrame(simulation);
+    fewestAsleep = std::min(fewestAsleep, asleepBlocks(simulation));
+  }
+  EXPECT_GT((centre(simulation.state.position, kBlock) - centre(still, kBlock)).y(), 0.02);
+  EXPECT_LT(fewestAsleep, simulation.asleep.size() - 1) << "the blocks that it rubs on wake as well";
+}
+
+// Gravity that swings by half a degree in 20 s is still for a second around its turning points at 5 s and 15 s: long enough for
+// the tower to fall asleep. As it swings back all wake.
+TEST(Sleep, SwayingGravityWakes) {
+  Scene scene = towerScene(2);
+  scene.gravity.sway_deg = 0.5;
+  scene.gravity.sway_hz = 0.05;
+  Simulation simulation(scene);
+  while (simulation.time_s < 4.5) stepFrame(simulation);
+  stepUntilAsleep(simulation, 6.5);
+  ASSERT_TRUE(allAsleep(simulation));
+  std::size_t fewestAsleep = simulation.asleep.size();
+  while (simulation.time_s < 8.0) {
+    stepFrame(simulation);
+    fewestAsleep = std::min(fewestAsleep, asleepBlocks(simulation));
+  }
+  EXPECT_EQ(fewestAsleep, 0U);
+}
+
+// A block whose centre of mass is outside the edge that carries it must fall, however slowly it begins: 0.15 mm outside it starts
+// with a quarter of a hundredth of gravity.
+TEST(Sleep, WhatTipsDoesNotSleepBeforeItFalls) {
+  for (const double over_m : {0.0135, 0.02}) {
+    TowerOptions tower;
+    tower.offsets.push_back({1, 2, 0.0, over_m});
+    Simulation simulation(bitCodeScene("(010)-(010)", tower));
+    const std::vector<FittedBox> start = fittedBoxes(simulation.state.position);
+    while (simulation.time_s < 3.0 && standing(simulation.model, start, simulation.state.position).stands) {
+      stepFrame(simulation);
+      ASSERT_EQ(simulation.asleep[1], 0) << over_m << " at " << simulation.time_s << " s";
+    }
+    EXPECT_LT(simulation.time_s, 3.0) << over_m << ": it has not fallen";
+  }
+}
+
+RunResult play(Simulation& simulation) {
+  RunOptions options;
+  options.seconds = 30.0;
+  options.stopWhenFallen = true;
+  options.measureEveryFrame = false;
+  return runScene(simulation, options);
+}
+
+// Falls with sleep as with nothing asleep, at a time within 5 %; where one block is first, the same.
+void expectFallsAsAwake(Scene scene, bool sameBlock) {
+  Simulation asleep(scene);
+  const RunResult result = play(asleep);
+  scene.settings.sleep = Sleep::off;
+  Simulation awake(scene);
+  const RunResult expected = play(awake);
+  ASSERT_TRUE(expected.fallTime_s.has_value());
+  ASSERT_TRUE(result.fallTime_s.has_value());
+  EXPECT_NEAR(*result.fallTime_s, *expected.fallTime_s, 0.05 * *expected.fallTime_s);
+  if (sameBlock) {
+    EXPECT_EQ(result.standing.block, expected.standing.block);
+  }
+}
+
+// Without block 5:1 the twelve rows above stand on two blocks. What friction asks of a hand that draws 13:1 outwards, 0.4 of the
+// four rows on it and of its own, both a third, is 0.69 N; eight rows above that storey it is 0.10 N m about its edge, and twelve
+// rows bear 0.09: the tower goes over. The hand touches sleepers that all bear what is done to them one by one.
+TEST(Sleep, AHandDrawsATowerOverAsleepAsAwake) {
+  Scene scene = towerScene(18);
+  std::erase_if(scene.blocks, [](const BlockSpec& block) { return block.row == 5 && block.position == 1; });
+  scene.moves = {take(13, 1, -Vec3::UnitX())};
+  expectFallsAsAwake(scene, true);
+}
+
+// Two columns of twelve blocks, side by side: one that is light but for its top, which is pulled away from the other by 4 weights
+// of a common block. Its foot is the edge over which 2.6 of them tip it, and the other column, which touches it and bears nothing
+// of it, must not be taken for its support.
+TEST(Sleep, WhatOnlyStandsBesideAColumnDoesNotHoldIt) {
+  Scene scene;
+  constexpr int kStorey = 12;
+  for (const double x : {0.0, kBlockWidth_m}) {
+    for (int i = 0; i < kStorey; ++i) {
+      BlockSpec block;
+      block.dimensions = {kBlockWidth_m, kBlockLength_m, kBlockHeight_m};
+      block.centre = {x, 0.0, (i + 0.5) * kBlockHeight_m};
+      block.mass = kBlockMass_kg * (x > 0.0 ? 5.0 : i == kStorey - 1 ? 30.0 : 1.0);
+      scene.blocks.push_back(block);
+    }
+  }
+  scene.forces.push_back({kStorey - 1, -1, Vec3(-4.0 * kBlockMass_kg * 9.81, 0.0, 0.0), 4.0, 8.0});
+  expectFallsAsAwake(scene, false);  // its blocks lean all at once
+}
+
+// Blocks over loose ones are not falling on them: those they bear upon stay asleep, and so does most of the tower.
+TEST(Sleep, LooseBlocksBelowAreNotHitByWhatLiesOverThem) {
+  TowerOptions options;
+  options.loose = {{14, 2, 0.0003}, {9, 2, 0.0003}, {4, 2, 0.0003}};
+  Scene scene = towerScene(18, options);
+  scene.moves = {take(15, 2, Vec3::UnitY())};
+  Simulation simulation(scene);
+  MoveRun moves = beginMoves(simulation);
+  std::size_t most = 0;
+  while (simulation.time_s < 2.5) {
+    guideHand(moves, simulation);
+    stepFrame(simulation);
+    if (simulation.time_s > 0.7) most = std::max(most, simulation.asleep.size() - asleepBlocks(simulation));
+  }
+  EXPECT_LE(most, 27U) << "half of the tower";
+}
+
+// A block dropped from 2 cm, that hardly rebounds, shifts a tower of three rows by half a millimetre; sleepers that took the blow
+// like the floor moved by 0.004 mm. They differ by 0.1 %; 2 % are allowed,
+// as a slide amplifies what is left.
+TEST(Sleep, ABlockThatHitsSleepersMovesThemAsAwake) {
+  Scene scene = towerScene(3);
+  Move drop;
+  drop.kind = MoveKind::put;
+  drop.row = 3;
+  drop.position = 1;
+  drop.drop_m = 0.02;
+  scene.moves = {take(2, 3, Vec3::UnitX()), drop};
+  scene.settings.tolerance_m = 1e-5;
+  scene.settings.dampingTime = 0.01;
+  Simulation asleep(scene);
+  const RunResult result = play(asleep);
+  scene.settings.sleep = Sleep::off;
+  Simulation awake(scene);
+  const RunResult expected = play(awake);
+  ASSERT_EQ(result.moves.size(), 2U);
+  ASSERT_EQ(expected.moves.size(), 2U);
+  EXPECT_GT(expected.moves[1].moved_m, 3e-4) << "the blow has to be felt";
+  EXPECT_NEAR(result.moves[1].moved_m, expected.moves[1].moved_m, 0.02 * expected.moves[1].moved_m);
+  EXPECT_EQ(asleepBlocks(asleep), 9U) << "and they sleep again";
+}
+
+// The report's test: a block is disabled when its particles have moved little in one frame.
+TEST(Sleep, AsReportedDisablesAtRest) {
+  Scene scene = towerScene(2);
+  scene.settings.sleep = Sleep::report;
+  Simulation simulation(scene);
+  for (int frame = 0; frame < 120; ++frame) stepFrame(simulation);
+  EXPECT_TRUE(allAsleep(simulation));
+
+  Scene awake = towerScene(2);
+  awake.settings.sleep = Sleep::off;
+  Simulation other(awake);
+  for (int frame = 0; frame < 120; ++frame) stepFrame(other);
+  EXPECT_EQ(asleepBlocks(other), 0U) << "and without sleep none is";
+}
+
+}  // namespace
+}  // namespace springtower
