@@ -84,7 +84,7 @@ void pull(Simulation& simulation, std::size_t block, double speed_m_s, double& f
 
 void runGate(const GateScene& gate, Method method, int frames) {
   Simulation simulation(sceneOf(gate, method));
-  const CornerArray start = simulation.state.position;
+  const ParticleArray start = simulation.state.position;
   const std::size_t pulled = pulledBlock(simulation.scene, gate.rows);
   double friction_n = kFirstPull_n;
   const auto step = [&] {
@@ -98,7 +98,7 @@ void runGate(const GateScene& gate, Method method, int frames) {
   CALLGRIND_STOP_INSTRUMENTATION;
 
   PenetrationWorkspace workspace;
-  const CornerArray& position = simulation.state.position;
+  const ParticleArray& position = simulation.state.position;
   std::vector<int> row;
   for (const BlockSpec& block : simulation.scene.blocks) row.push_back(block.row);
   fmt::print(

@@ -81,14 +81,14 @@ void contacts(benchmark::State& run) {
   double points = 0.0;
   double pairs = 0.0;
   for (const NearPair& pair : engine.pairs) {
-    if (pair.manifold.touch == Touch::apart) continue;
+    if (pair.manifold.touch == PairPhase::separated) continue;
     points += pair.manifold.count;
     pairs += 1.0;
   }
   PairForce force;
   for (auto iteration : run) {
     for (NearPair& pair : engine.pairs) {
-      if (pair.manifold.touch == Touch::apart) continue;
+      if (pair.manifold.touch == PairPhase::separated) continue;
       manifoldForces(pair.manifold, side(pair.manifold.upper), side(pair.manifold.lower), law, {}, kBlockMass_kg, &pair.manifold,
                      force);
       benchmark::DoNotOptimize(force);
@@ -106,7 +106,7 @@ IslandStep islandStep(Simulation& s, Counters& counters, StageTimes& times) {
   IslandStep step{
       s,     engine,       engine.islands.island(0), std::span<const std::int32_t>(engine.islandPairs).first(pairs), counters,
       times, contactLaw(s)};
-  step.drift_s = engine.clock[static_cast<std::size_t>(step.blocks.front())].lastDrift_s;
+  step.drift_s = engine.blockHistory[static_cast<std::size_t>(step.blocks.front())].lastExplicitStep_s;
   step.kick_s = step.drift_s;
   step.advance_s = step.drift_s;
   step.gravity = s.scene.gravity.at(s.time_s);
@@ -147,7 +147,7 @@ void watchedPairs(benchmark::State& run) {
   StageTimes times;
   IslandStep step = islandStep(s, counters, times);
   s.engine->previous = s.state.position;
-  const RenewalTravel renewal = renewalOfExplicitSteps(s);
+  const RefreshTravel renewal = refreshTravelOfExplicitSteps(s);
   for (auto iteration : run) benchmark::DoNotOptimize(updateContacts(step, renewal));
   const auto pairs = static_cast<double>(step.pairs.size());
   rate(run, pairs, 0.0, pairs * 32.0 + static_cast<double>(step.blocks.size()) * 2.0 * kCornerBytes);
@@ -157,14 +157,14 @@ void restJudgement(benchmark::State& run) {
   Simulation s = startedTowers(static_cast<int>(run.range(0)), framesFor(run));
   for (auto iteration : run) updateRest(s);
   const auto count = static_cast<double>(s.model.blockCount());
-  rate(run, count, 0.0, count * (2.0 * kCornerBytes + sizeof(RestWindow)));
+  rate(run, count, 0.0, count * (2.0 * kCornerBytes + sizeof(SleepWindow)));
 }
 
 // The touching pairs of two blocks of a tower.
 std::vector<const NearPair*> facePairs(const Simulation& s) {
   std::vector<const NearPair*> pairs;
   for (const NearPair& pair : s.engine->pairs) {
-    if (pair.manifold.touch == Touch::face && pair.b >= 0) pairs.push_back(&pair);
+    if (pair.manifold.touch == PairPhase::face && pair.b >= 0) pairs.push_back(&pair);
   }
   return pairs;
 }
@@ -207,7 +207,7 @@ void cubicTests(benchmark::State& run, double sink_m) {
   const double gap = start.position.at(upper, 0).z() - start.position.at(lower, 4).z();
   for (std::size_t c = 0; c < kCorners; ++c)
     start.position.add(upper, c, Vec3(1e-4, 2e-4, 1e-4 - gap + 1e-6 * static_cast<double>(c)));
-  CornerArray end = start.position;
+  ParticleArray end = start.position;
   for (std::size_t c = 0; c < kCorners; ++c) end.add(upper, c, Vec3(1e-5, 2e-5, -sink_m));
   const MovingBlock a{cornersOf(start.position, upper), cornersOf(end, upper)};
   const MovingBlock b{cornersOf(start.position, lower), cornersOf(end, lower)};

@@ -15,7 +15,7 @@ using Entry = SortAndSweep::Entry;
 using Column = SortAndSweep::Column;
 
 // A column's key: 8 bits of level, 28 bits of place along either axis across the columns, all counted from their least.
-constexpr int kLeastLevel = -127;
+constexpr int kMinLevel = -127;
 constexpr int kGreatestLevel = 127;
 constexpr int kPlaceBits = 28;
 constexpr double kPlaces = 1 << kPlaceBits;
@@ -27,7 +27,7 @@ constexpr double kRoundUp = 1.0 + 4.0 * std::numeric_limits<double>::epsilon();
 // column is missed.
 int levelOf(double width) {
   const auto exponent = static_cast<int>(std::bit_cast<std::uint64_t>(width) >> 52);
-  return std::clamp(exponent - 1022, kLeastLevel, kGreatestLevel);
+  return std::clamp(exponent - 1022, kMinLevel, kGreatestLevel);
 }
 
 double columnWidth(int level) {
@@ -41,11 +41,11 @@ std::uint64_t placeOf(double coordinate, int level) {
 }
 
 std::uint64_t packKey(int level, std::uint64_t first, std::uint64_t second) {
-  return (static_cast<std::uint64_t>(level - kLeastLevel) << (2 * kPlaceBits)) | (first << kPlaceBits) | second;
+  return (static_cast<std::uint64_t>(level - kMinLevel) << (2 * kPlaceBits)) | (first << kPlaceBits) | second;
 }
 
 int levelIn(std::uint64_t key) {
-  return static_cast<int>(key >> (2 * kPlaceBits)) + kLeastLevel;
+  return static_cast<int>(key >> (2 * kPlaceBits)) + kMinLevel;
 }
 
 std::uint64_t secondPlaceIn(std::uint64_t key) {

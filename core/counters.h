@@ -8,7 +8,7 @@
 
 namespace springtower {
 
-/// The stages of a frame (design: broadphase, candidates, cubic tests, springs, contacts, integration, islands and sleep).
+/// The stages of a frame (broadphase, candidates, cubic tests, springs, contacts, integration, islands and sleep).
 enum class Stage : std::size_t { broadphase, candidates, cubicTests, springs, contacts, integration, islandsAndSleep };
 inline constexpr std::size_t kStages = 7;
 inline constexpr std::array<std::string_view, kStages> kStageNames = {"broadphase", "candidates",  "cubic_tests",      "springs",

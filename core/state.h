@@ -13,7 +13,7 @@ namespace springtower {
 
 /// One vector per corner of every block, structure of arrays: component a of corner c of block b is component[a][8 b + c], so the
 /// eight values of a block fill one cache line per component.
-struct CornerArray {
+struct ParticleArray {
   std::array<AlignedVector<double>, 3> component;
 
   void resize(std::size_t blocks) {
@@ -38,8 +38,8 @@ struct CornerArray {
 
 /// What moves: positions (m) and velocities (m/s) of all corners, [blocks][8].
 struct MotionState {
-  CornerArray position;
-  CornerArray velocity;
+  ParticleArray position;
+  ParticleArray velocity;
 
   void resize(std::size_t blocks) {
     position.resize(blocks);
@@ -60,21 +60,21 @@ struct BlockModel {
 };
 
 /// Mean of a block's eight corners: its centre of mass in either inertia (m, or m/s for velocities).
-inline Vec3 centre(const CornerArray& values, std::size_t block) {
+inline Vec3 centre(const ParticleArray& values, std::size_t block) {
   Vec3 sum = Vec3::Zero();
   for (std::size_t c = 0; c < kCorners; ++c) sum += values.at(block, c);
   return sum / static_cast<double>(kCorners);
 }
 
 /// Mean of a block's four edges along an axis (0 x, 1 y, 2 z), from the negative to the positive side, m; not normalised.
-inline Vec3 meanEdge(const CornerArray& position, std::size_t block, std::size_t axis) {
+inline Vec3 meanEdge(const ParticleArray& position, std::size_t block, std::size_t axis) {
   Vec3 sum = Vec3::Zero();
   for (std::size_t c = 0; c < kCorners; ++c) sum += cornerSide(c, axis) * position.at(block, c);
   return sum / 4.0;
 }
 
 /// The three mean edges of a block as columns, in the order of its axes: m from positions, m/s from velocities.
-inline Eigen::Matrix3d meanEdges(const CornerArray& values, std::size_t block) {
+inline Eigen::Matrix3d meanEdges(const ParticleArray& values, std::size_t block) {
   Eigen::Matrix3d edges;
   for (std::size_t a = 0; a < 3; ++a) edges.col(static_cast<Eigen::Index>(a)) = meanEdge(values, block, a);
   return edges;
@@ -88,7 +88,7 @@ struct FittedBox {
 };
 
 /// Fits a cuboid to the eight corners of a block. Precondition: no mean edge has length zero.
-inline FittedBox fittedBox(const CornerArray& position, std::size_t block) {
+inline FittedBox fittedBox(const ParticleArray& position, std::size_t block) {
   FittedBox box;
   box.centre = centre(position, block);
   for (std::size_t a = 0; a < 3; ++a) {

@@ -81,7 +81,7 @@ std::size_t dropStraight(double radius, const Lengths& lengths, std::size_t coun
 
 constexpr std::array<std::array<double, 2>, 4> kCornerPlaces = {{{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}}};
 
-void start(Manifold& manifold, Touch touch, int incidentFace, int referenceFace) {
+void start(Manifold& manifold, PairPhase touch, int incidentFace, int referenceFace) {
   const std::int32_t upper = manifold.upper;
   const std::int32_t lower = manifold.lower;
   manifold = Manifold{};
@@ -129,7 +129,7 @@ Vec3 pointOnIncidentFace(const Manifold& manifold, const CornerView& upper, std:
 
 void buildFaceManifold(const CornerView& upper, const CornerView& lower, int incidentFace, int referenceFace,
                        const ManifoldLimits& limits, Manifold& manifold) {
-  start(manifold, Touch::face, incidentFace, referenceFace);
+  start(manifold, PairPhase::face, incidentFace, referenceFace);
   const FaceFrame incident = faceFrame(upper, incidentFace);
   const FaceFrame reference = faceFrame(lower, referenceFace);
   const Vec3 alongS = reference.sideU / reference.sideU.squaredNorm();
@@ -167,7 +167,7 @@ void buildFaceManifold(const CornerView& upper, const CornerView& lower, int inc
 
 void buildFloorManifold(const CornerView& upper, const ManifoldLimits& limits, Manifold& manifold) {
   const int face = incidentFaceOf(upper, Vec3::UnitZ());
-  start(manifold, Touch::face, face, 0);
+  start(manifold, PairPhase::face, face, 0);
   std::size_t kept = 0;
   for (std::size_t i = 0; i < 4; ++i) {
     if (upper.z[kFaceCorners[static_cast<std::size_t>(face)][i]] > limits.reach) continue;
@@ -179,7 +179,7 @@ void buildFloorManifold(const CornerView& upper, const ManifoldLimits& limits, M
 }
 
 void carryMemory(const Manifold& old, const CornerView& oldUpper, Manifold& fresh, const CornerView& freshUpper, double radius) {
-  if (old.touch != Touch::face || fresh.touch != Touch::face) return;
+  if (old.touch != PairPhase::face || fresh.touch != PairPhase::face) return;
   std::array<Vec3, kManifoldPoints> place;
   const auto oldCount = static_cast<std::size_t>(old.count);
   for (std::size_t j = 0; j < oldCount; ++j) place[j] = pointOnIncidentFace(old, oldUpper, j);

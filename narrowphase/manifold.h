@@ -12,9 +12,9 @@ namespace springtower {
 inline constexpr std::size_t kManifoldPoints = 8;  // two rectangles overlap in a polygon of at most eight corners
 
 /// What a pair of blocks (or a block and the floor) is to one another.
-enum class Touch : std::uint8_t { apart, face, edge };
+enum class PairPhase : std::uint8_t { separated, face, edge };
 
-/// `live` of a point that touches and does not push: it lifts faster than its spring follows.
+/// `live` of a point that touches without a normal force: it overlaps, but damping cancels the spring while the blocks separate.
 inline constexpr double kUnpressed = 0.5;
 
 /// What the points of a manifold remember from step to step, structure of arrays, so that four points fill one SIMD register.
@@ -22,8 +22,9 @@ struct PointMemory {
   alignas(32) std::array<double, kManifoldPoints> stretchX{};  ///< friction anchor: elastic tangential displacement of upper, m
   alignas(32) std::array<double, kManifoldPoints> stretchY{};
   alignas(32) std::array<double, kManifoldPoints> stretchZ{};
-  alignas(32) std::array<double, kManifoldPoints> relaxed{};  ///< depth that the viscoelastic branch has forgotten, m
-  alignas(32) std::array<double, kManifoldPoints> offset{};   ///< depth at which the point pushes nothing yet, m
+  alignas(32) std::array<double, kManifoldPoints> relaxed{};  ///< Maxwell branch: relaxed part of the elastic depth, m; its force
+                                                              ///< is k_v (elastic - relaxed)
+  alignas(32) std::array<double, kManifoldPoints> offset{};   ///< depth of zero force, m
   alignas(32) std::array<double, kManifoldPoints> scale{};    ///< its stiffness over the resting one, >= 1 after an impact
   alignas(32) std::array<double, kManifoldPoints> live{};     ///< 1 where it pushes, kUnpressed where it only touches, else 0 (a
                                                               ///< double, to serve as a lane)
@@ -42,7 +43,7 @@ struct Manifold : PointMemory {
   std::int32_t count = 0;
   std::int8_t incidentFace = 0;   ///< of upper; for an edge manifold its edge
   std::int8_t referenceFace = 0;  ///< of lower; for an edge manifold its edge
-  Touch touch = Touch::apart;
+  PairPhase touch = PairPhase::separated;
   bool rigid = false;  ///< whether rigid steps move its blocks: `relaxed` and `stretch` are forces then (N, friction on upper)
 };
 

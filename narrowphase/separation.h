@@ -4,7 +4,7 @@
 
 namespace springtower {
 
-/// The eight corners of one block inside a CornerArray: three runs of eight doubles.
+/// The eight corners of one block inside a ParticleArray: three runs of eight doubles.
 struct CornerView {
   const double* x;
   const double* y;
@@ -13,7 +13,7 @@ struct CornerView {
 };
 
 /// A view of a block's corners. Valid while the array is not resized.
-inline CornerView cornersOf(const CornerArray& array, std::size_t block) {
+inline CornerView cornersOf(const ParticleArray& array, std::size_t block) {
   return {array.values(0, block), array.values(1, block), array.values(2, block)};
 }
 

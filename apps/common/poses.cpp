@@ -19,7 +19,7 @@ void PoseWriter::frame(const Simulation& simulation) {
   const double late_s = simulation.time_s - written_ * every_s_;
   if (late_s < -half_s_) return;
   written_ += std::max(1.0, std::floor((late_s + half_s_) / every_s_) + 1.0);
-  const CornerArray& position = simulation.state.position;
+  const ParticleArray& position = simulation.state.position;
   fmt::memory_buffer text;
   for (std::size_t b = 0; b < position.blockCount(); ++b) {
     fmt::format_to(std::back_inserter(text), "{:.10g},{}", simulation.time_s, b);

@@ -36,7 +36,7 @@ struct Subject {
   double radius = 0.0;
 };
 
-Subject subjectOf(const CornerArray& position) {
+Subject subjectOf(const ParticleArray& position) {
   const std::size_t blocks = position.blockCount();
   std::vector<double> values(blocks);
   const auto median = [&values] {
@@ -106,7 +106,7 @@ Frame frameOf(const Subject& subject, const PictureOptions& options) {
 }
 
 // Edges are a pixel wide, less on blocks that are only a few pixels high.
-double edgeWidth(const CornerArray& position, const View& view) {
+double edgeWidth(const ParticleArray& position, const View& view) {
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t a = 0; a < 3; ++a) least = std::min(least, meanEdge(position, 0, a).norm());
   return std::min(0.7 * kSamples, 0.05 * least * view.scale);
@@ -129,7 +129,7 @@ Colour woodOf(std::uint32_t block) {
 // Draws samples of a scene: light, shadow, floor.
 class Painter {
  public:
-  Painter(const CornerArray& position, bool floor, const Subject& subject, const View& view)
+  Painter(const ParticleArray& position, bool floor, const Subject& subject, const View& view)
       : floor_(floor), subject_(subject), view_(view), light_(subject.middle, light(view)), shadow_(kShadowSize, kShadowSize) {
     light_.scale = 0.45 * kShadowSize / subject.radius;
     light_.x = 0.5 * kShadowSize;
@@ -177,7 +177,7 @@ class Painter {
     double sun;    // what the sun adds
   };
 
-  [[nodiscard]] Look lookOf(const CornerArray& position, std::size_t block, std::size_t face) const {
+  [[nodiscard]] Look lookOf(const ParticleArray& position, std::size_t block, std::size_t face) const {
     const auto corner = [&](std::size_t i) { return position.at(block, static_cast<std::size_t>(kFaceCorners[face][i])); };
     Look look;
     look.normal = (corner(2) - corner(0)).cross(corner(3) - corner(1)).normalized();
@@ -229,7 +229,7 @@ std::uint32_t packed(const Colour& colour) {
 
 }  // namespace
 
-void writePicture(std::ostream& stream, const CornerArray& position, bool floor, const PictureOptions& options) {
+void writePicture(std::ostream& stream, const ParticleArray& position, bool floor, const PictureOptions& options) {
   const Subject subject = subjectOf(position);
   const Frame frame = frameOf(subject, options);
   Raster raster(kSamples * frame.width, kSamples * frame.height);

@@ -59,7 +59,7 @@ void drawTriangle(Raster& raster, std::array<Vec3, 3> corner, bool diagonalLast,
 
 }  // namespace
 
-void drawBlocks(Raster& raster, const View& view, const CornerArray& position, double edgeWidth) {
+void drawBlocks(Raster& raster, const View& view, const ParticleArray& position, double edgeWidth) {
   for (std::size_t b = 0; b < position.blockCount(); ++b) {
     std::array<Vec3, kCorners> corner;
     bool seen = true;

@@ -58,6 +58,6 @@ struct Raster {
 
 /// Draws all blocks: a sample within `edgeWidth` samples of the side of a face belongs to its edge. Nearer faces cover others,
 /// faces turned away are left out.
-void drawBlocks(Raster& raster, const View& view, const CornerArray& position, double edgeWidth);
+void drawBlocks(Raster& raster, const View& view, const ParticleArray& position, double edgeWidth);
 
 }  // namespace springtower

@@ -7,11 +7,11 @@
 namespace springtower {
 namespace {
 
-constexpr double kMostTicks = 8.0;
+constexpr double kMaxTicks = 8.0;
 
-// 1, 2 or 5 times a power of ten, so that a span has no more than kMostTicks of them.
+// 1, 2 or 5 times a power of ten, so that a span has no more than kMaxTicks of them.
 double niceStep(double span) {
-  const double raw = span / kMostTicks;
+  const double raw = span / kMaxTicks;
   const double power = std::pow(10.0, std::floor(std::log10(raw)));
   for (const double factor : {1.0, 2.0, 5.0}) {
     if (raw <= factor * power * (1.0 + 1e-9)) return factor * power;
@@ -64,7 +64,7 @@ void logarithmicTicks(const PlotAxis& axis, AxisScale& scale) {
   }
   if (!axis.least) scale.least = low;
   if (!axis.most) scale.most = high;
-  const int every = decades > 2.0 * kMostTicks ? static_cast<int>(std::ceil(decades / kMostTicks)) : 1;
+  const int every = decades > 2.0 * kMaxTicks ? static_cast<int>(std::ceil(decades / kMaxTicks)) : 1;
   for (int exponent = first; exponent <= last; ++exponent) {
     for (int digit = 1; digit <= 9; ++digit) {
       const double value = valueOf(exponent, digit);

@@ -296,7 +296,7 @@ std::array<double, 2> sizeOf(const Plot& plot) {
   return {std::ceil(drawing.width), std::ceil(drawing.height)};
 }
 
-void drawOn(cairo_surface_t* surface, const Plot& plot, double scale) {
+void advancePull(cairo_surface_t* surface, const Plot& plot, double scale) {
   Canvas canvas(surface);
   cairo_scale(canvas.get(), scale, scale);
   Drawing drawing(canvas, plot);
@@ -331,7 +331,7 @@ void writeSvg(std::ostream& stream, const Plot& plot) {
   const auto [width, height] = sizeOf(plot);
   std::ostringstream text;
   const Surface surface(cairo_svg_surface_create_for_stream(toStream, &text, width, height), cairo_surface_destroy);
-  drawOn(surface.get(), plot, 1.0);
+  advancePull(surface.get(), plot, 1.0);
   cairo_surface_finish(surface.get());
   check(cairo_surface_status(surface.get()));
   // cairo numbers the surfaces of a process; the same chart shall be the same file.
@@ -345,7 +345,7 @@ void writePng(std::ostream& stream, const Plot& plot) {
   const Surface surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24, kPixelsPerPoint * static_cast<int>(width),
                                                    kPixelsPerPoint * static_cast<int>(height)),
                         cairo_surface_destroy);
-  drawOn(surface.get(), plot, kPixelsPerPoint);
+  advancePull(surface.get(), plot, kPixelsPerPoint);
   check(cairo_surface_write_to_png_stream(surface.get(), toStream, &stream));
 }
 

@@ -59,7 +59,7 @@ void zoom(Camera& camera, double steps) {
   camera.distance = std::clamp(camera.distance * std::pow(kZoomStep, steps), kNearest_m, kFarthest_m);
 }
 
-void showAll(Camera& camera, const CornerArray& position) {
+void showAll(Camera& camera, const ParticleArray& position) {
   Vec3 low = position.at(0, 0);
   Vec3 high = low;
   for (std::size_t b = 0; b < position.blockCount(); ++b) {
@@ -112,7 +112,7 @@ Eigen::Matrix4f clipFromWorld(const Camera& camera, const Viewport& viewport) {
   return (projection * view).cast<float>();
 }
 
-std::optional<Pick> pickBlock(const CornerArray& position, const Ray& ray) {
+std::optional<Pick> pickBlock(const ParticleArray& position, const Ray& ray) {
   std::optional<Pick> nearest;
   for (std::size_t b = 0; b < position.blockCount(); ++b) {
     for (std::size_t t = 0; t < kTriangles; ++t) {

@@ -39,7 +39,7 @@ void orbit(Camera& camera, double azimuth, double elevation);
 void zoom(Camera& camera, double steps);
 
 /// Looks at the middle of all blocks from a distance that shows them all. Precondition: at least one block.
-void showAll(Camera& camera, const CornerArray& position);
+void showAll(Camera& camera, const ParticleArray& position);
 
 /// A half line: origin in metres, unit direction.
 struct Ray {
@@ -69,6 +69,6 @@ struct Pick {
 
 /// The nearest face of any block that a ray meets (report 4.8.1), by its two triangles as they are drawn (Moeller & Trumbore
 /// 1997). Both sides of a face count. Empty when there is none.
-std::optional<Pick> pickBlock(const CornerArray& position, const Ray& ray);
+std::optional<Pick> pickBlock(const ParticleArray& position, const Ray& ray);
 
 }  // namespace springtower

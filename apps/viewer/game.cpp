@@ -22,7 +22,7 @@ double heightOf(const Simulation& simulation, std::size_t block) {
   return simulation.model.dimensions[block].z();
 }
 
-double lowestCorner(const CornerArray& position, std::size_t block) {
+double lowestCorner(const ParticleArray& position, std::size_t block) {
   const double* z = position.values(2, block);
   return *std::min_element(z, z + kCorners);
 }
@@ -80,7 +80,7 @@ int rowOf(const Simulation& simulation, std::size_t block) {
 
 Game newGame(const Simulation& simulation, int players, std::uint64_t frame) {
   Game game;
-  game.players = std::clamp(players, 0, kMostPlayers);
+  game.players = std::clamp(players, 0, kMaxPlayers);
   game.onFloor.resize(simulation.model.blockCount());
   for (std::size_t b = 0; b < game.onFloor.size(); ++b) game.onFloor[b] = touchesFloor(simulation, b) ? 1 : 0;
   beginTurn(game, simulation, frame);
@@ -175,7 +175,7 @@ std::optional<WithoutBlock> withoutBlock(const Simulation& simulation, std::span
     spec.mass = simulation.model.mass[b];
   }
   const auto renumbered = [&](BlockId b) { return b == kFloor || index(b) < index(block) ? b : blockId(index(b) - 1); };
-  std::vector<Facing> facings;
+  std::vector<FacePair> facings;
   for (const ContactForce& contact : contacts) {
     if (contact.upper == block || contact.lower == block) continue;
     facings.push_back({renumbered(contact.upper), renumbered(contact.lower), contact.normal, {{contact.point, 0.0}}});
@@ -188,7 +188,7 @@ double tiltBorne(const WithoutBlock& question) {
   constexpr double kNever_deg = -90.0;
   std::vector<std::size_t> usable(question.model.points.size());
   std::iota(usable.begin(), usable.end(), std::size_t{0});
-  const std::optional<TiltMargin> margin = tiltMargin(question.model, usable, question.gravity, kTolerance_deg);
+  const std::optional<StabilityMargin> margin = tiltMargin(question.model, usable, question.gravity, kTolerance_deg);
   return margin ? margin->tilt_deg : kNever_deg;
 }
 

@@ -15,7 +15,7 @@ namespace springtower {
 // down any other block loses. All of it is a function of the blocks' positions and the hand, frame by frame, so a replay plays
 // the same game.
 
-inline constexpr int kMostPlayers = 4;
+inline constexpr int kMaxPlayers = 4;
 
 /// Where a move stands.
 enum class Phase { choose, moving, over };

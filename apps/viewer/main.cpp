@@ -64,7 +64,7 @@ struct Command {
 void define(CLI::App& app, Command& c) {
   app.add_option("--scene", c.scene, "a .toml file, a bit code such as (111)-(1L1), or tower:ROWS (default tower:18)")
       ->type_name("SCENE");
-  addWholeNumber(app, "--players", c.players, {0, kMostPlayers, ""}, "plays the game; 0 lets every block be taken (default)");
+  addWholeNumber(app, "--players", c.players, {0, kMaxPlayers, ""}, "plays the game; 0 lets every block be taken (default)");
   addNumber(app, "--heights-sigma", c.heightsSigma_m, kHeightsSigmaRange, "METRES",
             "standard deviation of the blocks' heights (default 0.0002 for tower:ROWS, else none)");
   addNumber(app, "--mass-sigma", c.massSigma_kg, kMassSigmaRange, "KG", "standard deviation of the masses");

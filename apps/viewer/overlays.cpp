@@ -18,7 +18,7 @@ constexpr Colour kLoose = {0.30F, 0.80F, 0.35F};
 constexpr Colour kFree = {0.55F, 0.75F, 0.95F};
 constexpr Colour kSticks = {0.25F, 0.55F, 1.00F};
 constexpr Colour kSlips = {1.00F, 0.50F, 0.10F};
-constexpr double kLeastForce_n = 1e-3;
+constexpr double kMinForce_n = 1e-3;
 constexpr double kMetresPerNewton = 0.01;
 constexpr double kShortestArrow_m = 0.003;
 
@@ -108,7 +108,7 @@ Colour colourMap(Overlay overlay, double share) {
   return colour;
 }
 
-double blockStrain(const BlockModel& model, const CornerArray& position, std::size_t block) {
+double blockStrain(const BlockModel& model, const ParticleArray& position, std::size_t block) {
   double most = 0.0;
   for (std::size_t a = 0; a < kCorners; ++a) {
     for (std::size_t b = a + 1; b < kCorners; ++b) {
@@ -160,7 +160,7 @@ BlockColours blockColours(const Session& session, Overlay overlay) {
   return result;
 }
 
-void blockMesh(const CornerArray& position, std::span<const Colour> colours, std::vector<Vertex>& mesh) {
+void blockMesh(const ParticleArray& position, std::span<const Colour> colours, std::vector<Vertex>& mesh) {
   for (std::size_t b = 0; b < position.blockCount(); ++b) {
     for (std::size_t t = 0; t < kTriangles; ++t) {
       std::array<Vec3, 3> corner;
@@ -209,7 +209,7 @@ void addContactArrows(const Session& session, const Camera& camera, std::vector<
     Vec3 force = contact.normalForce * contact.normal + contact.frictionForce;
     if (contact.normal.z() < 0.0) force = -force;
     const double size = force.norm();
-    if (size < kLeastForce_n) continue;
+    if (size < kMinForce_n) continue;
     const Vec3 arrow = force * (std::max(kMetresPerNewton * size, kShortestArrow_m) / size);
     addArrow(contact.point, contact.point + arrow, contact.sliding ? kSlips : kSticks, camera, kWidth_m, mesh);
   }
@@ -219,7 +219,7 @@ Colour holdColour(Hold hold) {
   return hold == Hold::slips ? kSlips : hold == Hold::sticks ? kSticks : kFree;
 }
 
-void addHand(const Session& session, const Hand& hand, const CornerArray& position, const Camera& camera,
+void addHand(const Session& session, const Hand& hand, const ParticleArray& position, const Camera& camera,
              std::vector<Vertex>& mesh) {
   constexpr double kWidth_m = 0.003;
   if (hand.block == kFloor) return;

@@ -37,7 +37,7 @@ BlockColours blockColours(const Session& session, Overlay overlay);
 Colour colourMap(Overlay overlay, double share);
 
 /// Largest strain of any of a block's springs.
-double blockStrain(const BlockModel& model, const CornerArray& position, std::size_t block);
+double blockStrain(const BlockModel& model, const ParticleArray& position, std::size_t block);
 
 /// A corner of a triangle to be drawn. A zero normal is drawn in its plain colour, without light.
 struct Vertex {
@@ -50,7 +50,7 @@ struct Vertex {
 };
 
 /// The triangles of all blocks from their particles' real positions, with the normal of each triangle, so that a bent face shows.
-void blockMesh(const CornerArray& position, std::span<const Colour> colours, std::vector<Vertex>& mesh);
+void blockMesh(const ParticleArray& position, std::span<const Colour> colours, std::vector<Vertex>& mesh);
 
 /// Adds an arrow that is seen from any side: it turns its width to the camera.
 void addArrow(const Vec3& from, const Vec3& to, const Colour& colour, const Camera& camera, double width_m,
@@ -63,7 +63,7 @@ void addContactArrows(const Session& session, const Camera& camera, std::vector<
 Colour holdColour(Hold hold);
 
 /// Adds the hand: an arrow from the block to where the hand wants it, in the colour of its hold.
-void addHand(const Session& session, const Hand& hand, const CornerArray& position, const Camera& camera,
+void addHand(const Session& session, const Hand& hand, const ParticleArray& position, const Camera& camera,
              std::vector<Vertex>& mesh);
 
 }  // namespace springtower

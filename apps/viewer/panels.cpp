@@ -42,11 +42,11 @@ void runPanel(Viewer& viewer) {
 }
 
 void towerPanel(Viewer& viewer, PanelDraft& draft) {
-  constexpr int kMostSliderRows = 72;
-  ImGui::SliderInt("rows", &draft.rows, 1, kMostSliderRows);
+  constexpr int kMaxSliderRows = 72;
+  ImGui::SliderInt("rows", &draft.rows, 1, kMaxSliderRows);
   ImGui::SliderFloat("heights vary, mm", &draft.sigma_mm, 0.0F, 1.0F, "%.2f");
   ImGui::InputInt("seed", &draft.seed);
-  ImGui::SliderInt("players", &draft.players, 0, kMostPlayers, draft.players == 0 ? "no game" : "%d");
+  ImGui::SliderInt("players", &draft.players, 0, kMaxPlayers, draft.players == 0 ? "no game" : "%d");
   bool build = ImGui::Button("new tower");
   ImGui::SameLine();
   if (ImGui::Button("next seed")) {

@@ -167,8 +167,8 @@ std::optional<std::uint64_t> undoFrame(const Session& session) {
   return {};
 }
 
-void between(const Session& session, double share, CornerArray& position) {
-  const CornerArray& now = session.simulation.state.position;
+void between(const Session& session, double share, ParticleArray& position) {
+  const ParticleArray& now = session.simulation.state.position;
   position.resize(now.blockCount());
   for (std::size_t a = 0; a < 3; ++a) {
     for (std::size_t i = 0; i < now.component[a].size(); ++i) {

@@ -53,7 +53,7 @@ struct Session {
   Tuning tuning;
   Simulation simulation;
   std::uint64_t frame = 0;             ///< frames done
-  CornerArray before;                  ///< m, positions one frame ago: pictures lie between them and the present ones
+  ParticleArray before;                ///< m, positions one frame ago: pictures lie between them and the present ones
   std::vector<ContactForce> contacts;  ///< as they act now
   Grip grip;
   GripForce gripForce;  ///< of the last frame
@@ -84,7 +84,7 @@ void goTo(Session& session, std::uint64_t frame);
 std::optional<std::uint64_t> undoFrame(const Session& session);
 
 /// Positions between the last two frames, m; `share` 0 is the frame before, 1 the present one.
-void between(const Session& session, double share, CornerArray& position);
+void between(const Session& session, double share, ParticleArray& position);
 
 /// Turns passing time into frames of fixed length. The physics never waits for a picture: a slow picture is followed by several
 /// frames. When the machine cannot keep up, time is dropped and `speed` tells by how much.

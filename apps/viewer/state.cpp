@@ -26,7 +26,7 @@ void keepBar(Viewer& viewer, const StageTimes& before) {
 
 void measure(Viewer& viewer) {
   const Session& session = viewer.session;
-  const CornerArray& position = session.simulation.state.position;
+  const ParticleArray& position = session.simulation.state.position;
   if (!viewer.watch.measures || session.frame % kMeasureEvery != 0) return;
   viewer.watch.mostMove_m = std::max(viewer.watch.mostMove_m, largestCornerMove(viewer.start, position));
   const Penetration found = maxPenetration(position, session.scene.floor, viewer.workspace);
@@ -166,7 +166,7 @@ void writeViewerReport(std::ostream& stream, const Viewer& viewer) {
   const Session& session = viewer.session;
   const Watch& watch = viewer.watch;
   const Camera& camera = viewer.controls.camera;
-  const CornerArray& position = session.simulation.state.position;
+  const ParticleArray& position = session.simulation.state.position;
   bool finite = true;
   for (const auto& values : position.component) {
     for (const double value : values) finite = finite && std::isfinite(value);

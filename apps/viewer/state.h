@@ -38,7 +38,7 @@ struct Viewer {
   SceneChoice choice;
   Tuning tuning;  ///< as the user wants it from the next frame on
   Session session;
-  CornerArray start;  ///< m, positions at the scene's start
+  ParticleArray start;  ///< m, positions at the scene's start
   Controls controls;
   Pacer pacer;
   bool paused = false;
@@ -53,7 +53,7 @@ struct Viewer {
   std::size_t bar = 0;      ///< the oldest one
   float picture_ms = 0.0F;  ///< what drawing the last picture took
   Watch watch;
-  CornerArray shown;  ///< m, positions of the picture
+  ParticleArray shown;  ///< m, positions of the picture
   PenetrationWorkspace workspace;
 };
 

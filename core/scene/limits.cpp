@@ -23,12 +23,12 @@ bool isControl(char character) {
 }  // namespace
 
 std::string inQuotes(std::string_view text) {
-  constexpr std::size_t kMostCharacters = 80;
+  constexpr std::size_t kMaxCharacters = 80;
   std::string result = "'";
-  for (const char character : text.substr(0, kMostCharacters)) {
+  for (const char character : text.substr(0, kMaxCharacters)) {
     append(result, character, isControl(character) || static_cast<unsigned char>(character) > 0x7f);
   }
-  return result + (text.size() > kMostCharacters ? "...'" : "'");
+  return result + (text.size() > kMaxCharacters ? "...'" : "'");
 }
 
 std::string onOneLine(std::string_view text) {

@@ -28,7 +28,7 @@ inline constexpr Range kGravityRange{0.0, 1e3, "m/s2"};
 inline constexpr Range kTiltRange{-180.0, 180.0, "deg"};
 inline constexpr Range kDirectionRange{-360.0, 360.0, "deg"};
 inline constexpr Range kFrequencyRange{0.0, 1e3, "Hz"};
-inline constexpr std::size_t kMostBlocks = 100000;
+inline constexpr std::size_t kMaxBlocks = 100000;
 
 // What a tower may vary. Three standard deviations, where the variation is cut off, leave half the height and a tenth of the
 // mass.
@@ -37,7 +37,7 @@ inline constexpr Range kMassSigmaRange{0.0, 0.0059, "kg"};
 inline constexpr Range kStartGapRange{0.0, 1.0, "m"};
 inline constexpr Range kOffsetRange{-1.0, 1.0, "m"};
 inline constexpr Range kLooseRange{0.0, 0.009, "m"};
-inline constexpr int kMostRows = 2000;
+inline constexpr int kMaxRows = 2000;
 
 // What a scripted hand may do.
 inline constexpr Range kMoveSpeedRange{1e-3, 2.0, "m/s"};

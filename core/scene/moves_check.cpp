@@ -16,7 +16,7 @@ void checkNumbers(const Move& move, const std::string& where) {
   requireInRange(move.drop_m, kDropRange, where + ": drop");
   requireInRange(move.limit_n, kHandForceRange, where + ": force");
   if (move.allowed_m) requireInRange(*move.allowed_m, kAllowedMoveRange, where + ": allowed");
-  requireInRange(move.row, {0.0, kMostRows - 1.0, ""}, where + ": row");
+  requireInRange(move.row, {0.0, kMaxRows - 1.0, ""}, where + ": row");
   requireInRange(move.position, {1.0, 3.0, ""}, where + ": position");
   if (move.towards.cwiseAbs() == Vec3::UnitX() || move.towards.cwiseAbs() == Vec3::UnitY()) return;
   throw InputError(where + ": found another direction, allowed +x, -x, +y, -y");

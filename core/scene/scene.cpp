@@ -21,7 +21,7 @@ namespace {
 
 constexpr int kPositions = 3;
 constexpr double kLooseBy_m = 0.0003;
-constexpr double kMostDeviations = 3.0;
+constexpr double kMaxDeviations = 3.0;
 // Distance of the centres of two neighbours in a row: three blocks then span exactly a block's length.
 constexpr double kPitch_m = (kBlockLength_m - kBlockWidth_m) / 2.0;
 
@@ -49,7 +49,7 @@ class BitCodeReader {
         fail("a row without blocks", "at least one block in every row");
       }
       if (next_ == code_.size()) return rows;
-      if (rows.size() == static_cast<std::size_t>(kMostRows)) fail("more rows", fmt::format("1 to {}", kMostRows));
+      if (rows.size() == static_cast<std::size_t>(kMaxRows)) fail("more rows", fmt::format("1 to {}", kMaxRows));
       if (code_[next_] != '-') fail(found(), "- or the end");
       ++next_;
       expect('(');
@@ -126,7 +126,7 @@ void applyLoose(std::vector<Row>& rows, const TowerOptions& options, std::string
 }
 
 double variation(RandomStream& random, double sigma) {
-  return sigma * std::clamp(random.normal(), -kMostDeviations, kMostDeviations);
+  return sigma * std::clamp(random.normal(), -kMaxDeviations, kMaxDeviations);
 }
 
 Scene sceneOfRows(std::vector<Row> rows, const TowerOptions& options, std::string_view name) {
@@ -195,8 +195,8 @@ double toleranceOf(const Scene& scene) {
 
 Scene towerScene(int rows, const TowerOptions& options) {
   const std::string name = fmt::format("tower:{}", rows);
-  if (rows < 1 || rows > kMostRows) {
-    throw InputError(fmt::format("{}: found {} rows, allowed 1 to {}", name, rows, kMostRows));
+  if (rows < 1 || rows > kMaxRows) {
+    throw InputError(fmt::format("{}: found {} rows, allowed 1 to {}", name, rows, kMaxRows));
   }
   Row full;
   full.fill({.present = true});
@@ -215,7 +215,7 @@ Scene sceneFromName(const std::string& name, const TowerOptions& options) {
     const auto [stop, error] = std::from_chars(name.data() + kTower.size(), end, rows);
     if (error != std::errc{} || stop != end) {
       throw InputError(fmt::format("tower:R: found {} rows, allowed a whole number from 1 to {}",
-                                   inQuotes(std::string_view(name).substr(kTower.size())), kMostRows));
+                                   inQuotes(std::string_view(name).substr(kTower.size())), kMaxRows));
     }
     return towerScene(rows, options);
   }

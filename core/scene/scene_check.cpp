@@ -185,7 +185,7 @@ void checkScene(const Scene& scene, std::string_view source) {
   requireInRange(scene.staticFriction, kFrictionRange, fmt::format("{}: static friction", source));
   requireInRange(scene.kineticFriction, {0.0, scene.staticFriction, "(the static one)"},
                  fmt::format("{}: kinetic friction", source));
-  requireInRange(static_cast<double>(scene.blocks.size()), {1.0, static_cast<double>(kMostBlocks), ""},
+  requireInRange(static_cast<double>(scene.blocks.size()), {1.0, static_cast<double>(kMaxBlocks), ""},
                  fmt::format("{}: number of blocks", source));
   std::vector<Box> boxes;
   boxes.reserve(scene.blocks.size());

@@ -19,8 +19,8 @@
 namespace springtower {
 namespace {
 
-constexpr std::uintmax_t kMostBytes = 256U << 20U;
-constexpr std::int64_t kMostWhole = std::numeric_limits<std::int64_t>::max();
+constexpr std::uintmax_t kMaxBytes = 256U << 20U;
+constexpr std::int64_t kMaxWhole = std::numeric_limits<std::int64_t>::max();
 
 BlockSpec readBlock(const Table& table) {
   BlockSpec block;
@@ -51,7 +51,7 @@ UserForce readForce(const Table& table, const Scene& scene) {
     int position = 0;
     table.require("row");
     table.require("position");
-    table.readWhole("row", row, 0, kMostRows - 1);
+    table.readWhole("row", row, 0, kMaxRows - 1);
     table.readWhole("position", position, 1, 3);
     const auto block = std::find_if(scene.blocks.begin(), scene.blocks.end(), [&](const BlockSpec& candidate) {
       return candidate.row == row && candidate.position == position;
@@ -129,12 +129,12 @@ std::vector<BlockSpec> readTower(const Table& table, const TowerOptions& given) 
   TowerOptions options;
   table.read("heights_sigma_m", options.heightsSigma_m, kHeightsSigmaRange);
   table.read("mass_sigma_kg", options.massSigma_kg, kMassSigmaRange);
-  table.readWhole("seed", options.seed.emplace(1), 0, kMostWhole);
+  table.readWhole("seed", options.seed.emplace(1), 0, kMaxWhole);
   table.read("start_gap_m", options.startGap_m, kStartGapRange);
   table.readTables("offset", {"row", "position", "dx_m", "dy_m"}, [&](const Table& item) {
     BlockOffset& offset = options.offsets.emplace_back();
     for (const std::string_view key : {"row", "position"}) item.require(key);
-    item.readWhole("row", offset.row, 0, kMostRows - 1);
+    item.readWhole("row", offset.row, 0, kMaxRows - 1);
     item.readWhole("position", offset.position, 1, 3);
     item.read("dx_m", offset.dx, kOffsetRange);
     item.read("dy_m", offset.dy, kOffsetRange);
@@ -142,7 +142,7 @@ std::vector<BlockSpec> readTower(const Table& table, const TowerOptions& given) 
   table.readTables("loose", {"row", "position", "by_m"}, [&](const Table& item) {
     LooseBlock& loose = options.loose.emplace_back();
     for (const std::string_view key : {"row", "position"}) item.require(key);
-    item.readWhole("row", loose.row, 0, kMostRows - 1);
+    item.readWhole("row", loose.row, 0, kMaxRows - 1);
     item.readWhole("position", loose.position, 1, 3);
     item.read("by_m", loose.by, kLooseRange);
   });
@@ -158,7 +158,7 @@ std::vector<BlockSpec> readTower(const Table& table, const TowerOptions& given) 
   }
   int rows = 0;
   std::string code;
-  table.readWhole("rows", rows, 1, kMostRows);
+  table.readWhole("rows", rows, 1, kMaxRows);
   table.read("code", code);
   try {
     return (table.has("rows") ? towerScene(rows, options) : bitCodeScene(code, options)).blocks;
@@ -213,7 +213,7 @@ std::string textOf(const std::string& path, const std::string& file) {
   constexpr std::size_t kChunk = std::size_t{1} << 16U;
   for (std::streamsize got = 1; stream && got > 0;) {
     const std::size_t size = text.size();
-    if (size > kMostBytes) throw InputError(fmt::format("{}: found more than {} bytes, allowed fewer", file, kMostBytes));
+    if (size > kMaxBytes) throw InputError(fmt::format("{}: found more than {} bytes, allowed fewer", file, kMaxBytes));
     text.resize(size + kChunk);
     got = stream.read(text.data() + size, static_cast<std::streamsize>(kChunk)).gcount();
     text.resize(size + static_cast<std::size_t>(got));

@@ -10,7 +10,7 @@
 namespace springtower {
 namespace {
 
-constexpr std::size_t kMostKeyParts = 8;
+constexpr std::size_t kMaxKeyParts = 8;
 
 // Where a string ends whose opening quote is at `start`: behind its closing quotes, or where it breaks off.
 std::size_t endOfString(std::string_view text, std::size_t start) {
@@ -41,7 +41,7 @@ std::size_t endOfString(std::string_view text, std::size_t start) {
   const auto isFirstByte = [](char byte) { return (static_cast<unsigned char>(byte) & 0xC0U) != 0x80U; };
   const auto column = 1 + std::count_if(onLine.begin(), onLine.end(), isFirstByte);
   throw InputError(fmt::format("{}:{}:{}: found a key of more than {} parts, {}, allowed are at most {}", file, line, column,
-                               kMostKeyParts, inQuotes(text.substr(key, text.find('\n', key) - key)), kMostKeyParts));
+                               kMaxKeyParts, inQuotes(text.substr(key, text.find('\n', key) - key)), kMaxKeyParts));
 }
 
 }  // namespace
@@ -64,7 +64,7 @@ void refuseLongKeys(std::string_view text, const std::string& file) {
     if (std::string_view("\n=,[]{}").find(character) != std::string_view::npos) {
       key = text.find_first_not_of(" \t", at);
       dots = 0;
-    } else if (character == '.' && ++dots == kMostKeyParts) {
+    } else if (character == '.' && ++dots == kMaxKeyParts) {
       fail(text, key, file);
     }
   }

@@ -19,7 +19,7 @@ const std::array<NamedKind, 3>& kinds() {
   return all;
 }
 
-const NamedKind& kindOf(const Table& table) {
+const NamedKind& blockClassOf(const Table& table) {
   std::string name;
   table.require("do");
   table.read("do", name);
@@ -46,7 +46,7 @@ const std::vector<std::string_view> kMoveKeys = {"do",        "row",    "positio
                                                  "speed_m_s", "drop_m", "force_n",  "allowed_m"};
 
 Move readMove(const Table& table) {
-  const NamedKind& kind = kindOf(table);
+  const NamedKind& kind = blockClassOf(table);
   for (const std::string_view key : kMoveKeys) {
     const bool used = key == "do" || std::find(kind.keys.begin(), kind.keys.end(), key) != kind.keys.end();
     if (used || !table.has(key)) continue;
@@ -57,7 +57,7 @@ Move readMove(const Table& table) {
   move.kind = kind.kind;
   if (move.kind != MoveKind::putAside) {
     for (const std::string_view key : {"row", "position"}) table.require(key);
-    table.readWhole("row", move.row, 0, kMostRows - 1);
+    table.readWhole("row", move.row, 0, kMaxRows - 1);
     table.readWhole("position", move.position, 1, 3);
   }
   if (move.kind == MoveKind::take) move.towards = directionOf(table);

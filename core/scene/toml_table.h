@@ -99,8 +99,8 @@ class Table {
   void readTables(std::string_view key, const std::vector<std::string_view>& allowed, Use use) const {
     const toml::node* node = table_.get(key);
     if (node == nullptr) return;
-    const std::string wanted = fmt::format("up to {} tables, each [[{}]]", kMostBlocks, named(key));
-    if (!node->is_array() || node->as_array()->size() > kMostBlocks) fail(*node, named(key), wanted);
+    const std::string wanted = fmt::format("up to {} tables, each [[{}]]", kMaxBlocks, named(key));
+    if (!node->is_array() || node->as_array()->size() > kMaxBlocks) fail(*node, named(key), wanted);
     const toml::array& array = *node->as_array();
     for (std::size_t i = 0; i < array.size(); ++i) {
       const std::string name = fmt::format("{}[{}]", named(key), i);

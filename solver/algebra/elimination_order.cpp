@@ -11,7 +11,7 @@ namespace {
 // Sets of so few nodes are not cut: what fills in is as much in any order.
 constexpr std::size_t kUncut = 6;
 // Share of a set on the smaller side of a cut, at least: cuts that balance less make the recursion deep.
-constexpr double kLeastSide = 0.3;
+constexpr double kMinSide = 0.3;
 
 // A cut of a sorted set: nodes before `at` that have no neighbour behind it, those that have one, and those behind.
 struct Cut {
@@ -75,7 +75,7 @@ Cut bestCut(std::span<const std::int32_t> sorted, DissectionSpace& space) {
   for (std::size_t k = 0; k < count; ++k) {
     separator += space.change[k];
     const double share = static_cast<double>(k) / size;
-    if (share < kLeastSide || share > 1.0 - kLeastSide) continue;
+    if (share < kMinSide || share > 1.0 - kMinSide) continue;
     const double cost = (separator + 0.5) * (1.0 + std::abs(2.0 * share - 1.0));
     if (cost < best.cost) best = {k, cost};
   }

@@ -6,7 +6,7 @@ namespace springtower {
 
 namespace {
 
-SPRINGTOWER_INLINE void affine(const CornerArray& values, std::size_t block, AffineField& field) {
+SPRINGTOWER_INLINE void affine(const ParticleArray& values, std::size_t block, AffineField& field) {
   for (std::size_t a = 0; a < 3; ++a) {
     const double* p = values.values(a, block);
     Lanes low, high;
@@ -29,7 +29,7 @@ SPRINGTOWER_INLINE void cross(const std::array<double, 3>& p, const std::array<d
   result[2] = p[0] * q[1] - p[1] * q[0];
 }
 
-SPRINGTOWER_INLINE void frame(const CornerArray& position, std::size_t block, BlockFrame& result) {
+SPRINGTOWER_INLINE void frame(const ParticleArray& position, std::size_t block, BlockFrame& result) {
   affine(position, block, result.place);
   const auto& side = result.place.side;
   cross(side[1], side[2], result.dual[0]);
@@ -50,20 +50,20 @@ SPRINGTOWER_INLINE void frame(const CornerArray& position, std::size_t block, Bl
 
 }  // namespace
 
-AffineField affineField(const CornerArray& values, std::size_t block) {
+AffineField affineField(const ParticleArray& values, std::size_t block) {
   AffineField field;
   affine(values, block, field);
   return field;
 }
 
-BlockFrame blockFrame(const CornerArray& position, std::size_t block) {
+BlockFrame blockFrame(const ParticleArray& position, std::size_t block) {
   BlockFrame result;
   frame(position, block, result);
   return result;
 }
 
 SPRINGTOWER_KERNEL
-void computeFrames(const CornerArray& position, std::span<const std::int32_t> blocks, std::vector<BlockFrame>& frames) {
+void computeFrames(const ParticleArray& position, std::span<const std::int32_t> blocks, std::vector<BlockFrame>& frames) {
   for (const std::int32_t block : blocks) {
     const auto b = static_cast<std::size_t>(block);
     frame(position, b, frames[b]);
@@ -71,7 +71,7 @@ void computeFrames(const CornerArray& position, std::span<const std::int32_t> bl
 }
 
 SPRINGTOWER_KERNEL
-void computeMotions(const CornerArray& velocity, std::span<const std::int32_t> blocks, std::vector<AffineField>& motions) {
+void computeMotions(const ParticleArray& velocity, std::span<const std::int32_t> blocks, std::vector<AffineField>& motions) {
   for (const std::int32_t block : blocks) {
     const auto b = static_cast<std::size_t>(block);
     affine(velocity, b, motions[b]);

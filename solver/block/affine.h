@@ -40,13 +40,13 @@ inline constexpr std::array<FaceAxes, kFaces> kFaceAxes = {
     {{0, -0.5, 2, 1}, {0, 0.5, 1, 2}, {1, -0.5, 0, 2}, {1, 0.5, 2, 0}, {2, -0.5, 1, 0}, {2, 0.5, 0, 1}}};
 
 /// Affine part of a field on one block.
-AffineField affineField(const CornerArray& values, std::size_t block);
+AffineField affineField(const ParticleArray& values, std::size_t block);
 
 /// Frame of one block. Precondition: it is not flat.
-BlockFrame blockFrame(const CornerArray& position, std::size_t block);
+BlockFrame blockFrame(const ParticleArray& position, std::size_t block);
 
 /// The same for many blocks; entries of other blocks stay.
-void computeFrames(const CornerArray& position, std::span<const std::int32_t> blocks, std::vector<BlockFrame>& frames);
-void computeMotions(const CornerArray& velocity, std::span<const std::int32_t> blocks, std::vector<AffineField>& motions);
+void computeFrames(const ParticleArray& position, std::span<const std::int32_t> blocks, std::vector<BlockFrame>& frames);
+void computeMotions(const ParticleArray& velocity, std::span<const std::int32_t> blocks, std::vector<AffineField>& motions);
 
 }  // namespace springtower

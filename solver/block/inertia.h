@@ -34,7 +34,7 @@ inline double reducedMass(const BlockModel& model, const Manifold& manifold) {
 
 /// Inner product p^T M q of two fields on a block's corners, in units of its mass: the mean's part counts fully, what differs
 /// from the mean by 1/own for each corner.
-inline double massProduct(Inertia inertia, const CornerArray& p, const CornerArray& q, std::size_t block) {
+inline double massProduct(Inertia inertia, const ParticleArray& p, const ParticleArray& q, std::size_t block) {
   const InverseMass inverse = inverseMass(inertia);
   double total = 0.0;
   for (std::size_t a = 0; a < 3; ++a) {

@@ -65,7 +65,7 @@ SPRINGTOWER_INLINE void transform(const double* v, double (&t)[kCorners]) {
 }  // namespace block_modes
 
 /// Generalised forces of the eight vectors for forces on the corners (N): sums weighted by each corner's pattern.
-SPRINGTOWER_INLINE void modeForces(const CornerArray& force, std::size_t block, ModeVectors& modes) {
+SPRINGTOWER_INLINE void modeForces(const ParticleArray& force, std::size_t block, ModeVectors& modes) {
   using namespace block_modes;
   for (std::size_t a = 0; a < 3; ++a) {
     double t[kCorners];
@@ -77,9 +77,9 @@ SPRINGTOWER_INLINE void modeForces(const CornerArray& force, std::size_t block, 
 /// What is missing to Newton's law at an implicit step's end, N, as generalised forces of the eight vectors: the forces less the
 /// mass times rate (1/s2) times how far the corners are from where they end without forces. Of the eight masses that of the
 /// centre alone differs once the vectors' own lengths are taken out, so one transform does.
-SPRINGTOWER_INLINE void missingForces(const BlockJacobian& jacobian, double rate, const CornerArray& force,
-                                      const CornerArray& target, const CornerArray& position, std::size_t block,
-                                      ModeVectors& modes) {
+SPRINGTOWER_INLINE void residualForces(const BlockJacobian& jacobian, double rate, const ParticleArray& force,
+                                       const ParticleArray& target, const ParticleArray& position, std::size_t block,
+                                       ModeVectors& modes) {
   using namespace block_modes;
   const double corner = rate * jacobian.mass[kXYZ] / static_cast<double>(kCorners);
   const double mean = rate * jacobian.mass[0] / static_cast<double>(kCorners);
@@ -102,7 +102,7 @@ SPRINGTOWER_INLINE void missingForces(const BlockJacobian& jacobian, double rate
 }
 
 /// Adds a change of the eight vectors to the corners.
-SPRINGTOWER_INLINE void addModes(const ModeVectors& modes, CornerArray& values, std::size_t block) {
+SPRINGTOWER_INLINE void addModes(const ModeVectors& modes, ParticleArray& values, std::size_t block) {
   using namespace block_modes;
   for (std::size_t a = 0; a < 3; ++a) {
     double* v = values.values(a, block);

@@ -71,7 +71,7 @@ SPRINGTOWER_INLINE void pullBetweenHalves(const Lanes* low, const Lanes* high, c
 }
 
 SPRINGTOWER_INLINE void blockSprings(const BlockModel& model, const MotionState& state, std::size_t b, const AffineField& contact,
-                                     CornerArray& force) {
+                                     ParticleArray& force) {
   Lanes low[3], high[3], vlow[3], vhigh[3], forceLow[3], forceHigh[3];
   for (std::size_t a = 0; a < 3; ++a) {
     load(state.position.values(a, b), low[a]);
@@ -127,7 +127,7 @@ SPRINGTOWER_INLINE void blockSprings(const BlockModel& model, const MotionState&
 
 // Calls `visit(group, length)` for each spring of a block.
 template <class Visit>
-void forEachSpring(const CornerArray& position, std::size_t block, Visit visit) {
+void forEachSpring(const ParticleArray& position, std::size_t block, Visit visit) {
   for (std::size_t group = 1; group <= kSpringGroups; ++group) {
     for (std::size_t corner = 0; corner < kCorners; ++corner) {
       const std::size_t partner = corner ^ group;
@@ -140,14 +140,14 @@ void forEachSpring(const CornerArray& position, std::size_t block, Visit visit) 
 
 SPRINGTOWER_KERNEL
 void springForces(const BlockModel& model, const MotionState& state, std::span<const std::int32_t> blocks,
-                  std::span<const AffineField> contactForce, CornerArray& force) {
+                  std::span<const AffineField> contactForce, ParticleArray& force) {
   for (const std::int32_t block : blocks) {
     const auto b = static_cast<std::size_t>(block);
     blockSprings(model, state, b, contactForce[b], force);
   }
 }
 
-double springEnergy(const BlockModel& model, const CornerArray& position, std::size_t block) {
+double springEnergy(const BlockModel& model, const ParticleArray& position, std::size_t block) {
   double energy = 0.0;
   forEachSpring(position, block, [&](std::size_t group, double length) {
     const double change = length - model.restLength[group][block];
@@ -156,7 +156,7 @@ double springEnergy(const BlockModel& model, const CornerArray& position, std::s
   return energy;
 }
 
-double springStrain(const BlockModel& model, const CornerArray& position, std::size_t block) {
+double springStrain(const BlockModel& model, const ParticleArray& position, std::size_t block) {
   double strain = 0.0;
   forEachSpring(position, block, [&](std::size_t group, double length) {
     strain = std::max(strain, std::abs(length / model.restLength[group][block] - 1.0));

@@ -12,13 +12,13 @@ namespace springtower {
 /// dashpot along the spring), on top of what contacts put on the blocks' affine parts, N; `force` of these blocks is overwritten.
 /// Springs go group by group, four at a time.
 void springForces(const BlockModel& model, const MotionState& state, std::span<const std::int32_t> blocks,
-                  std::span<const AffineField> contactForce, CornerArray& force);
+                  std::span<const AffineField> contactForce, ParticleArray& force);
 
 /// Energy stored in the springs of one block, J.
-double springEnergy(const BlockModel& model, const CornerArray& position, std::size_t block);
+double springEnergy(const BlockModel& model, const ParticleArray& position, std::size_t block);
 
 /// Largest relative change of length of any spring of one block.
-double springStrain(const BlockModel& model, const CornerArray& position, std::size_t block);
+double springStrain(const BlockModel& model, const ParticleArray& position, std::size_t block);
 
 /// Sets a block's springs: rest lengths from its dimensions, stiffness so that an upright edge of length `referenceLength_m` has
 /// `stiffness_n_m` and every other spring in inverse proportion to its length (equal Young's modulus and section), and dashpots

@@ -12,12 +12,12 @@ namespace springtower {
 namespace {
 
 // Distance that blocks may be about to close in an implicit step that makes them meet, in tolerances.
-constexpr double kMostClosing = 0.5;
+constexpr double kMaxClosing = 0.5;
 // By how much blocks may overlap at the end of a step that knew of no contact between them, in tolerances.
-constexpr double kMostOverlap = 0.5;
+constexpr double kMaxOverlap = 0.5;
 
 // Gap of a pair along a direction from b to a, m; to the floor along its normal.
-double gapOf(const NearPair& pair, const Vec3& direction, const CornerArray& position) {
+double gapOf(const NearPair& pair, const Vec3& direction, const ParticleArray& position) {
   const CornerView a = cornersOf(position, static_cast<std::size_t>(pair.a));
   if (pair.b >= 0) return gapAlong(direction, a, cornersOf(position, static_cast<std::size_t>(pair.b)));
   return *std::min_element(a.z, a.z + kCorners);
@@ -31,15 +31,15 @@ struct Closing {
 
 Closing closingOf(const Simulation& simulation, const NearPair& pair) {
   const auto a = static_cast<std::size_t>(pair.a);
-  const CornerArray& x = simulation.state.position;
-  const CornerArray& v = simulation.state.velocity;
+  const ParticleArray& x = simulation.state.position;
+  const ParticleArray& v = simulation.state.velocity;
   double least = 1e300;
   double leastSoon = 1e300;
   const double soon = simulation.scene.settings.frame_s;
   for (std::size_t c = 0; c < kCorners; ++c) {
-    const double along = pair.witness.dot(x.at(a, c));
+    const double along = pair.separatingAxis.dot(x.at(a, c));
     least = std::min(least, along);
-    leastSoon = std::min(leastSoon, along + soon * pair.witness.dot(v.at(a, c)));
+    leastSoon = std::min(leastSoon, along + soon * pair.separatingAxis.dot(v.at(a, c)));
   }
   double most = 0.0;
   double mostSoon = 0.0;
@@ -47,9 +47,9 @@ Closing closingOf(const Simulation& simulation, const NearPair& pair) {
     const auto b = static_cast<std::size_t>(pair.b);
     most = mostSoon = -1e300;
     for (std::size_t c = 0; c < kCorners; ++c) {
-      const double along = pair.witness.dot(x.at(b, c));
+      const double along = pair.separatingAxis.dot(x.at(b, c));
       most = std::max(most, along);
-      mostSoon = std::max(mostSoon, along + soon * pair.witness.dot(v.at(b, c)));
+      mostSoon = std::max(mostSoon, along + soon * pair.separatingAxis.dot(v.at(b, c)));
     }
   }
   const double gap = least - most;
@@ -62,7 +62,7 @@ Closing closingOf(const Simulation& simulation, const NearPair& pair) {
 Closing closingOfShapes(const Simulation& simulation, const NearPair& pair) {
   const auto a = static_cast<std::size_t>(pair.a);
   const auto b = static_cast<std::size_t>(pair.b);
-  const CornerArray& x = simulation.state.position;
+  const ParticleArray& x = simulation.state.position;
   const double soon = simulation.scene.settings.frame_s;
   double moved[2][3][kCorners];
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -113,9 +113,9 @@ struct Meeting {
 
 Meeting meetingOf(const IslandStep& step, const NearPair& pair, double way) {
   const Engine& engine = step.engine;
-  if (travelOf(engine, pair) - pair.checkedTravel + way < pair.margin) return {};
-  const CornerArray& now = step.simulation.state.position;
-  Vec3 direction = pair.b >= 0 ? pair.witness : Vec3::UnitZ();
+  if (travelOf(engine, pair) - pair.travelAtCheck + way < pair.clearance) return {};
+  const ParticleArray& now = step.simulation.state.position;
+  Vec3 direction = pair.b >= 0 ? pair.separatingAxis : Vec3::UnitZ();
   if (gapOf(pair, direction, now) > 0.0) return {};
   if (pair.b >= 0) {  // another direction may separate them still
     direction = findSeparation(cornersOf(engine.previous, static_cast<std::size_t>(pair.a)),
@@ -127,7 +127,7 @@ Meeting meetingOf(const IslandStep& step, const NearPair& pair, double way) {
 }
 
 // Depth of every point of a manifold with the blocks where these positions have them, m.
-std::array<double, kManifoldPoints> depthsAt(const IslandStep& step, const Manifold& manifold, const CornerArray& position) {
+std::array<double, kManifoldPoints> depthsAt(const IslandStep& step, const Manifold& manifold, const ParticleArray& position) {
   const AffineField still{};
   const BlockFrame upper = blockFrame(position, static_cast<std::size_t>(manifold.upper));
   const BlockFrame lower = manifold.lower < 0 ? upper : blockFrame(position, static_cast<std::size_t>(manifold.lower));
@@ -147,7 +147,7 @@ bool metAnew(const IslandStep& step, const NearPair& pair, const PointMemory& tr
   }
   const bool late = pair.b >= 0 && (!touches || way > refreshTravel(step.simulation));
   if (!begins && !late) return false;
-  const CornerArray& now = step.simulation.state.position;
+  const ParticleArray& now = step.simulation.state.position;
   const std::array<double, kManifoldPoints> depth = depthsAt(step, manifold, now);
   if (begins) {
     const std::array<double, kManifoldPoints> before = depthsAt(step, manifold, step.engine.previous);
@@ -188,7 +188,8 @@ double slowestRate(const IslandStep& step, const Manifold& manifold) {
   const PointForces points =
       pointForces(manifold, {&upper, &still, &still}, {manifold.lower < 0 ? nullptr : &lower, &still, &still}, step.law);
   const bool any = anyPointTouches(manifold);
-  const bool rebounds = step.engine.clock[u].explicitLast || (manifold.lower >= 0 && step.engine.clock[l].explicitLast);
+  const bool rebounds =
+      step.engine.blockHistory[u].explicitLast || (manifold.lower >= 0 && step.engine.blockHistory[l].explicitLast);
   double slowest = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < static_cast<std::size_t>(manifold.count); ++i) {
     if (any && manifold.live[i] == 0.0) continue;
@@ -207,20 +208,20 @@ double speedOf(const IslandStep& step, std::int32_t block) {
 
 }  // namespace
 
-double fastestCorner(const CornerArray& velocity, std::size_t block, const Vec3& against) {
+double fastestCorner(const ParticleArray& velocity, std::size_t block, const Vec3& against) {
   double squared = 0.0;
   for (std::size_t c = 0; c < kCorners; ++c) squared = std::max(squared, (velocity.at(block, c) - against).squaredNorm());
   return std::sqrt(squared);
 }
 
 bool bounces(const IslandStep& step, double step_s) {
-  const double most = kMostClosing * step.simulation.tolerance_m / step_s;
+  const double most = kMaxClosing * step.simulation.tolerance_m / step_s;
   double fastest = 0.0;
   for (const std::int32_t block : step.blocks) fastest = std::max(fastest, speedOf(step, block));
   if (2.0 * fastest <= most) return false;
   return std::any_of(step.pairs.begin(), step.pairs.end(), [&](std::int32_t at) {
     const NearPair& pair = step.engine.pairs[static_cast<std::size_t>(at)];
-    if (pair.manifold.touch == Touch::apart) return false;
+    if (pair.manifold.touch == PairPhase::separated) return false;
     if (speedOf(step, pair.a) + speedOf(step, pair.b) <= most) return false;
     return slowestRate(step, pair.manifold) > most;
   });
@@ -231,40 +232,40 @@ bool meetsSoon(const IslandStep& step, double step_s) {
   const double frame_s = simulation.scene.settings.frame_s;
   const auto soon = [&](const Closing& closing) {
     const double reach = frame_s * (std::max(0.0, closing.speed) + 0.5 * frame_s * simulation.scene.gravity.magnitude);
-    return closing.gap < reach && closing.speed * step_s > kMostClosing * simulation.tolerance_m;
+    return closing.gap < reach && closing.speed * step_s > kMaxClosing * simulation.tolerance_m;
   };
   return std::any_of(step.pairs.begin(), step.pairs.end(), [&](std::int32_t at) {
     const NearPair& pair = step.engine.pairs[static_cast<std::size_t>(at)];
-    if (pair.manifold.touch != Touch::apart) return false;
+    if (pair.manifold.touch != PairPhase::separated) return false;
     return soon(closingOf(simulation, pair)) && (pair.b < 0 || soon(closingOfShapes(simulation, pair)));
   });
 }
 
-Meetings meetingsIn(IslandStep& step) {
-  const double most = kMostOverlap * step.simulation.tolerance_m;
+FirstContact meetingsIn(IslandStep& step) {
+  const double most = kMaxOverlap * step.simulation.tolerance_m;
   double longest = 0.0;
   for (const std::int32_t block : step.blocks) longest = std::max(longest, wayOf(step, block));
-  if (2.0 * longest <= most) return Meetings::none;
-  Meetings found = Meetings::none;
+  if (2.0 * longest <= most) return FirstContact::none;
+  FirstContact found = FirstContact::none;
   for (const std::int32_t at : step.pairs) {
     NearPair& pair = step.engine.pairs[static_cast<std::size_t>(at)];
     const double way = wayOf(step, pair.a) + wayOf(step, pair.b);
     if (way <= most) continue;
-    if (pair.manifold.touch != Touch::apart) {
-      if (metAnew(step, pair, step.engine.trial[static_cast<std::size_t>(at)], way, most)) return Meetings::atSpeed;
+    if (pair.manifold.touch != PairPhase::separated) {
+      if (metAnew(step, pair, step.engine.trial[static_cast<std::size_t>(at)], way, most)) return FirstContact::impact;
       continue;
     }
     const Meeting meeting = meetingOf(step, pair, way);
     if (meeting.overlap <= 0.0) continue;
-    if (meeting.closed > bearableClosing(step, pair)) return Meetings::atSpeed;
+    if (meeting.closed > bearableClosing(step, pair)) return FirstContact::impact;
     if (meeting.overlap <= most) continue;
-    keepPair(step.engine, static_cast<std::size_t>(at));
-    pair.checkedTravel = travelOf(step.engine, pair);
-    watchApart(step, pair, step.counters, step.times);
-    if (pair.manifold.touch == Touch::apart) {
-      pair.margin = 0.0;  // of where this step ends, which may be solved again
+    savePair(step.engine, static_cast<std::size_t>(at));
+    pair.travelAtCheck = travelOf(step.engine, pair);
+    updateSeparated(step, pair, step.counters, step.times);
+    if (pair.manifold.touch == PairPhase::separated) {
+      pair.clearance = 0.0;  // of where this step ends, which may be solved again
     } else {
-      found = Meetings::broughtIn;
+      found = FirstContact::added;
     }
   }
   return found;

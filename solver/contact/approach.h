@@ -5,7 +5,7 @@
 namespace springtower {
 
 /// Speed of a block's fastest corner against a velocity, m/s.
-double fastestCorner(const CornerArray& velocity, std::size_t block, const Vec3& against);
+double fastestCorner(const ParticleArray& velocity, std::size_t block, const Vec3& against);
 
 /// Whether a contact opens or closes as a whole, by more than an implicit step of `step_s` follows: in the midst of a bounce an
 /// implicit step throws a block back with more than it came with.
@@ -18,11 +18,11 @@ bool meetsSoon(const IslandStep& step, double step_s);
 /// What has met in an implicit step: nothing that matters; blocks that have come to overlap as the step knew of no contact
 /// between them; blocks, or points of a contact that did not push, at a speed that asks for stiffer contacts than implicit steps
 /// have.
-enum class Meetings { none, broughtIn, atSpeed };
+enum class FirstContact { none, added, impact };
 
 /// Looks for meetings in the implicit step just found. What the step began with does not tell: a hand may turn its block round
 /// within one. Blocks that overlap are given their manifolds; the step is then to be solved again with them, from its start.
 /// Precondition: engine.trial is the contact memory at the step's end.
-Meetings meetingsIn(IslandStep& step);
+FirstContact meetingsIn(IslandStep& step);
 
 }  // namespace springtower

@@ -62,7 +62,7 @@ void edgeManifold(const Separation& separation, const NearPair& pair, Manifold& 
   fresh = Manifold{};
   fresh.upper = pair.a;
   fresh.lower = pair.b;
-  fresh.touch = Touch::edge;
+  fresh.touch = PairPhase::edge;
   fresh.incidentFace = static_cast<std::int8_t>(separation.edgeOfA);
   fresh.referenceFace = static_cast<std::int8_t>(separation.edgeOfB);
   fresh.count = 1;
@@ -88,8 +88,8 @@ bool sharesOutline(const Separation& separation, double face, const CornerView& 
 // best direction is taken.
 void chooseManifold(const Separation& separation, const CornerView& a, const CornerView& b, const ManifoldLimits& limits,
                     double slack, double edgeSlack, const NearPair& pair, Manifold& fresh) {
-  const bool wasA = pair.manifold.touch == Touch::face && pair.manifold.lower == pair.a;
-  const bool wasB = pair.manifold.touch == Touch::face && pair.manifold.lower == pair.b;
+  const bool wasA = pair.manifold.touch == PairPhase::face && pair.manifold.lower == pair.a;
+  const bool wasB = pair.manifold.touch == PairPhase::face && pair.manifold.lower == pair.b;
   const bool referenceIsB = separation.faceB + (wasB ? slack : 0.0) >= separation.faceA + (wasA ? slack : 0.0);
   const double face = referenceIsB ? separation.faceB : separation.faceA;
   const bool crossed = separation.edge > face + slack;
@@ -105,13 +105,13 @@ void chooseManifold(const Separation& separation, const CornerView& a, const Cor
 
 void part(NearPair& pair, const Vec3& witness, double margin) {
   pair.manifold = Manifold{};
-  pair.witness = witness;
-  pair.margin = margin;
+  pair.separatingAxis = witness;
+  pair.clearance = margin;
 }
 
 // How far a block's corners are from its affine part, m. The separating axes of two blocks are exact for those parts, from which
 // corners and faces both may differ by this: an overlap by them of up to twice both warps may be none of the faces.
-double warp(const CornerArray& position, std::size_t block) {
+double warp(const ParticleArray& position, std::size_t block) {
   const AffineField field = affineField(position, block);
   double largest = 0.0;
   for (std::size_t c = 0; c < kCorners; ++c) {
@@ -136,17 +136,17 @@ double lowestCorner(const CornerView& block) {
   return *std::min_element(block.z, block.z + kCorners);
 }
 
-void watchFloor(IslandStep& step, NearPair& pair, Counters& counters) {
+void updateSeparatedFloor(IslandStep& step, NearPair& pair, Counters& counters) {
   const auto block = static_cast<std::size_t>(pair.a);
   const CornerView now = cornersOf(step.simulation.state.position, block);
   const double gap = lowestCorner(now);
   if (gap > touchingGap(step.simulation)) {
-    pair.margin = gap;
+    pair.clearance = gap;
     return;
   }
   // Against a plane the cubic is linear: a corner that was above it and is not any more has met it in between.
   ++counters.cubicTests;
-  pair.margin = 0.0;
+  pair.clearance = 0.0;
   if (!step.simulation.scene.settings.continuousTests) return;
   ++counters.cubicHits;
   const double before = lowestCorner(cornersOf(step.engine.previous, block));
@@ -162,8 +162,8 @@ void watchFloor(IslandStep& step, NearPair& pair, Counters& counters) {
 bool turnsApart(const Vec3& normal, const MovingBlock& a, const MovingBlock& b, double touching, NearPair& pair) {
   const TurningGap turning = gapAlongTurningFace(normal, a, b);
   if (!(turning.least > touching)) return false;
-  pair.witness = turning.normalAtEnd;
-  pair.margin = std::max(0.0, gapAlong(pair.witness, a.end, b.end));
+  pair.separatingAxis = turning.normalAtEnd;
+  pair.clearance = std::max(0.0, gapAlong(pair.separatingAxis, a.end, b.end));
   return true;
 }
 
@@ -173,19 +173,19 @@ double refreshTravel(const Simulation& simulation) {
   return kRefreshTravel * simulation.lengths.blockHeight_m;
 }
 
-RenewalTravel renewalOfExplicitSteps(const Simulation& simulation) {
+RefreshTravel refreshTravelOfExplicitSteps(const Simulation& simulation) {
   const double travel_m = refreshTravel(simulation);
   return {travel_m, travel_m, kRollingRefreshTravel * simulation.lengths.blockHeight_m};
 }
 
-RenewalTravel renewalOfImplicitSteps(const Simulation& simulation) {
+RefreshTravel refreshTravelOfImplicitSteps(const Simulation& simulation) {
   const double travel_m = refreshTravel(simulation);
   return {travel_m, kSlidingRefreshTravel * simulation.lengths.blockHeight_m, travel_m};
 }
 
-void watchApart(IslandStep& step, NearPair& pair, Counters& counters, StageTimes& times) {
+void updateSeparated(IslandStep& step, NearPair& pair, Counters& counters, StageTimes& times) {
   if (pair.b < 0) {
-    watchFloor(step, pair, counters);
+    updateSeparatedFloor(step, pair, counters);
     return;
   }
   const auto a = static_cast<std::size_t>(pair.a);
@@ -195,17 +195,17 @@ void watchApart(IslandStep& step, NearPair& pair, Counters& counters, StageTimes
 
   // The margin is the gap at the step's end: along a fixed direction no pair of points can close it with less travel.
   const double touching = touchingGap(step.simulation);
-  const double gap = gapAlong(pair.witness, movingA.end, movingB.end);
-  if (gap > touching && gapAlong(pair.witness, movingA.start, movingB.start) > touching) {
-    pair.margin = gap;
+  const double gap = gapAlong(pair.separatingAxis, movingA.end, movingB.end);
+  if (gap > touching && gapAlong(pair.separatingAxis, movingA.start, movingB.start) > touching) {
+    pair.clearance = gap;
     return;
   }
-  if (turnsApart(pair.witness, movingA, movingB, touching, pair)) return;
+  if (turnsApart(pair.separatingAxis, movingA, movingB, touching, pair)) return;
   const Separation before = findSeparation(movingA.start, movingB.start);
   const Vec3& witness = before.bestNormal();
   const double newGap = gapAlong(witness, movingA.end, movingB.end);
-  pair.margin = std::max(0.0, newGap);
-  pair.witness = witness;
+  pair.clearance = std::max(0.0, newGap);
+  pair.separatingAxis = witness;
   if (before.best() > touching && newGap > touching) return;
   const Vec3& face = before.faceA > before.faceB ? before.normalFaceA : before.normalFaceB;
   if (turnsApart(face, movingA, movingB, touching, pair)) return;
@@ -218,7 +218,7 @@ void watchApart(IslandStep& step, NearPair& pair, Counters& counters, StageTimes
     clock.lap(Stage::cubicTests);
   }
   if (!meet) {
-    pair.margin = 0.0;
+    pair.clearance = 0.0;
     return;
   }
   const double unsure =
@@ -226,7 +226,7 @@ void watchApart(IslandStep& step, NearPair& pair, Counters& counters, StageTimes
   if (step.simulation.frame > 0 && before.best() < -unsure) ++counters.contactsBornPenetrating;
   Manifold fresh;
   chooseManifold(before, movingA.end, movingB.end, limitsOf(step.simulation), 0.0, edgeSlackOf(step.simulation), pair, fresh);
-  pair.margin = 0.0;
+  pair.clearance = 0.0;
   if (fresh.count == 0) return;
   ++counters.contactsBorn;
   fresh.rigid = step.rigid;
@@ -236,12 +236,12 @@ void watchApart(IslandStep& step, NearPair& pair, Counters& counters, StageTimes
 double marginNow(const Simulation& simulation, const NearPair& pair) {
   const CornerView a = cornersOf(simulation.state.position, static_cast<std::size_t>(pair.a));
   if (pair.b < 0) return std::max(0.0, lowestCorner(a));
-  return std::max(0.0, gapAlong(pair.witness, a, cornersOf(simulation.state.position, static_cast<std::size_t>(pair.b))));
+  return std::max(0.0, gapAlong(pair.separatingAxis, a, cornersOf(simulation.state.position, static_cast<std::size_t>(pair.b))));
 }
 
-void renewManifold(IslandStep& step, NearPair& pair, Counters& counters) {
+void refreshManifold(IslandStep& step, NearPair& pair, Counters& counters) {
   const Simulation& simulation = step.simulation;
-  const CornerArray& position = simulation.state.position;
+  const ParticleArray& position = simulation.state.position;
   const ManifoldLimits limits = limitsOf(simulation);
   const double partingGap = simulation.lengths.partingGap_m;
   const double radius = kCarryRadius * simulation.lengths.blockHeight_m;

@@ -57,9 +57,9 @@ void contactsInOrder(IslandStep& step, const Evaluation& evaluation) {
   Engine& engine = step.engine;
   const std::vector<std::uint8_t>& asleep = step.simulation.asleep;
   for (const std::int32_t block : step.blocks) engine.contactForce[static_cast<std::size_t>(block)] = AffineField{};
-  for (const std::int32_t at : step.watched) {
+  for (const std::int32_t at : step.activePairs) {
     const Manifold& manifold = engine.pairs[static_cast<std::size_t>(at)].manifold;
-    if (manifold.touch == Touch::apart) continue;
+    if (manifold.touch == PairPhase::separated) continue;
     PairForce force;
     evaluatePair(step, evaluation, static_cast<std::size_t>(at), force);
     const auto upper = static_cast<std::size_t>(manifold.upper);
@@ -73,10 +73,10 @@ void contactsInOrder(IslandStep& step, const Evaluation& evaluation) {
 // The same sums in the same order: first all pairs, then each block gathers its own.
 void contactsInParallel(IslandStep& step, const Evaluation& evaluation) {
   Engine& engine = step.engine;
-  tbb::parallel_for(Range(0, step.watched.size(), kPairGrain), [&](const Range& range) {
+  tbb::parallel_for(Range(0, step.activePairs.size(), kPairGrain), [&](const Range& range) {
     for (std::size_t i = range.begin(); i < range.end(); ++i) {
-      const auto at = static_cast<std::size_t>(step.watched[i]);
-      if (engine.pairs[at].manifold.touch != Touch::apart) evaluatePair(step, evaluation, at, engine.pairForce[at]);
+      const auto at = static_cast<std::size_t>(step.activePairs[i]);
+      if (engine.pairs[at].manifold.touch != PairPhase::separated) evaluatePair(step, evaluation, at, engine.pairForce[at]);
     }
   });
   tbb::parallel_for(Range(0, step.blocks.size(), kBlockGrain), [&](const Range& range) {
@@ -87,7 +87,7 @@ void contactsInParallel(IslandStep& step, const Evaluation& evaluation) {
       for (std::int32_t k = engine.blockPairStart[b]; k < engine.blockPairStart[b + 1]; ++k) {
         const auto at = static_cast<std::size_t>(engine.blockPairs[static_cast<std::size_t>(k)]);
         const Manifold& manifold = engine.pairs[at].manifold;
-        if (manifold.touch == Touch::apart) continue;
+        if (manifold.touch == PairPhase::separated) continue;
         addForce(manifold.upper == block ? engine.pairForce[at].upper : engine.pairForce[at].lower, sum);
       }
       engine.contactForce[b] = sum;
@@ -119,14 +119,14 @@ void addTether(IslandStep& step, const MotionState& state, double time_s) {
 
 std::uint64_t pointsOf(const IslandStep& step) {
   std::uint64_t points = 0;
-  for (const std::int32_t at : step.watched)
+  for (const std::int32_t at : step.activePairs)
     points += static_cast<std::uint64_t>(step.engine.pairs[static_cast<std::size_t>(at)].manifold.count);
   return points;
 }
 
 }  // namespace
 
-void evaluateForces(IslandStep& step, const MotionState& state, const CornerArray& carried, double advance_s, Memory memory) {
+void evaluateForces(IslandStep& step, const MotionState& state, const ParticleArray& carried, double advance_s, Memory memory) {
   StageClock clock(step.times);
   Engine& engine = step.engine;
   const bool parallel = step.blocks.size() >= kParallelBlocks;

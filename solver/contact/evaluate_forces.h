@@ -12,7 +12,7 @@ enum class Memory { drop, advance, trial };
 /// and comes with the integration); fills engine.force for its blocks. `carried` are the velocities that moved the positions
 /// during the last `advance_s`, to which a copy of the contact memory is brought. Deterministic: contacts are summed in the order
 /// of the pairs for any number of threads.
-void evaluateForces(IslandStep& step, const MotionState& state, const CornerArray& carried, double advance_s, Memory memory);
+void evaluateForces(IslandStep& step, const MotionState& state, const ParticleArray& carried, double advance_s, Memory memory);
 
 /// Whether the hand holds a block of this island; whether a user force acts on one during the frame.
 bool holdsTether(const IslandStep& step);

@@ -70,10 +70,11 @@ void keepEdge(const Manifold& old, Manifold& fresh) {
 
 }  // namespace
 
-void keepContactMemory(const Manifold& old, const CornerArray& position, const ContactLaw& law, double radius, Manifold& fresh) {
+void keepContactMemory(const Manifold& old, const ParticleArray& position, const ContactLaw& law, double radius,
+                       Manifold& fresh) {
   const auto oldUpper = static_cast<std::size_t>(old.upper);
   const auto freshUpper = static_cast<std::size_t>(fresh.upper);
-  if (old.touch == Touch::edge && fresh.touch == Touch::edge) {
+  if (old.touch == PairPhase::edge && fresh.touch == PairPhase::edge) {
     keepEdge(old, fresh);
     if (fresh.incidentFace == old.incidentFace && fresh.referenceFace == old.referenceFace) return;
   } else {

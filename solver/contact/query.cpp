@@ -29,14 +29,14 @@ struct ManifoldNow {
   ManifoldNow(const Simulation& simulation, const Manifold& stored) : manifold(stored) {
     const auto upper = static_cast<std::size_t>(stored.upper);
     const auto lower = static_cast<std::size_t>(std::max(stored.lower, 0));
-    const CornerArray& carried = carriedVelocities(simulation);
+    const ParticleArray& carried = carriedVelocities(simulation);
     const BlockFrame frames[2] = {blockFrame(simulation.state.position, upper), blockFrame(simulation.state.position, lower)};
     const AffineField motion[2] = {affineField(simulation.state.velocity, upper), affineField(simulation.state.velocity, lower)};
     const AffineField carriedBy[2] = {affineField(carried, upper), affineField(carried, lower)};
     const ContactSide up{&frames[0], &motion[0], &carriedBy[0]};
     const ContactSide low{&frames[1], &motion[1], &carriedBy[1]};
     const ContactLaw law = contactLaw(simulation);
-    const double behind = simulation.engine->clock[upper].lastDrift_s;
+    const double behind = simulation.engine->blockHistory[upper].lastExplicitStep_s;
     const double kick = isLeapfrog(simulation.scene.settings.method) ? behind : 0.0;
     manifoldForces(manifold, up, low, law, {behind, 1.0, 1.0, kick}, reducedMass(simulation.model, stored), &manifold, force);
     points = pointForces(manifold, up, low, law);
@@ -69,7 +69,7 @@ double energyOf(const Simulation& simulation, const ManifoldNow& now, const Cont
 
 // Appends what the points of a manifold that push do.
 void addContactForces(const Simulation& simulation, const Manifold& m, std::vector<ContactForce>& forces) {
-  if (m.touch == Touch::apart) return;
+  if (m.touch == PairPhase::separated) return;
   const ManifoldNow now(simulation, m);
   const PointForces& points = now.points;
   for (std::size_t i = 0; i < static_cast<std::size_t>(m.count); ++i) {
@@ -101,13 +101,13 @@ ContactLaw contactLaw(const Simulation& simulation) {
 }
 
 PointForces forcesNow(const Simulation& simulation, const Manifold& manifold) {
-  if (manifold.touch == Touch::apart) return {};
+  if (manifold.touch == PairPhase::separated) return {};
   return ManifoldNow(simulation, manifold).points;
 }
 
-Push pushOnUpper(const Simulation& simulation, const Manifold& manifold) {
-  Push push;
-  if (manifold.touch == Touch::apart) return push;
+ContactWrench contactWrenchOnUpper(const Simulation& simulation, const Manifold& manifold) {
+  ContactWrench push;
+  if (manifold.touch == PairPhase::separated) return push;
   const PointForces points = forcesNow(simulation, manifold);
   push.direction = points.direction;
   for (std::size_t i = 0; i < static_cast<std::size_t>(manifold.count); ++i) {
@@ -143,13 +143,13 @@ Energy energy(const Simulation& simulation) {
   Energy energy;
 
   // The forces now, for the kinetic energy in the middle of the coming kick.
-  CornerArray force;
+  ParticleArray force;
   force.resize(model.blockCount());
   std::vector<AffineField> contactForce(model.blockCount());
   std::vector<std::int32_t> all(model.blockCount());
   for (std::size_t b = 0; b < all.size(); ++b) all[b] = static_cast<std::int32_t>(b);
   for (const NearPair& pair : simulation.engine->pairs) {
-    if (pair.manifold.touch == Touch::apart) continue;
+    if (pair.manifold.touch == PairPhase::separated) continue;
     const ManifoldNow now(simulation, pair.manifold);
     energy.contacts += energyOf(simulation, now, law);
     addForce(now.force.upper, contactForce[static_cast<std::size_t>(pair.manifold.upper)]);
@@ -157,13 +157,14 @@ Energy energy(const Simulation& simulation) {
   }
   springForces(model, state, all, contactForce, force);
   const InverseMass inverse = inverseMass(settings.inertia);
-  CornerArray coming = state.velocity;
-  CornerArray change;
+  ParticleArray coming = state.velocity;
+  ParticleArray change;
   change.resize(model.blockCount());
   for (std::size_t b = 0; b < model.blockCount(); ++b) {
     energy.springs += springEnergy(model, state.position, b);
     energy.gravity -= model.mass[b] * gravity.dot(centre(state.position, b));
-    const double kick = isLeapfrog(settings.method) && simulation.asleep[b] == 0 ? simulation.engine->clock[b].lastDrift_s : 0.0;
+    const double kick =
+        isLeapfrog(settings.method) && simulation.asleep[b] == 0 ? simulation.engine->blockHistory[b].lastExplicitStep_s : 0.0;
     for (std::size_t a = 0; a < 3; ++a) {
       const double* f = force.values(a, b);
       double* v = coming.values(a, b);

@@ -11,13 +11,13 @@ ContactLaw contactLaw(const Simulation& simulation);
 PointForces forcesNow(const Simulation& simulation, const Manifold& manifold);
 
 /// What a manifold does to a block.
-struct Push {
+struct ContactWrench {
   Vec3 force = Vec3::Zero();      ///< N
   Vec3 torque = Vec3::Zero();     ///< N m, about the world's origin
   Vec3 direction = Vec3::Zero();  ///< unit normal, towards the block
 };
 
 /// Their sum on the upper block. All zero where the manifold is apart.
-Push pushOnUpper(const Simulation& simulation, const Manifold& manifold);
+ContactWrench contactWrenchOnUpper(const Simulation& simulation, const Manifold& manifold);
 
 }  // namespace springtower

@@ -46,7 +46,7 @@ void gatherContacts(IslandStep& step, RigidIsland& island) {
   island.contacts.clear();
   for (const std::int32_t at : step.pairs) {
     const Manifold& manifold = step.engine.pairs[static_cast<std::size_t>(at)].manifold;
-    if (manifold.touch == Touch::apart) continue;
+    if (manifold.touch == PairPhase::separated) continue;
     const PointForces points = pointsNow(step, manifold);
     RigidContact contact;
     contact.upper = bodyOf(step, manifold.upper);

@@ -24,7 +24,7 @@ struct BlockTravel {
   double deformed;  // m2, squares of the corners' moves against their mean, summed
 };
 
-SPRINGTOWER_INLINE BlockTravel blockTravel(const CornerArray& now, const CornerArray& before, std::size_t b) {
+SPRINGTOWER_INLINE BlockTravel blockTravel(const ParticleArray& now, const ParticleArray& before, std::size_t b) {
   Lanes squared[2] = {};
   Lanes deformed = {};
   for (std::size_t a = 0; a < 3; ++a) {
@@ -67,12 +67,12 @@ std::int32_t addPaths(IslandStep& step, bool& inside) {
   for (const std::int32_t block : step.blocks) {
     const auto b = static_cast<std::size_t>(block);
     const auto [path, deformed] = blockTravel(step.simulation.state.position, step.engine.previous, b);
-    const double most = kMostTravelPerStep * step.simulation.model.dimensions[b].minCoeff();
+    const double most = kMaxTravelPerStep * step.simulation.model.dimensions[b].minCoeff();
     if (!(deformed < static_cast<double>(kCorners) * most * most)) return block;
-    BlockClock& clock = step.engine.clock[b];
+    BlockHistory& clock = step.engine.blockHistory[b];
     clock.travel += path;
     step.engine.path[b] = path;
-    if (path > step.engine.foreseenPath[b]) step.listedFor = 0;
+    if (path > step.engine.foreseenPath[b]) step.activeListSteps = 0;
     if (clock.travel - step.engine.travelAtSweep[b] > step.engine.reach[b]) inside = inside && isInSweptBox(step, b);
   }
   return -1;
@@ -110,7 +110,7 @@ bool rolls(const Manifold& manifold) {
 }
 
 // Path after which a pair's manifold is renewed, m.
-double renewalTravel(const Manifold& manifold, const RenewalTravel& travel) {
+double renewalTravel(const Manifold& manifold, const RefreshTravel& travel) {
   if (slides(manifold)) return travel.sliding_m;
   return rolls(manifold) ? travel.rolling_m : travel.resting_m;
 }
@@ -168,7 +168,7 @@ bool hasStayed(IslandStep& step, std::int32_t at, double travel, double most) {
   const RelativePose pose = poseOf(step, pair);
   const double moved = movedBetween(known, pose);
   if (moved < kStayed * most) {
-    pair.checkedTravel = travel - moved;
+    pair.travelAtCheck = travel - moved;
     return true;
   }
   known = pose;
@@ -180,23 +180,23 @@ void forgetPose(Engine& engine, std::int32_t at) {
   if (static_cast<std::size_t>(at) < engine.pose.size()) engine.pose[static_cast<std::size_t>(at)] = RelativePose{};
 }
 
-void updatePair(IslandStep& step, std::int32_t at, const RenewalTravel& renewal, Counters& counters, StageTimes& times) {
+void updatePair(IslandStep& step, std::int32_t at, const RefreshTravel& renewal, Counters& counters, StageTimes& times) {
   NearPair& pair = step.engine.pairs[static_cast<std::size_t>(at)];
   const double travel = travelOf(step.engine, pair);
-  const double used = travel - pair.checkedTravel;
-  if (pair.manifold.touch == Touch::apart) {
-    if (used < pair.margin) return;
+  const double used = travel - pair.travelAtCheck;
+  if (pair.manifold.touch == PairPhase::separated) {
+    if (used < pair.clearance) return;
     ++counters.marginsSpent;
-    keepPair(step.engine, static_cast<std::size_t>(at));
-    pair.checkedTravel = travel;
-    watchApart(step, pair, counters, times);
+    savePair(step.engine, static_cast<std::size_t>(at));
+    pair.travelAtCheck = travel;
+    updateSeparated(step, pair, counters, times);
     forgetPose(step.engine, at);
   } else if (const double most = renewalTravel(pair.manifold, renewal); used > most) {
-    keepPair(step.engine, static_cast<std::size_t>(at));
+    savePair(step.engine, static_cast<std::size_t>(at));
     if (step.rigid && hasStayed(step, at, travel, most)) return;
     if (!step.rigid) forgetPose(step.engine, at);
-    pair.checkedTravel = travel;
-    renewManifold(step, pair, counters);
+    pair.travelAtCheck = travel;
+    refreshManifold(step, pair, counters);
   }
 }
 
@@ -216,12 +216,12 @@ void listWatched(IslandStep& step) {
   std::size_t count = 0;
   for (const std::int32_t at : step.pairs) {
     const NearPair& pair = engine.pairs[static_cast<std::size_t>(at)];
-    const double left = pair.margin - (travelOf(engine, pair) - pair.checkedTravel);
-    if (pair.manifold.touch == Touch::apart && left > kListedSteps * (pathOf(pair.a) + pathOf(pair.b))) continue;
+    const double left = pair.clearance - (travelOf(engine, pair) - pair.travelAtCheck);
+    if (pair.manifold.touch == PairPhase::separated && left > kListedSteps * (pathOf(pair.a) + pathOf(pair.b))) continue;
     engine.watchedPairs[first + count++] = at;
   }
-  step.watched = std::span<const std::int32_t>(engine.watchedPairs).subspan(first, count);
-  step.listedFor = kListedSteps;
+  step.activePairs = std::span<const std::int32_t>(engine.watchedPairs).subspan(first, count);
+  step.activeListSteps = kListedSteps;
 }
 
 }  // namespace
@@ -229,8 +229,8 @@ void listWatched(IslandStep& step) {
 void findTouching(IslandStep& step) {
   for (const std::int32_t at : step.pairs) {
     NearPair& pair = step.engine.pairs[static_cast<std::size_t>(at)];
-    keepPair(step.engine, static_cast<std::size_t>(at));
-    if (pair.manifold.touch == Touch::apart) watchApart(step, pair, step.counters, step.times);
+    savePair(step.engine, static_cast<std::size_t>(at));
+    if (pair.manifold.touch == PairPhase::separated) updateSeparated(step, pair, step.counters, step.times);
   }
 }
 
@@ -238,39 +238,39 @@ bool findContacts(IslandStep& step) {
   return updateContacts(step, {kNever, kNever, kNever});
 }
 
-void measureAgain(IslandStep& step) {
-  const bool listed = step.listedFor == kListedSteps;
-  for (const std::int32_t at : listed ? step.pairs : step.watched) {
+void recomputeClearances(IslandStep& step) {
+  const bool listed = step.activeListSteps == kListedSteps;
+  for (const std::int32_t at : listed ? step.pairs : step.activePairs) {
     NearPair& pair = step.engine.pairs[static_cast<std::size_t>(at)];
     const double travel = travelOf(step.engine, pair);
-    if (pair.checkedTravel <= travel) continue;
-    const bool apart = pair.manifold.touch == Touch::apart;
-    pair.checkedTravel = apart ? travel : -kNever;
-    if (apart) pair.margin = marginNow(step.simulation, pair);
+    if (pair.travelAtCheck <= travel) continue;
+    const bool apart = pair.manifold.touch == PairPhase::separated;
+    pair.travelAtCheck = apart ? travel : -kNever;
+    if (apart) pair.clearance = marginNow(step.simulation, pair);
   }
-  if (step.listedFor > 0) --step.listedFor;  // from where the step began it is farther to where the list was made for
+  if (step.activeListSteps > 0) --step.activeListSteps;  // from where the step began it is farther to where the list was made for
 }
 
-void renewContacts(IslandStep& step, const RenewalTravel& renewal) {
+void refreshContacts(IslandStep& step, const RefreshTravel& renewal) {
   StageClock clock(step.times);
-  for (const std::int32_t at : step.watched) {
-    if (step.engine.pairs[static_cast<std::size_t>(at)].manifold.touch != Touch::apart)
+  for (const std::int32_t at : step.activePairs) {
+    if (step.engine.pairs[static_cast<std::size_t>(at)].manifold.touch != PairPhase::separated)
       updatePair(step, at, renewal, step.counters, step.times);
   }
   clock.lap(Stage::candidates);
 }
 
-bool updateContacts(IslandStep& step, const RenewalTravel& renewal) {
+bool updateContacts(IslandStep& step, const RefreshTravel& renewal) {
   StageClock clock(step.times);
   double& candidates_s = step.times.seconds[static_cast<std::size_t>(Stage::candidates)];
   double& cubicTests_s = step.times.seconds[static_cast<std::size_t>(Stage::cubicTests)];
   const double cubicBefore_s = cubicTests_s;
-  if (step.listedFor > 0) --step.listedFor;
+  if (step.activeListSteps > 0) --step.activeListSteps;
   const bool inside = addTravel(step);
-  const bool list = step.lists && step.listedFor == 0;
-  if (step.listedFor == 0) step.watched = step.pairs;
+  const bool list = step.usesActiveList && step.activeListSteps == 0;
+  if (step.activeListSteps == 0) step.activePairs = step.pairs;
   if (step.blocks.size() < kParallelBlocks) {
-    for (const std::int32_t at : step.watched) updatePair(step, at, renewal, step.counters, step.times);
+    for (const std::int32_t at : step.activePairs) updatePair(step, at, renewal, step.counters, step.times);
     if (list) listWatched(step);
     clock.lap(Stage::candidates);
     candidates_s -= cubicTests_s - cubicBefore_s;  // they were timed inside
@@ -278,7 +278,7 @@ bool updateContacts(IslandStep& step, const RenewalTravel& renewal) {
   }
 
   constexpr std::size_t kChunk = 256;
-  const std::size_t chunks = (step.watched.size() + kChunk - 1) / kChunk;
+  const std::size_t chunks = (step.activePairs.size() + kChunk - 1) / kChunk;
   std::vector<Counters>& counted = step.engine.chunkCounters;
   std::vector<StageTimes>& timed = step.engine.chunkTimes;
   if (counted.size() < chunks) counted.resize(chunks);
@@ -287,9 +287,9 @@ bool updateContacts(IslandStep& step, const RenewalTravel& renewal) {
     counted[chunk] = Counters{};
     timed[chunk] = StageTimes{};
     StageClock all(timed[chunk]);
-    const std::size_t last = std::min(step.watched.size(), (chunk + 1) * kChunk);
+    const std::size_t last = std::min(step.activePairs.size(), (chunk + 1) * kChunk);
     for (std::size_t i = chunk * kChunk; i < last; ++i) {
-      updatePair(step, step.watched[i], renewal, counted[chunk], timed[chunk]);
+      updatePair(step, step.activePairs[i], renewal, counted[chunk], timed[chunk]);
     }
     all.lap(Stage::candidates);
   });

@@ -43,7 +43,7 @@ void addManifold(Simulation& simulation, const Manifold& m) {
   };
   for (std::size_t p = 0; p < static_cast<std::size_t>(m.count); ++p) {
     const double k = stiffness * m.scale[p];
-    if (m.touch == Touch::edge) {
+    if (m.touch == PairPhase::edge) {
       if (moveUpper) add(upper, edgeEnd(m.incidentFace), k);
       if (moveLower) add(lower, edgeEnd(m.referenceFace), k);
       continue;
@@ -77,7 +77,7 @@ double spectralBound(Simulation& simulation, std::span<const std::int32_t> block
   for (const std::int32_t block : blocks) engine.contactMetric[static_cast<std::size_t>(block)].setZero();
   for (const std::int32_t at : pairs) {
     const Manifold& manifold = engine.pairs[static_cast<std::size_t>(at)].manifold;
-    if (manifold.touch != Touch::apart) addManifold(simulation, manifold);
+    if (manifold.touch != PairPhase::separated) addManifold(simulation, manifold);
   }
   double springs = 0.0;
   double contacts = 0.0;
@@ -113,7 +113,7 @@ std::uint64_t contactSignature(const Engine& engine, std::span<const std::int32_
   Hash hash;
   for (const std::int32_t at : pairs) {
     const Manifold& m = engine.pairs[static_cast<std::size_t>(at)].manifold;
-    if (m.touch == Touch::apart) continue;
+    if (m.touch == PairPhase::separated) continue;
     hash.word(static_cast<std::uint64_t>(at));
     hash.word(static_cast<std::uint64_t>(m.count) + 16U * static_cast<std::uint64_t>(m.incidentFace) +
               256U * static_cast<std::uint64_t>(m.referenceFace));

@@ -22,8 +22,8 @@ constexpr double kFallenSpeed = 0.05;
 constexpr std::size_t kFewest = 3;
 // Steps of a frame, at least; and farthest that a corner may go in one, in block heights.
 constexpr int kFallSteps = 20;
-constexpr double kMostWay = 0.06;
-constexpr int kMostFallSteps = 6000;
+constexpr double kMaxDisplacementPerStep = 0.06;
+constexpr int kMaxFallSteps = 6000;
 
 // Whether the root of the blocks' mean squared speed, by mass, is above this one, in sqrt(g h).
 bool isFasterThan(const IslandStep& step, double speed) {
@@ -39,9 +39,9 @@ bool isFasterThan(const IslandStep& step, double speed) {
   return motion > mass * least * least;
 }
 
-bool hasAny(const IslandStep& step, bool BlockClock::*flag) {
+bool hasAny(const IslandStep& step, bool BlockHistory::*flag) {
   return std::any_of(step.blocks.begin(), step.blocks.end(),
-                     [&](std::int32_t block) { return step.engine.clock[static_cast<std::size_t>(block)].*flag; });
+                     [&](std::int32_t block) { return step.engine.blockHistory[static_cast<std::size_t>(block)].*flag; });
 }
 
 bool isLeftAlone(const IslandStep& step) {
@@ -49,7 +49,7 @@ bool isLeftAlone(const IslandStep& step) {
 }
 
 // What a point's springs do becomes the force that its impulses start from.
-void rememberForces(const IslandStep& step, Manifold& manifold) {
+void penaltyToImpulse(const IslandStep& step, Manifold& manifold) {
   const PointForces points = forcesNow(step.simulation, manifold);
   for (std::size_t i = 0; i < static_cast<std::size_t>(manifold.count); ++i) {
     manifold.relaxed[i] = points.normal[i];
@@ -63,7 +63,7 @@ void rememberForces(const IslandStep& step, Manifold& manifold) {
 }
 
 // The other way round: springs that push as the impulses did last.
-void rememberSprings(const IslandStep& step, Manifold& manifold) {
+void impulseToPenalty(const IslandStep& step, Manifold& manifold) {
   const PointForces points = forcesNow(step.simulation, manifold);
   const double stiffness = manifold.lower < 0 ? step.law.floorStiffness_n_m : step.law.stiffness_n_m;
   const double tangential = step.law.tangentialRatio * stiffness;
@@ -91,45 +91,45 @@ bool mayFall(std::size_t blocks) {
 
 bool falls(const IslandStep& step) {
   if (!isLeftAlone(step)) return false;
-  if (hasAny(step, &BlockClock::falls)) {
+  if (hasAny(step, &BlockHistory::falls)) {
     const bool handedOver = std::any_of(step.blocks.begin(), step.blocks.end(), [&](std::int32_t block) {
-      return step.engine.clock[static_cast<std::size_t>(block)].explicitFrames > 0;
+      return step.engine.blockHistory[static_cast<std::size_t>(block)].explicitFrames > 0;
     });
     return handedOver || isFasterThan(step, kFallenSpeed);
   }
   return mayFall(step.blocks.size()) && isFasterThan(step, kFallSpeed);
 }
 
-bool isHeap(const IslandStep& step) {
+bool mostlyFallen(const IslandStep& step) {
   const auto fallen = std::count_if(step.blocks.begin(), step.blocks.end(), [&](std::int32_t block) {
-    return step.engine.clock[static_cast<std::size_t>(block)].hasFallen;
+    return step.engine.blockHistory[static_cast<std::size_t>(block)].hasFallen;
   });
   return isLeftAlone(step) && 2 * static_cast<std::size_t>(fallen) > step.blocks.size();
 }
 
 void setFalling(IslandStep& step, bool falling) {
-  std::vector<BlockClock>& clock = step.engine.clock;
+  std::vector<BlockHistory>& clock = step.engine.blockHistory;
   const auto forEachManifold = [&](bool rigid, const auto& change) {
     for (const std::int32_t at : step.pairs) {
       Manifold& manifold = step.engine.pairs[static_cast<std::size_t>(at)].manifold;
-      if (manifold.touch == Touch::apart || manifold.rigid != rigid) continue;
-      keepPair(step.engine, static_cast<std::size_t>(at));
+      if (manifold.touch == PairPhase::separated || manifold.rigid != rigid) continue;
+      savePair(step.engine, static_cast<std::size_t>(at));
       change(step, manifold);
     }
   };
   const bool all = std::all_of(step.blocks.begin(), step.blocks.end(),
                                [&](std::int32_t block) { return clock[static_cast<std::size_t>(block)].falls; });
   if (falling && all) {
-    forEachManifold(false, rememberForces);  // of blocks that slept while a neighbour went back to springs
+    forEachManifold(false, penaltyToImpulse);  // of blocks that slept while a neighbour went back to springs
     return;
   }
-  forEachManifold(true, rememberSprings);
+  forEachManifold(true, impulseToPenalty);
   for (const std::int32_t block : step.blocks) clock[static_cast<std::size_t>(block)].falls = falling;
   if (!falling) return;
   for (const std::int32_t block : step.blocks) clock[static_cast<std::size_t>(block)].hasFallen = true;
   step.gravity = step.simulation.scene.gravity.at(step.simulation.time_s);
   synchronise(step);
-  forEachManifold(false, rememberForces);
+  forEachManifold(false, penaltyToImpulse);
 }
 
 IslandOutcome runFall(IslandStep& step, double begin_s) {
@@ -137,17 +137,17 @@ IslandOutcome runFall(IslandStep& step, double begin_s) {
   double fastest = 0.0;
   for (const std::int32_t block : step.blocks)
     fastest = std::max(fastest, fastestCorner(simulation.state.velocity, static_cast<std::size_t>(block), Vec3::Zero()));
-  const double steps = fastest * simulation.scene.settings.frame_s / (kMostWay * simulation.lengths.blockHeight_m);
+  const double steps = fastest * simulation.scene.settings.frame_s / (kMaxDisplacementPerStep * simulation.lengths.blockHeight_m);
   const IslandOutcome outcome =
-      runRigidSteps(step, std::clamp(static_cast<int>(std::ceil(steps)), kFallSteps, kMostFallSteps), begin_s);
+      runRigidSteps(step, std::clamp(static_cast<int>(std::ceil(steps)), kFallSteps, kMaxFallSteps), begin_s);
   for (const std::int32_t block : step.blocks) {
-    BlockClock& clock = step.engine.clock[static_cast<std::size_t>(block)];
-    clock.lastDrift_s = 0.0;
-    clock.history_s = 0.0;
+    BlockHistory& clock = step.engine.blockHistory[static_cast<std::size_t>(block)];
+    clock.lastExplicitStep_s = 0.0;
+    clock.lastImplicitStep_s = 0.0;
     clock.explicitLast = true;
     clock.explicitFrames = std::max(0, clock.explicitFrames - 1);
   }
-  step.engine.implicitIslands[static_cast<std::size_t>(step.blocks.front())].forcesKnown = false;
+  step.engine.newtonSystems[static_cast<std::size_t>(step.blocks.front())].forcesKnown = false;
   return outcome;
 }
 

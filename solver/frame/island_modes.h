@@ -19,7 +19,7 @@ bool mayFall(std::size_t blocks);
 bool falls(const IslandStep& step);
 
 /// Whether most of the island's blocks have fallen since they slept last: rigid steps carry it where implicit ones do not do.
-bool isHeap(const IslandStep& step);
+bool mostlyFallen(const IslandStep& step);
 
 /// Makes the points of the island's contacts remember what rigid steps do, or what springs do, and notes in its blocks' clocks
 /// whether they fall. Forces stay as they are, and so does the depth where they hold.

@@ -137,17 +137,17 @@ void findNearPairs(Simulation& simulation, double margin_m) {
                       margin_m, engine.boxes, engine.reach);
     for (const std::int32_t block : engine.awakeBlocks) {
       const auto b = static_cast<std::size_t>(block);
-      engine.travelAtSweep[b] = engine.clock[b].travel;
+      engine.travelAtSweep[b] = engine.blockHistory[b].travel;
     }
     if (simulation.frame == 0 || !engine.swept) reset(engine.sweep, engine.boxes);
     engine.swept = true;
     findPairs(engine.sweep, engine.boxes, simulation.asleep, engine.sweptPairs);
     simulation.counters.blockPairs += engine.sweptPairs.size();
-    engine.regrouped = mergePairs(simulation);
+    engine.topologyChanged = mergePairs(simulation);
   }
   const StageTimer timer(simulation.stageTimes, Stage::islandsAndSleep);
-  engine.regrouped = updateIslands(engine.islands, engine.sweptPairs, simulation.asleep) || engine.regrouped;
-  if (engine.regrouped) listIslandPairs(simulation);
+  engine.topologyChanged = updateIslands(engine.islands, engine.sweptPairs, simulation.asleep) || engine.topologyChanged;
+  if (engine.topologyChanged) listIslandPairs(simulation);
 }
 
 }  // namespace springtower

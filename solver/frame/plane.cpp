@@ -4,7 +4,7 @@ namespace springtower {
 namespace {
 
 // Of two corners that are each other's mirror image.
-void mirror(CornerArray& values, std::size_t block, std::size_t corner, std::size_t image) {
+void mirror(ParticleArray& values, std::size_t block, std::size_t corner, std::size_t image) {
   const Vec3 one = values.at(block, corner);
   const Vec3 other = values.at(block, image);
   const Vec3 mean = 0.5 * (one + other);

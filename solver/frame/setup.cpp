@@ -56,7 +56,7 @@ double foreseenSpectralRadius(const Simulation& simulation, const Stiffness& sti
   return springs + (1.0 + settings.viscoelasticRatio) * contact / lightest;
 }
 
-// Tolerance to stiffness to substeps, or the other way round (design section 2). Stiffness goes as one over the tolerance, the
+// Tolerance to stiffness to substeps, or the other way round. Stiffness goes as one over the tolerance, the
 // square of the steps as the stiffness.
 void chooseStiffness(Simulation& simulation) {
   const Settings& settings = simulation.scene.settings;
@@ -106,9 +106,9 @@ void sizeEngine(Simulation& simulation) {
   e.contactMetric.resize(count);
   e.springRadius.resize(count);
   e.previous = simulation.state.position;
-  e.clock.assign(count, BlockClock{});
+  e.blockHistory.assign(count, BlockHistory{});
   e.rest.resize(count);
-  e.beginning.assign(count, 0);
+  e.newContactCount.assign(count, 0);
   e.awakeCount = count;
   for (std::size_t b = 0; b < count; ++b) {
     const bool asBefore =
@@ -157,14 +157,14 @@ Simulation::Simulation(const Scene& given) : scene(given), engine(std::make_uniq
     e.carried.resize(count);
     e.carriedMotion.resize(count);
     for (MotionState& stage : e.stage) stage = state;
-    for (CornerArray& acceleration : e.stageAcceleration) acceleration.resize(count);
+    for (ParticleArray& acceleration : e.stageAcceleration) acceleration.resize(count);
   }
 }
 
 void kick(Simulation& simulation, std::size_t block, const Vec3& velocity) {
   for (std::size_t c = 0; c < kCorners; ++c) simulation.state.velocity.add(block, c, velocity);
-  simulation.engine->clock[block].history_s = 0.0;
-  simulation.engine->clock[block].explicitFrames = kExplicitFrames;
+  simulation.engine->blockHistory[block].lastImplicitStep_s = 0.0;
+  simulation.engine->blockHistory[block].explicitFrames = kExplicitFrames;
   simulation.restTime_s[block] = 0.0;
   wake(simulation, block);
 }

@@ -32,14 +32,14 @@ namespace springtower {
 namespace {
 
 // Steps of a frame at most: for what stands and begins to push, and for impacts, which are softer where that is not enough.
-constexpr int kMostSubsteps = 100000;
-constexpr int kMostImpactSubsteps = 6000;
+constexpr int kMaxSubsteps = 100000;
+constexpr int kMaxImpactSubsteps = 6000;
 // Share of the usual margin for method `report`: near the springs' limit what semi-implicit Euler conserves is far from the
 // energy, and impulses that take energy add to it. At 0.7 a tower of six rows bursts, at 0.5 it stands and jitters.
 constexpr double kImpulseMargin = 0.5;
 
 // What may meet in an island during this frame.
-struct Approach {
+struct ApproachEstimate {
   double speed = 0.0;          // m/s, largest at which any two of its near blocks may meet
   double reducedMass = 0.0;    // kg, largest
   double cornerInverse = 0.0;  // 1/kg, largest: the inverse mass of two corners against each other
@@ -47,15 +47,15 @@ struct Approach {
   int together = 0;            // most pairs of any one block that may begin to push: hit at once they add up
 };
 
-Approach approachOf(const IslandStep& step) {
+ApproachEstimate approachOf(const IslandStep& step) {
   const Simulation& simulation = step.simulation;
-  std::vector<std::int32_t>& beginning = step.engine.beginning;
+  std::vector<std::int32_t>& beginning = step.engine.newContactCount;
   for (const std::int32_t block : step.blocks) beginning[static_cast<std::size_t>(block)] = 0;
-  const CornerArray& velocity = simulation.state.velocity;
+  const ParticleArray& velocity = simulation.state.velocity;
   const double corner = affineCornerInverseMass(simulation.scene.settings.inertia);
   const double frame_s = simulation.scene.settings.frame_s;
   const double fall = simulation.scene.gravity.magnitude * frame_s;
-  Approach approach;
+  ApproachEstimate approach;
   for (const std::int32_t at : step.pairs) {
     const NearPair& pair = step.engine.pairs[static_cast<std::size_t>(at)];
     const auto a = static_cast<std::size_t>(pair.a);
@@ -65,7 +65,7 @@ Approach approachOf(const IslandStep& step) {
     double speed = 0.0;
     double reduced = massA;
     double inverse = corner / massA;
-    double travel = step.engine.clock[a].travel;
+    double travel = step.engine.blockHistory[a].travel;
     if (pair.b < 0) {
       speed = fastestCorner(velocity, a, Vec3::Zero());
     } else {
@@ -75,12 +75,12 @@ Approach approachOf(const IslandStep& step) {
       const double massB = simulation.model.mass[b];
       reduced = massA * massB / (massA + massB);
       inverse += corner / massB;
-      travel += step.engine.clock[b].travel;
+      travel += step.engine.blockHistory[b].travel;
       resting = resting && simulation.restTime_s[b] > 0.0;
     }
     if (!resting) speed += fall;
-    const bool apart = pair.manifold.touch == Touch::apart;
-    const bool mayMeet = apart && pair.margin - (travel - pair.checkedTravel) < speed * frame_s;
+    const bool apart = pair.manifold.touch == PairPhase::separated;
+    const bool mayMeet = apart && pair.clearance - (travel - pair.travelAtCheck) < speed * frame_s;
     if (apart && !mayMeet) continue;
     if (apart || !anyPointTouches(pair.manifold)) {
       for (const std::int32_t block : {pair.a, pair.b}) {  // sleepers may be those of other islands as well, and do not move
@@ -121,7 +121,7 @@ double shortening(double radius, double dampingTime_s, double damping) {
 int chooseSubsteps(IslandStep& step) {
   Simulation& simulation = step.simulation;
   const Settings& settings = simulation.scene.settings;
-  BlockClock& record = step.engine.clock[static_cast<std::size_t>(step.blocks.front())];
+  BlockHistory& record = step.engine.blockHistory[static_cast<std::size_t>(step.blocks.front())];
   const std::uint64_t signature = contactSignature(step.engine, step.pairs) ^ (step.blocks.size() << 1U);
   if (signature != record.contactSignature || record.spectralRadius == 0.0) {
     record.spectralRadius = spectralBound(simulation, step.blocks, step.pairs);
@@ -129,7 +129,8 @@ int chooseSubsteps(IslandStep& step) {
   }
   const double standing = record.spectralRadius;
   const double stiffness = simulation.contactStiffness_n_m * (1.0 + settings.viscoelasticRatio);
-  const Approach approach = settings.method == Method::report ? Approach{} : approachOf(step);  // its contacts have no stiffness
+  const ApproachEstimate approach =
+      settings.method == Method::report ? ApproachEstimate{} : approachOf(step);  // its contacts have no stiffness
   const double depth = impactDepth_m(settings, simulation.tolerance_m, simulation.lengths.blockHeight_m);
   const double wanted =
       approach.reducedMass * approach.speed * approach.speed / (depth * depth * simulation.contactStiffness_n_m);
@@ -149,9 +150,9 @@ int chooseSubsteps(IslandStep& step) {
     const auto stepsFor = [&](double radius) {
       const double dt = stableStep(settings.method, radius + held.stiffness, simulation.dampingTime_s, margin) *
                         shortening(radius + held.stiffness, simulation.dampingTime_s, held.damping);
-      return std::clamp(std::ceil(settings.frame_s / dt), 1.0, static_cast<double>(kMostSubsteps));
+      return std::clamp(std::ceil(settings.frame_s / dt), 1.0, static_cast<double>(kMaxSubsteps));
     };
-    substeps = static_cast<int>(std::min(stepsFor(needed), std::max<double>(kMostImpactSubsteps, stepsFor(begun))));
+    substeps = static_cast<int>(std::min(stepsFor(needed), std::max<double>(kMaxImpactSubsteps, stepsFor(begun))));
     allowed = stableSpectralRadius(settings.method, settings.frame_s / substeps, simulation.dampingTime_s, settings.stepMargin);
     if (held.stiffness > 0.0) allowed = std::min(allowed, needed);
   }
@@ -197,7 +198,7 @@ IslandOutcome runIsland(IslandStep& step) {
     bool falling = falls(step);
     setFalling(step, falling);
     if (!falling) {
-      const bool heap = isHeap(step);
+      const bool heap = mostlyFallen(step);
       outcome = runImplicitSteps(step, heap, begin_s);
       if (!outcome.inside || begin_s >= settings.frame_s) return outcome;
       falling = heap;
@@ -214,10 +215,10 @@ IslandOutcome runIsland(IslandStep& step) {
   const double rest_s = settings.frame_s - begin_s;
   outcome.substeps = std::max(1, static_cast<int>(std::ceil(chooseSubsteps(step) * rest_s / settings.frame_s - 1e-9)));
   step.drift_s = rest_s / outcome.substeps;
-  BlockClock& record = step.engine.clock[static_cast<std::size_t>(step.blocks.front())];
-  double last = record.lastDrift_s;
-  step.lists = true;
-  step.listedFor = 0;
+  BlockHistory& record = step.engine.blockHistory[static_cast<std::size_t>(step.blocks.front())];
+  double last = record.lastExplicitStep_s;
+  step.usesActiveList = true;
+  step.activeListSteps = 0;
   for (int substep = 0; substep < outcome.substeps; ++substep) {
     step.time_s = simulation.time_s + begin_s + substep * step.drift_s;
     step.gravity = simulation.scene.gravity.at(step.time_s);
@@ -225,15 +226,15 @@ IslandOutcome runIsland(IslandStep& step) {
     step.advance_s = last;
     stepIsland(settings.method, step);
     last = step.drift_s;
-    outcome.inside =
-        settings.method == Method::report ? acceptReportStep(step) : updateContacts(step, renewalOfExplicitSteps(simulation));
+    outcome.inside = settings.method == Method::report ? acceptReportStep(step)
+                                                       : updateContacts(step, refreshTravelOfExplicitSteps(simulation));
     if (!outcome.inside) break;
   }
   for (const std::int32_t block : step.blocks) {
-    BlockClock& clock = step.engine.clock[static_cast<std::size_t>(block)];
-    clock.lastDrift_s = last;
+    BlockHistory& clock = step.engine.blockHistory[static_cast<std::size_t>(block)];
+    clock.lastExplicitStep_s = last;
     clock.explicitLast = true;
-    clock.history_s = 0.0;
+    clock.lastImplicitStep_s = 0.0;
   }
   outcome.substeps += implicitSteps;
   return outcome;
@@ -241,13 +242,13 @@ IslandOutcome runIsland(IslandStep& step) {
 
 // Block turned inside out or flattened: the mean edges' volume against that of its dimensions.
 void checkShapes(const Simulation& simulation, std::span<const std::int32_t> blocks) {
-  constexpr double kLeastVolume = 0.2;
+  constexpr double kMinVolume = 0.2;
   for (const std::int32_t block : blocks) {
     const auto b = static_cast<std::size_t>(block);
-    const CornerArray& x = simulation.state.position;
+    const ParticleArray& x = simulation.state.position;
     const double volume =
         meanEdge(x, b, 0).cross(meanEdge(x, b, 1)).dot(meanEdge(x, b, 2)) / simulation.model.dimensions[b].prod();
-    if (volume > kLeastVolume) continue;
+    if (volume > kMinVolume) continue;
     throw DivergenceError(fmt::format("block {} diverged at {:.6f} s: it was turned inside out (volume {:.3g} of its own)", block,
                                       simulation.time_s, volume),
                           block, simulation.time_s);
@@ -266,7 +267,7 @@ bool runIslands(Simulation& simulation) {
   if (simulation.scene.settings.method == Method::report) prepareReportFrame(simulation);
   if (isImplicit(simulation.scene.settings.method) || simulation.frame == 0) engine.trial.resize(engine.pairs.size());
   if ((isImplicit(simulation.scene.settings.method) || isRigid(simulation.scene.settings.method)) &&
-      (engine.regrouped || engine.pose.size() != engine.pairs.size()))
+      (engine.topologyChanged || engine.pose.size() != engine.pairs.size()))
     engine.pose.assign(engine.pairs.size(), RelativePose{});
   tbb::parallel_for(std::size_t{0}, islands, [&](std::size_t i) {
     const auto first = static_cast<std::size_t>(engine.pairStart[i]);
@@ -278,7 +279,7 @@ bool runIslands(Simulation& simulation) {
                     engine.islandCounters[i],
                     engine.islandTimes[i],
                     law};
-    rememberStart(step);
+    saveFrameStart(step);
     const IslandOutcome outcome = runIsland(step);
     engine.islandOutcome[i] = outcome.inside ? outcome.substeps : -1;
   });
@@ -296,7 +297,7 @@ bool runIslands(Simulation& simulation) {
 
 void stepFrame(Simulation& simulation) {
   Engine& engine = *simulation.engine;
-  wakeForFrame(simulation);
+  wakeForInputs(simulation);
   engine.lostPartner.clear();
   if (engine.awakeCount > 0) {
     double margin = kSweepMargin * simulation.lengths.blockHeight_m;
@@ -304,13 +305,13 @@ void stepFrame(Simulation& simulation) {
     while (true) {
       // The frame is run again where something was hit and left its swept box, with a wider one, so that no meeting is missed;
       // and where sleepers gave way to what was done to them, with these awake.
-      if (wakeWhatIsStruck(simulation)) findNearPairs(simulation, margin);
+      if (wakeOnImpact(simulation)) findNearPairs(simulation, margin);
       const bool inside = runIslands(simulation);
-      const bool gaveWay = inside && wakeWhatGaveWay(simulation);
+      const bool gaveWay = inside && wakeFailedSupports(simulation);
       if (inside && !gaveWay) break;
       ++simulation.counters.replayedFrames;
       if (!inside) margin *= 4.0;
-      rewindFrame(simulation);
+      restoreFrame(simulation);
       if (simulation.scene.settings.method == Method::report) rewindReportFrame(simulation);
       findNearPairs(simulation, margin);
     }

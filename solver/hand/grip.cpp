@@ -96,7 +96,7 @@ double followCourse(double rate_rad_s, double time_s) {
   return (1.0 + rate_rad_s * time_s) * std::exp(-rate_rad_s * time_s);
 }
 
-Eigen::Quaterniond orientationOf(const CornerArray& position, std::size_t block) {
+Eigen::Quaterniond orientationOf(const ParticleArray& position, std::size_t block) {
   Eigen::Matrix3d edges = meanEdges(position, block);
   const Vec3 length = edges.colwise().norm();
   Eigen::Index shortest = 0;
@@ -175,7 +175,7 @@ GripForce gripForce(const Simulation& simulation) {
   return tetherForces(simulation.tether, simulation.model, simulation.state, simulation.time_s, corner);
 }
 
-void drawOn(Draw& draw, std::span<const ContactForce> contacts, Simulation& simulation) {
+void advancePull(Draw& draw, std::span<const ContactForce> contacts, Simulation& simulation) {
   Hand& hand = draw.hand;
   const std::size_t b = index(hand.block);
   const double reach = hand.limit_n / (simulation.model.mass[b] * hand.rate_rad_s * hand.rate_rad_s);

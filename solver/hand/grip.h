@@ -50,7 +50,7 @@ enum class Hold { none, free, sticks, slips };
 
 /// The orientation of a (slightly deformed) block: the rotation nearest to its two longer mean edges. The shortest is left out,
 /// as friction shears it without turning the block.
-Eigen::Quaterniond orientationOf(const CornerArray& position, std::size_t block);
+Eigen::Quaterniond orientationOf(const ParticleArray& position, std::size_t block);
 
 /// Lets the hand hold its block in the coming frame (simulation.tether), and brings its memory up to date. `contacts`:
 /// those on the block (contactForcesOn) or all, as the simulation stands. The hand takes the weight of a block as far as no
@@ -74,7 +74,7 @@ struct Draw {
 
 /// Leads the hand on for the coming frame, no farther ahead of its block than its force reaches, and lets it hold the block.
 /// Precondition: the hand holds a block.
-void drawOn(Draw& draw, std::span<const ContactForce> contacts, Simulation& simulation);
+void advancePull(Draw& draw, std::span<const ContactForce> contacts, Simulation& simulation);
 
 /// A hand that will draw a block along a line from where it lies, at a speed.
 Draw drawingFrom(const Simulation& simulation, BlockId block, const Vec3& direction, double speed_m_s,

@@ -371,7 +371,7 @@ void guideHand(MoveRun& run, Simulation& simulation) {
   run.phase_s += simulation.scene.settings.frame_s;
   if (run.finished || run.draw.hand.block == kFloor) return;
   if (run.phase == MovePhase::draw) {
-    drawOn(run.draw, contacts, simulation);
+    advancePull(run.draw, contacts, simulation);
   } else {
     hold(run.draw.hand, contacts, run.draw.grip, simulation);
   }

@@ -51,7 +51,7 @@ struct MoveRun {
   Vec3 place = Vec3::Zero();  ///< m, the nominal place there, level
   Eigen::Quaterniond placeTurn = Eigen::Quaterniond::Identity();
   Vec3 release = Vec3::Zero();  ///< m, where it let go
-  CornerArray before;           ///< m, when the move began
+  ParticleArray before;         ///< m, when the move began
   MoveResult now;               ///< of the move that is being made
 };
 

@@ -18,27 +18,27 @@ void synchronise(IslandStep& step) {
   Engine& engine = step.engine;
   double behind_s = 0.0;
   for (const std::int32_t block : step.blocks)
-    behind_s = std::max(behind_s, engine.clock[static_cast<std::size_t>(block)].lastDrift_s);
+    behind_s = std::max(behind_s, engine.blockHistory[static_cast<std::size_t>(block)].lastExplicitStep_s);
   if (behind_s == 0.0) return;
-  CornerArray& velocity = step.simulation.state.velocity;
+  ParticleArray& velocity = step.simulation.state.velocity;
   step.kick_s = behind_s;
   evaluateForces(step, step.simulation.state, velocity, behind_s, Memory::advance);
   for (const std::int32_t block : step.blocks) {
     const auto b = static_cast<std::size_t>(block);
-    const double half_s = 0.5 * engine.clock[b].lastDrift_s;
+    const double half_s = 0.5 * engine.blockHistory[b].lastExplicitStep_s;
     double acceleration[3][kCorners];
     accelerate(step, b, acceleration);
     for (std::size_t a = 0; a < 3; ++a) {
       double* v = velocity.values(a, b);
       for (std::size_t c = 0; c < kCorners; ++c) v[c] += half_s * acceleration[a][c];
     }
-    engine.clock[b].lastDrift_s = 0.0;
+    engine.blockHistory[b].lastExplicitStep_s = 0.0;
   }
-  step.engine.implicitIslands[static_cast<std::size_t>(step.blocks.front())].forcesKnown = false;
+  step.engine.newtonSystems[static_cast<std::size_t>(step.blocks.front())].forcesKnown = false;
 }
 
 SPRINGTOWER_KERNEL
-void foretell(IslandStep& step, double effective_s) {
+void predictBdf2(IslandStep& step, double effective_s) {
   Engine& engine = step.engine;
   MotionState& state = step.simulation.state;
   const double h = step.drift_s;
@@ -46,7 +46,7 @@ void foretell(IslandStep& step, double effective_s) {
   for (const std::int32_t block : step.blocks) {
     const auto b = static_cast<std::size_t>(block);
     // The step before may have been longer or shorter: its mean acceleration then tells of one as long as this.
-    const double past_s = engine.clock[b].history_s;
+    const double past_s = engine.blockHistory[b].lastImplicitStep_s;
     const bool known = past_s > 0.0;
     const double share = known ? h / past_s : 0.0;
     double start[3][kCorners] = {};
@@ -78,7 +78,7 @@ void foretell(IslandStep& step, double effective_s) {
   }
 }
 
-void foretellOneStep(IslandStep& step, double effective_s) {
+void predictEuler(IslandStep& step, double effective_s) {
   Engine& engine = step.engine;
   const MotionState& state = step.simulation.state;
   for (const std::int32_t block : step.blocks) {

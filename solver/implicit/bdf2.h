@@ -11,9 +11,9 @@ void synchronise(IslandStep& step);
 /// x_(n-1)) / 3 + 2/3 h v at the end, and alike for v (Gear 1971). A block without a history gets that of the uniform
 /// acceleration it has now, or of none where a contact has just kicked it. `effective_s`: the step the end's forces go into, s.
 /// Precondition: engine.force holds the forces now, where a block has no history.
-void foretell(IslandStep& step, double effective_s);
+void predictBdf2(IslandStep& step, double effective_s);
 
 /// The same for implicit Euler, which knows of no step before.
-void foretellOneStep(IslandStep& step, double effective_s);
+void predictEuler(IslandStep& step, double effective_s);
 
 }  // namespace springtower

@@ -27,7 +27,7 @@ SPRINGTOWER_INLINE void turn(const std::array<std::array<double, 3>, 3>& axes, b
 
 // The correction, but for forces of `allowed_n`; whether it came so far.
 SPRINGTOWER_KERNEL
-bool solveForCorrection(IslandStep& step, ImplicitIsland& island, double allowed_n) {
+bool solveForCorrection(IslandStep& step, NewtonSystem& island, double allowed_n) {
   const std::size_t count = island.residual.size();
   for (std::size_t i = 0; i < count; ++i) {
     turn(island.axes[i], false, kCorners, island.residual[i]);
@@ -57,7 +57,7 @@ double lightest(const IslandStep& step) {
 
 }  // namespace
 
-double workAlong(const ImplicitIsland& island) {
+double directionalDerivative(const NewtonSystem& island) {
   double work = 0.0;
   for (std::size_t i = 0; i < island.residual.size(); ++i) {
     for (std::size_t m = 0; m < kCorners; ++m) {
@@ -67,12 +67,12 @@ double workAlong(const ImplicitIsland& island) {
   return work;
 }
 
-bool findCorrection(IslandStep& step, ImplicitIsland& island, double effective_s, double allowed, bool differ) {
+bool findCorrection(IslandStep& step, NewtonSystem& island, double effective_s, double allowed, bool differ) {
   const double allowed_n = allowed * lightest(step) * std::max(step.simulation.scene.gravity.magnitude, 1.0);
   island.tangents.clear();
   if (differ) findTangents(step, island, effective_s);
   const bool reached = solveForCorrection(step, island, allowed_n);
-  if (!island.tangents.empty() && !(workAlong(island) > 0.0)) {  // what is symmetric always works forwards
+  if (!island.tangents.empty() && !(directionalDerivative(island) > 0.0)) {  // what is symmetric always works forwards
     island.tangents.clear();
     solveForCorrection(step, island, allowed_n);
   }

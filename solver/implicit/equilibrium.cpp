@@ -19,12 +19,12 @@ namespace {
 constexpr double kFirstStep = 0.012;
 constexpr double kLastStep = 4.6;
 constexpr double kGrowth = 2.0;
-constexpr int kMostSteps = 60;
+constexpr int kMaxSteps = 60;
 // How often in a row a step is tried again, shorter.
-constexpr int kMostRetries = 6;
+constexpr int kMaxRetries = 6;
 // Dashpots of contacts in these steps, in sqrt(h / g): they only hold up what comes to rest, and ones that last as long as a step
 // keep it from converging.
-constexpr double kMostDamping = 1e-3;
+constexpr double kMaxDamping = 1e-3;
 // Farthest that a corner may go in one of these steps, in tolerances; what goes farther is falling.
 constexpr double kFarthest = 20.0;
 // Farthest that a corner still goes in the last one, in tolerances.
@@ -38,11 +38,11 @@ bool mayRest(const IslandStep& step) {
   std::vector<std::uint8_t> touches(step.simulation.model.blockCount(), 0);
   for (const std::int32_t at : step.pairs) {
     const Manifold& manifold = step.engine.pairs[static_cast<std::size_t>(at)].manifold;
-    if (manifold.touch == Touch::apart) continue;
+    if (manifold.touch == PairPhase::separated) continue;
     touches[static_cast<std::size_t>(manifold.upper)] = 1;
     if (manifold.lower >= 0) touches[static_cast<std::size_t>(manifold.lower)] = 1;
   }
-  const CornerArray& velocity = step.simulation.state.velocity;
+  const ParticleArray& velocity = step.simulation.state.velocity;
   return std::all_of(step.blocks.begin(), step.blocks.end(), [&](std::int32_t block) {
     const auto b = static_cast<std::size_t>(block);
     bool still = touches[b] != 0;
@@ -61,7 +61,7 @@ double stop(IslandStep& step) {
       farthest = std::max(farthest, (state.position.at(b, c) - step.engine.previous.at(b, c)).norm());
       state.velocity.set(b, c, Vec3::Zero());
     }
-    step.engine.clock[b].history_s = 0.0;
+    step.engine.blockHistory[b].lastImplicitStep_s = 0.0;
   }
   return farthest;
 }
@@ -73,10 +73,10 @@ bool settle(IslandStep& step) {
   const double travel_m = refreshTravel(step.simulation);  // blocks slide by tolerances at most here
   double effective_s = kFirstStep * fallTime_s;
   int retries = 0;
-  for (int i = 0; i < kMostSteps; ++i) {
+  for (int i = 0; i < kMaxSteps; ++i) {
     setJacobians(step, effective_s);
     if (!stepFromRest(step, effective_s)) {
-      if (++retries > kMostRetries) return false;
+      if (++retries > kMaxRetries) return false;
       effective_s /= kGrowth * kGrowth;
       continue;
     }
@@ -97,12 +97,12 @@ bool startInEquilibrium(IslandStep& step) {
   step.scaleMost = 1.0;
   step.unforced = true;
   const double damping_s = step.law.dampingTime_s;
-  step.law.dampingTime_s = std::min(damping_s, kMostDamping * step.simulation.lengths.fallTime_s);
+  step.law.dampingTime_s = std::min(damping_s, kMaxDamping * step.simulation.lengths.fallTime_s);
   Gravity gravity = step.simulation.scene.gravity;
   const double tilt_deg = gravity.tilt_deg;
   const auto startAgain = [&] {
     step.counters = before;
-    rewindIsland(step);
+    restoreIsland(step);
     for (const std::int32_t block : step.blocks) {  // nothing has moved yet
       for (std::size_t a = 0; a < 3; ++a) {
         const auto b = static_cast<std::size_t>(block);

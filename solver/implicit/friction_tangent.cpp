@@ -27,7 +27,7 @@ double pushOf(const ContactLaw& law, const PointMemory& memory, std::size_t i, d
   return std::max(0.0, stiffness * memory.scale[i] * (elastic + law.relaxingRatio * (elastic - memory.relaxed[i])));
 }
 
-void addPair(const IslandStep& step, const ImplicitIsland& island, std::size_t at, ContactMask mask, Part part, double step_s,
+void addPair(const IslandStep& step, const NewtonSystem& island, std::size_t at, ActiveSetBits mask, Part part, double step_s,
              AlignedVector<ContactTangent>& to) {
   if ((mask & 0xFFU) == 0) return;
   const Engine& engine = step.engine;
@@ -83,22 +83,22 @@ SPRINGTOWER_INLINE void addMotion(const double* d, const Lanes (&weight)[3], dou
 
 }  // namespace
 
-ContactMask contactMask(const IslandStep& step, const ImplicitIsland& island, std::size_t at) {
+ActiveSetBits activeSetBits(const IslandStep& step, const NewtonSystem& island, std::size_t at) {
   const auto pair = static_cast<std::size_t>(island.touching[at]);
   const Manifold& manifold = step.engine.pairs[pair].manifold;
   const PointMemory& trial = step.engine.trial[pair];
-  const PointMemory& slid = island.moved ? trial : manifold;
-  const double least = island.near ? 1.0 : kUnpressed;
+  const PointMemory& slid = island.trialIsAhead ? trial : manifold;
+  const double least = island.useConsistentTangent ? 1.0 : kUnpressed;
   unsigned mask = 0;
   for (std::size_t i = 0; i < static_cast<std::size_t>(manifold.count); ++i) {
     if (trial.live[i] < least) continue;
     mask |= 1U << i;
     if (slid.sliding[i] != 0.0) mask |= 0x100U << i;
   }
-  return static_cast<ContactMask>(mask);
+  return static_cast<ActiveSetBits>(mask);
 }
 
-PointStiffness pointStiffness(const IslandStep& step, const Manifold& manifold, const PointMemory& memory, ContactMask mask,
+PointStiffness pointStiffness(const IslandStep& step, const Manifold& manifold, const PointMemory& memory, ActiveSetBits mask,
                               std::size_t i, double step_s) {
   const ContactLaw& law = step.law;
   const double stiffness = manifold.lower < 0 ? law.floorStiffness_n_m : law.stiffness_n_m;
@@ -117,16 +117,16 @@ PointStiffness pointStiffness(const IslandStep& step, const Manifold& manifold, 
   return result;
 }
 
-void addFactorTangents(const IslandStep& step, const ImplicitIsland& island, std::size_t at, ContactMask mask, double step_s,
+void addFactorTangents(const IslandStep& step, const NewtonSystem& island, std::size_t at, ActiveSetBits mask, double step_s,
                        AlignedVector<ContactTangent>& to) {
   addPair(step, island, at, mask, Part::factors, step_s, to);
 }
 
-void findTangents(const IslandStep& step, ImplicitIsland& island, double step_s) {
+void findTangents(const IslandStep& step, NewtonSystem& island, double step_s) {
   island.tangents = island.factorTangents;
   for (std::size_t at = 0; at < island.touching.size(); ++at) {
-    const ContactMask mask = contactMask(step, island, at);
-    const ContactMask known = island.mask[at];
+    const ActiveSetBits mask = activeSetBits(step, island, at);
+    const ActiveSetBits known = island.mask[at];
     if (mask == known && mask <= 0xFFU) continue;
     if (known <= 0xFFU) addPair(step, island, at, known, Part::factors, step_s, island.tangents);
     addPair(step, island, at, mask, Part::contacts, step_s, island.tangents);

@@ -13,15 +13,16 @@ namespace {
 
 // Directions tried for one correction, in narrow islands and at most.
 constexpr std::size_t kFewDirections = 6;
-constexpr std::size_t kMostDirections = 30;
+constexpr std::size_t kMaxDirections = 30;
 // Half of what new factors cost may go into directions, and a product of a factorisation costs four times what a block of the
 // factors costs in a solution (measured: 3 to 4 from 200 to 1800 blocks).
 constexpr std::size_t kDirectionsPerProduct = 2;
 // What may be left over of the forces asked for: the next iteration looks at them anew.
 constexpr double kLeftOver = 0.002;
 
-// The tangents touch few nodes, and outside these the forces left over are none: the directions are kept for these nodes alone.
-void findCoupledNodes(ImplicitIsland& island) {
+// Low-rank structure: the tangent correction acts on few blocks, and right preconditioning makes the residual zero elsewhere, so
+// Krylov vectors of the residual are stored for those blocks only.
+void findCoupledNodes(NewtonSystem& island) {
   island.coupledAs.assign(island.residual.size(), -1);
   island.coupled.clear();
   const auto place = [&](std::int32_t& node) {
@@ -55,7 +56,7 @@ SPRINGTOWER_INLINE void addScaled(double factor, const double* from, std::size_t
 }
 
 // What the tangents add at the coupled nodes' displacements in island.affine.
-SPRINGTOWER_INLINE void applyTangents(ImplicitIsland& island, double* force) {
+SPRINGTOWER_INLINE void applyTangents(NewtonSystem& island, double* force) {
   const std::size_t count = kNodeSize * island.coupled.size();
   for (std::size_t c = 0; c < island.coupled.size(); ++c) {
     std::copy_n(island.affine.data() + kNodeSize * static_cast<std::size_t>(island.coupled[c]), kNodeSize,
@@ -66,7 +67,7 @@ SPRINGTOWER_INLINE void applyTangents(ImplicitIsland& island, double* force) {
 }
 
 // Room for direction j and the forces that are left after it.
-void makeRoom(std::size_t j, std::size_t count, ImplicitIsland& island) {
+void makeRoom(std::size_t j, std::size_t count, NewtonSystem& island) {
   const std::size_t all = island.affine.size();
   const std::size_t room = std::max(kFewDirections, j + 1);
   if (island.coupledForce.size() < (room + 1) * count) island.coupledForce.resize((room + 1) * count);
@@ -75,10 +76,10 @@ void makeRoom(std::size_t j, std::size_t count, ImplicitIsland& island) {
 
 // Turns column j of the Hessenberg matrix into one of a triangle (Givens), and the right-hand side with it.
 struct LeastSquares {
-  double column[kMostDirections][kMostDirections + 1];
-  double cosine[kMostDirections];
-  double sine[kMostDirections];
-  double right[kMostDirections + 1];
+  double column[kMaxDirections][kMaxDirections + 1];
+  double cosine[kMaxDirections];
+  double sine[kMaxDirections];
+  double right[kMaxDirections + 1];
 
   void turn(std::size_t j) {
     double* h = column[j];
@@ -104,13 +105,13 @@ struct LeastSquares {
 
 }  // namespace
 
-std::size_t mostDirections(const ImplicitIsland& island) {
+std::size_t mostDirections(const NewtonSystem& island) {
   if (island.residual.size() <= kNarrowBlocks) return kFewDirections;
   const std::size_t blocks = std::max<std::size_t>(1, island.matrix.blockCount());
-  return std::clamp(kDirectionsPerProduct * island.matrix.products / blocks, kFewDirections, kMostDirections);
+  return std::clamp(kDirectionsPerProduct * island.matrix.products / blocks, kFewDirections, kMaxDirections);
 }
 
-bool solveCoupled(IslandStep& step, ImplicitIsland& island, double allowed_n) {
+bool solveCoupled(IslandStep& step, NewtonSystem& island, double allowed_n) {
   island.directions = 0;
   if (island.tangents.empty()) {
     solve(step, island);

@@ -20,63 +20,65 @@ namespace springtower {
 
 namespace {
 
-constexpr int kMostIterations = 12;
+constexpr int kMaxIterations = 12;
 // How often a step is solved again with contacts that it turned out to make.
-constexpr int kMostMeetings = 4;
+constexpr int kMaxMeetings = 4;
 // Residual force at which a step is taken, in weights of the block; in metres it is this share of the compression under its own
 // weight. Displacements are no measure: a sliding block hardly moves and is still wrong by a tenth of its friction.
 constexpr double kResidual = 1e-5;
-// How far a correction is solved for, in these units: the root of the sum of all blocks' squares, of which the largest is far
-// less. Less costs solutions that the next evaluation does not need, more costs evaluations.
+// Tolerance of the inner GMRES solve, in units of kResidual. It bounds the 2-norm over all blocks, Newton's test the largest
+// block. Smaller: wasted inner solves. Larger: more Newton iterations.
 constexpr double kSolved = 2.0;
 
-// How an iteration goes on.
-struct Iteration {
-  int mostContactIterations;  // while points begin or cease to push or slide: a front of load takes an iteration a row
-  double near;                // residual below which a correction takes contacts as they stand: friction follows the
-                              // normal forces, and what touches and does not push is open; 0 in steps from rest
-  double enough;              // share of the residual at the beginning that may be left over
+// When Newton's iteration stops, and from where on it uses the consistent tangent.
+struct NewtonOptions {
+  int mostContactIterations;  // while the active set changes: a load front takes one iteration a row
+  double near;                // residual below which the consistent friction tangent is used, and points that touch
+                              // without a normal force count as open
+  double enough;              // relative tolerance, of the initial residual
 };
 
-// Near the solution is within a block's weight of it. Farther away points slide that will not, and Newton's iteration with a cone
-// that moves goes astray (design, section 11, trap 1). Where blocks move, a part of what a step has to find may be left over, up
-// to kMostLeft: a ten thousandth of a weight alters a speed by 4 micrometres a second, and the next step looks at it anew.
-constexpr Iteration kInMotion{40, 1e5, 0.005};
-constexpr double kMostLeft = 10.0;
+// Newton settings in motion. 1e5 kResidual is one block weight: farther away than that, points are marked as slipping that will
+// stick, and Newton with the coupled friction cone diverges. A share of the initial residual may remain, up to kMaxLeft: a
+// ten-thousandth of a weight changes a speed by 4 micrometres a second, and the next step corrects it.
+constexpr NewtonOptions kInMotion{40, 1e5, 0.005};
+constexpr double kMaxLeft = 10.0;
 // What does not converge in a few iterations does so in fewer with finer steps.
-constexpr Iteration kBeforeFiner{kMostIterations, 1e5, 0.005};
-// In steps from rest the weight of a tower that is laid down comes to its foot row by row, from far away. In a wide island this
-// ends with thousands of points that slide: without what friction does as normal forces change, iterations then take away three
-// tenths of the residual each, and whether that is enough before they are given up is chance (a pyramid of 40 rows of cubes
-// found its equilibrium or not, as rounding had it).
-constexpr Iteration kFromRest{40, 0.0, 0.0};
-constexpr Iteration kWideFromRest{40, 1e5, 0.0};
+constexpr NewtonOptions kBeforeFiner{kMaxIterations, 1e5, 0.005};
+// In steps from rest the weight reaches the foot of a tower row by row, starting far from the solution. In a wide island the last
+// iterations have thousands of slipping points: without the consistent tangent each reduces the residual by only three
+// tenths, and rounding decides whether that suffices within the iteration limit (so a pyramid of 40 rows of cubes found its
+// equilibrium or did not).
+constexpr NewtonOptions kFromRest{40, 0.0, 0.0};
+constexpr NewtonOptions kWideFromRest{40, 1e5, 0.0};
 
-ImplicitIsland& islandOf(IslandStep& step) {
-  return step.engine.implicitIslands[static_cast<std::size_t>(step.blocks.front())];
+NewtonSystem& islandOf(IslandStep& step) {
+  return step.engine.newtonSystems[static_cast<std::size_t>(step.blocks.front())];
 }
 
-// Work along a correction that may be left over or undone, of that at its beginning.
+// The line search accepts a share s of the direction d when |r(x + s d) . d| <= 0.5 |r(x) . d| (curvature condition; Nocedal &
+// Wright 2006, section 3.1).
 constexpr double kOvershoot = 0.5;
-constexpr int kMostShares = 6;
-// A residual that shrinks by less asks for new factors: friction has turned.
+constexpr int kMaxShares = 6;
+// Refactorise when the residual drops to no less than this share: friction directions have rotated away from those in the
+// factors.
 constexpr double kSlow = 0.3;
 // Share of the directions that are tried beside the factors from which on new ones cost less.
 constexpr double kOldDirections = 0.6;
 // A residual from which a step begins where the blocks are carried, not where they are: something moves.
 constexpr double kPredicted = 1.0;
 
-// How the contacts stand now. Before the first iteration nothing has moved yet, so what slides is what slid before.
-struct ContactsNow {
+// The present active set. Before the first iteration nothing has moved yet, so points slip as they did in the step before.
+struct ActiveSet {
   bool changed = false;  // against what the factors are for
   bool slides = false;   // whether any point slides
   bool limited = false;  // whether the hand is at a limit of its forces
 };
 
-ContactsNow contactsNow(const IslandStep& step, const ImplicitIsland& island) {
-  ContactsNow now;
+ActiveSet activeSetNow(const IslandStep& step, const NewtonSystem& island) {
+  ActiveSet now;
   for (std::size_t i = 0; i < island.touching.size(); ++i) {
-    const ContactMask mask = contactMask(step, island, i);
+    const ActiveSetBits mask = activeSetBits(step, island, i);
     now.changed = now.changed || mask != island.mask[i];
     now.slides = now.slides || mask > 0xFFU;
   }
@@ -86,15 +88,15 @@ ContactsNow contactsNow(const IslandStep& step, const ImplicitIsland& island) {
 }
 
 // New factors for contacts as they stand now.
-bool renewFactors(IslandStep& step, ImplicitIsland& island, double effective_s) {
-  for (std::size_t i = 0; i < island.touching.size(); ++i) island.mask[i] = contactMask(step, island, i);
+bool refactorise(IslandStep& step, NewtonSystem& island, double effective_s) {
+  for (std::size_t i = 0; i < island.touching.size(); ++i) island.mask[i] = activeSetBits(step, island, i);
   return assemble(step, island, effective_s);
 }
 
 // The residual of all blocks, in the world's frame; returns the largest in units of what is allowed,
 // infinity where one is not finite.
 SPRINGTOWER_KERNEL
-double findResidual(IslandStep& step, ImplicitIsland& island, double effective_s) {
+double findResidual(IslandStep& step, NewtonSystem& island, double effective_s) {
   const Engine& engine = step.engine;
   const double gravity = std::max(step.simulation.scene.gravity.magnitude, 1.0);
   const double rate = 1.0 / (effective_s * effective_s);
@@ -102,7 +104,7 @@ double findResidual(IslandStep& step, ImplicitIsland& island, double effective_s
   for (std::size_t i = 0; i < step.blocks.size(); ++i) {
     const auto b = static_cast<std::size_t>(step.blocks[i]);
     ModeVectors& residual = island.residual[i];
-    missingForces(jacobianOf(island, i), rate, engine.force, engine.target, step.simulation.state.position, b, residual);
+    residualForces(jacobianOf(island, i), rate, engine.force, engine.target, step.simulation.state.position, b, residual);
     double largest = 0.0;
     for (const auto& vector : residual) {
       for (const double r : vector) {
@@ -136,7 +138,7 @@ SPRINGTOWER_INLINE void updateVelocities(IslandStep& step, std::size_t b, double
 
 // Moves the blocks along the correction by this share of it.
 SPRINGTOWER_KERNEL
-void moveAlong(IslandStep& step, const ImplicitIsland& island, double share, double effective_s) {
+void applyStep(IslandStep& step, const NewtonSystem& island, double share, double effective_s) {
   for (std::size_t i = 0; i < step.blocks.size(); ++i) {
     const auto b = static_cast<std::size_t>(step.blocks[i]);
     ModeVectors part = island.direction[i];
@@ -169,16 +171,16 @@ SPRINGTOWER_INLINE void copyPoints(const PointMemory& from, std::int32_t count, 
 }
 
 SPRINGTOWER_KERNEL
-void accept(IslandStep& step, ImplicitIsland& island) {
+void accept(IslandStep& step, NewtonSystem& island) {
   Engine& engine = step.engine;
   for (const std::int32_t at : island.touching) {
     Manifold& manifold = engine.pairs[static_cast<std::size_t>(at)].manifold;
     copyPoints(engine.trial[static_cast<std::size_t>(at)], manifold.count, manifold);
   }
   for (const std::int32_t block : step.blocks) {
-    BlockClock& clock = engine.clock[static_cast<std::size_t>(block)];
-    clock.history_s = step.drift_s;
-    clock.lastDrift_s = 0.0;
+    BlockHistory& clock = engine.blockHistory[static_cast<std::size_t>(block)];
+    clock.lastImplicitStep_s = step.drift_s;
+    clock.lastExplicitStep_s = 0.0;
     clock.explicitLast = false;
   }
   ++step.counters.implicitSteps;
@@ -199,16 +201,16 @@ void goBack(IslandStep& step) {
 void reject(IslandStep& step) {
   goBack(step);
   for (const std::int32_t block : step.blocks) {
-    BlockClock& clock = step.engine.clock[static_cast<std::size_t>(block)];
-    clock.history_s = 0.0;
-    clock.lastDrift_s = 0.0;
+    BlockHistory& clock = step.engine.blockHistory[static_cast<std::size_t>(block)];
+    clock.lastImplicitStep_s = 0.0;
+    clock.lastExplicitStep_s = 0.0;
     clock.explicitLast = false;
   }
   ++step.counters.handedOver;
 }
 
 // Forces and residual where the blocks are now.
-double evaluateResidual(IslandStep& step, ImplicitIsland& island, double effective_s, StageClock& clock) {
+double evaluateResidual(IslandStep& step, NewtonSystem& island, double effective_s, StageClock& clock) {
   clock.lap(Stage::integration);
   evaluateForces(step, step.simulation.state, step.engine.stepVelocity, step.drift_s, Memory::trial);
   clock.skip();  // it counts its own
@@ -218,24 +220,24 @@ double evaluateResidual(IslandStep& step, ImplicitIsland& island, double effecti
 // Takes the correction as far as the residual still works along it: where contacts open or friction turns round on the way, the
 // whole of it would go too far, and back in the next iteration (Newton with line search; Nocedal & Wright 2006). Returns the
 // residual there.
-double takeCorrection(IslandStep& step, ImplicitIsland& island, double effective_s, double enough, StageClock& clock) {
-  const double work = workAlong(island);
-  island.moved = true;
+double searchLine(IslandStep& step, NewtonSystem& island, double effective_s, double enough, StageClock& clock) {
+  const double work = directionalDerivative(island);
+  island.trialIsAhead = true;
   double share = 1.0;
-  moveAlong(step, island, 1.0, effective_s);
+  applyStep(step, island, 1.0, effective_s);
   double residual = evaluateResidual(step, island, effective_s, clock);
   if (!std::isfinite(residual) || residual <= enough) return residual;
-  double far = workAlong(island);
+  double far = directionalDerivative(island);
   if (far >= -kOvershoot * work) return residual;
   double least = 0.0;  // share at which it still works forwards, and where it does no more
   double most = 1.0;
   double near = work;
-  for (int trial = 0; trial < kMostShares; ++trial) {
+  for (int trial = 0; trial < kMaxShares; ++trial) {
     const double next = least + (most - least) * std::clamp(near / (near - far), 0.1, 0.9);
-    moveAlong(step, island, next - share, effective_s);
+    applyStep(step, island, next - share, effective_s);
     share = next;
     residual = evaluateResidual(step, island, effective_s, clock);
-    const double here = workAlong(island);
+    const double here = directionalDerivative(island);
     if (std::abs(here) <= kOvershoot * work || residual <= enough) break;
     (here > 0.0 ? least : most) = share;
     (here > 0.0 ? near : far) = here;
@@ -244,7 +246,7 @@ double takeCorrection(IslandStep& step, ImplicitIsland& island, double effective
 }
 
 // Puts the blocks where their velocities and accelerations carry them. Returns the residual there.
-double predict(IslandStep& step, ImplicitIsland& island, double effective_s, StageClock& clock) {
+double predict(IslandStep& step, NewtonSystem& island, double effective_s, StageClock& clock) {
   Engine& engine = step.engine;
   const double h = step.drift_s;
   for (const std::int32_t block : step.blocks) {
@@ -262,14 +264,14 @@ double predict(IslandStep& step, ImplicitIsland& island, double effective_s, Sta
     }
     updateVelocities(step, b, effective_s);
   }
-  island.moved = true;
+  island.trialIsAhead = true;
   return evaluateResidual(step, island, effective_s, clock);
 }
 
 // Where the iteration begins when something moves: where the blocks are carried, unless that is not near the solution and where
 // they are is nearer, as when contacts have just let go or taken hold and velocities and accelerations still tell of before.
 // Returns the residual there.
-double beginCarried(IslandStep& step, ImplicitIsland& island, double effective_s, const Iteration& how, StageClock& clock) {
+double beginPredicted(IslandStep& step, NewtonSystem& island, double effective_s, const NewtonOptions& how, StageClock& clock) {
   const double carried = predict(step, island, effective_s, clock);
   if (how.near == 0.0 || !(carried > how.near)) return carried;
   goBack(step);
@@ -286,7 +288,7 @@ bool isCarried(const IslandStep& step, double effective_s) {
   bool moves = false;
   for (const std::int32_t block : step.blocks) {
     const auto b = static_cast<std::size_t>(block);
-    if (!(step.engine.clock[b].history_s > 0.0)) return false;
+    if (!(step.engine.blockHistory[b].lastImplicitStep_s > 0.0)) return false;
     for (std::size_t a = 0; a < 3 && !moves; ++a) {
       const double* v = step.simulation.state.velocity.values(a, b);
       for (std::size_t c = 0; c < kCorners; ++c) moves = moves || std::abs(v[c]) > most;
@@ -295,45 +297,45 @@ bool isCarried(const IslandStep& step, double effective_s) {
   return moves;
 }
 
-// Leaves the blocks where they are. Returns the residual there: where a wide island rests, forces of a thousand stiff contacts
-// round by nearly as much as is allowed, and no solution would make it less.
-double stay(IslandStep& step, ImplicitIsland& island, double effective_s, StageClock& clock) {
+// Leaves the blocks where they are. Returns the residual there: in a wide island at rest the rounding of stiff contact forces is
+// nearly as large as the tolerance, and no solution would reduce it.
+double stay(IslandStep& step, NewtonSystem& island, double effective_s, StageClock& clock) {
   for (const std::int32_t block : step.blocks) updateVelocities(step, static_cast<std::size_t>(block), effective_s);
-  island.moved = true;
+  island.trialIsAhead = true;
   return evaluateResidual(step, island, effective_s, clock);
 }
 
 // Newton's iteration for the state at the step's end, from engine.target and engine.history. Unless the blocks are `carried` the
 // forces are known where they are. Returns whether it converged.
-bool solveStep(IslandStep& step, double effective_s, bool carried, const Iteration& how) {
-  ImplicitIsland& island = islandOf(step);
+bool solveStep(IslandStep& step, double effective_s, bool carried, const NewtonOptions& how) {
+  NewtonSystem& island = islandOf(step);
   StageClock clock(step.times);
   layOut(step, island);
-  island.moved = false;
+  island.trialIsAhead = false;
   if (island.step_s != effective_s || tetherStiffness(step, effective_s) != island.tether) island.factorised = false;
-  double residual = island.tooDense || carried ? 0.0 : findResidual(step, island, effective_s);
-  if (!island.tooDense && (carried || residual > kPredicted)) residual = beginCarried(step, island, effective_s, how, clock);
-  const double enough = std::clamp(how.enough * residual, 1.0, kMostLeft);
-  const bool wide = step.blocks.size() > kNarrowBlocks && !island.tooDense;
-  if (wide && !island.moved) residual = stay(step, island, effective_s, clock);
+  double residual = island.exceedsFill || carried ? 0.0 : findResidual(step, island, effective_s);
+  if (!island.exceedsFill && (carried || residual > kPredicted)) residual = beginPredicted(step, island, effective_s, how, clock);
+  const double enough = std::clamp(how.enough * residual, 1.0, kMaxLeft);
+  const bool wide = step.blocks.size() > kNarrowBlocks && !island.exceedsFill;
+  if (wide && !island.trialIsAhead) residual = stay(step, island, effective_s, clock);
   bool converged = wide && residual <= kPredicted;
-  int most = island.tooDense || converged ? 0 : kMostIterations;
+  int most = island.exceedsFill || converged ? 0 : kMaxIterations;
   bool slow = false;
   for (int iteration = 0; iteration < most; ++iteration) {
-    island.near = residual < how.near;
-    const ContactsNow now = contactsNow(step, island);
-    if (now.changed) most = std::min(how.mostContactIterations, iteration + kMostIterations);
+    island.useConsistentTangent = residual < how.near;
+    const ActiveSet now = activeSetNow(step, island);
+    if (now.changed) most = std::min(how.mostContactIterations, iteration + kMaxIterations);
     const bool old = iteration == 0 && island.directions >= kOldDirections * static_cast<double>(mostDirections(island));
     const bool stale = (slow || old) && (now.changed || now.slides || now.limited);
     const bool renewed = stale || !island.factorised;
-    if (renewed && !renewFactors(step, island, effective_s)) break;
+    if (renewed && !refactorise(step, island, effective_s)) break;
     const double before = residual;
-    const bool differs = island.near && (now.changed || now.slides || !island.factorTangents.empty());
+    const bool differs = island.useConsistentTangent && (now.changed || now.slides || !island.factorTangents.empty());
     if (!findCorrection(step, island, effective_s, kSolved * kResidual, differs) && !renewed) {
-      if (!renewFactors(step, island, effective_s)) break;
+      if (!refactorise(step, island, effective_s)) break;
       findCorrection(step, island, effective_s, kSolved * kResidual, differs);
     }
-    residual = takeCorrection(step, island, effective_s, enough, clock);
+    residual = searchLine(step, island, effective_s, enough, clock);
     slow = residual > kSlow * before;
     ++step.counters.implicitIterations;
     converged = residual <= enough;
@@ -346,7 +348,7 @@ bool solveStep(IslandStep& step, double effective_s, bool carried, const Iterati
 // Takes the state that was found, or goes back to the step's start.
 bool finishStep(IslandStep& step, bool taken) {
   StageClock clock(step.times);
-  ImplicitIsland& island = islandOf(step);
+  NewtonSystem& island = islandOf(step);
   island.forcesKnown = taken;
   if (taken) {
     accept(step, island);
@@ -366,34 +368,35 @@ bool stepImplicit(IslandStep& step, bool finerFollow) {
   if (!islandOf(step).forcesKnown && !carried)
     evaluateForces(step, step.simulation.state, step.simulation.state.velocity, 0.0, Memory::trial);
   if (step.simulation.scene.settings.method == Method::implicitEuler) {
-    foretellOneStep(step, effective_s);
+    predictEuler(step, effective_s);
   } else {
-    foretell(step, effective_s);
+    predictBdf2(step, effective_s);
   }
-  const Iteration& how = finerFollow ? kBeforeFiner : kInMotion;
+  const NewtonOptions& how = finerFollow ? kBeforeFiner : kInMotion;
   bool converged = solveStep(step, effective_s, carried, how);
-  for (int trial = 0; converged && trial < kMostMeetings; ++trial) {
+  for (int trial = 0; converged && trial < kMaxMeetings; ++trial) {
     StageClock clock(step.times);
-    const Meetings met = meetingsIn(step);
+    const FirstContact met = meetingsIn(step);
     clock.lap(Stage::candidates);
-    if (met == Meetings::atSpeed) return finishStep(step, false);
-    if (met == Meetings::none) break;
+    if (met == FirstContact::impact) return finishStep(step, false);
+    if (met == FirstContact::none) break;
     goBack(step);
     evaluateForces(step, step.simulation.state, step.simulation.state.velocity, 0.0, Memory::trial);
     converged = solveStep(step, effective_s, false, how);
   }
   // Where a frame begins a force or the hand may jump, which is no ringing.
   const bool jumps =
-      step.engine.clock[static_cast<std::size_t>(step.blocks.front())].forced && step.time_s == step.simulation.time_s;
-  if (converged && !jumps && step.simulation.scene.settings.method != Method::implicitEuler) noteRinging(step, effective_s);
+      step.engine.blockHistory[static_cast<std::size_t>(step.blocks.front())].forced && step.time_s == step.simulation.time_s;
+  if (converged && !jumps && step.simulation.scene.settings.method != Method::implicitEuler)
+    updateFrequencyEstimate(step, effective_s);
   return finishStep(step, converged);
 }
 
 bool stepFromRest(IslandStep& step, double effective_s) {
   step.drift_s = effective_s / kBdf2;
   evaluateForces(step, step.simulation.state, step.simulation.state.velocity, 0.0, Memory::trial);
-  foretellOneStep(step, effective_s);
-  Iteration how = step.blocks.size() > kNarrowBlocks ? kWideFromRest : kFromRest;
+  predictEuler(step, effective_s);
+  NewtonOptions how = step.blocks.size() > kNarrowBlocks ? kWideFromRest : kFromRest;
   how.mostContactIterations = std::max(how.mostContactIterations, static_cast<int>(step.blocks.size()));
   return finishStep(step, solveStep(step, effective_s, false, how));
 }

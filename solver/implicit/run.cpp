@@ -20,34 +20,35 @@ constexpr int kHandedBackSteps = 2;
 // Frames that rigid steps carry what has fallen before implicit ones are tried again.
 constexpr int kFallenFrames = 30;
 // Angle by which a block may turn in an implicit step, rad: the two-step formula turns along chords.
-constexpr double kMostTurn = 0.01;
+constexpr double kMaxTurn = 0.01;
 
 // Farthest that a corner may go in a step, in block heights: the energy of what goes over, faster and faster, grows in longer
 // ones. A block alone that glides gains none: only as far as its corners would go about an edge counts.
-constexpr double kMostWay = 0.04;
+constexpr double kMaxDisplacementPerStep = 0.04;
 
 // Steps of a frame in which no corner goes farther than that.
-int stepsForWay(const IslandStep& step) {
+int stepsForDisplacement(const IslandStep& step) {
   const Simulation& simulation = step.simulation;
-  const CornerArray& velocity = simulation.state.velocity;
+  const ParticleArray& velocity = simulation.state.velocity;
   const bool alone = step.blocks.size() == 1;
   const Vec3 glide = alone ? centre(velocity, static_cast<std::size_t>(step.blocks.front())) : Vec3::Zero();
   double fastest = 0.0;
   for (const std::int32_t block : step.blocks)
     fastest = std::max(fastest, fastestCorner(velocity, static_cast<std::size_t>(block), glide));
   if (alone) fastest *= 2.0;
-  const double steps = std::ceil(fastest * simulation.scene.settings.frame_s / (kMostWay * simulation.lengths.blockHeight_m));
-  return static_cast<int>(std::clamp(steps, 1.0, static_cast<double>(kMostRingingSteps)));
+  const double steps =
+      std::ceil(fastest * simulation.scene.settings.frame_s / (kMaxDisplacementPerStep * simulation.lengths.blockHeight_m));
+  return static_cast<int>(std::clamp(steps, 1.0, static_cast<double>(kMaxFrequencySteps)));
 }
 
 // Whether the island does so little that one step tells it as well as many.
-bool isCalm(const IslandStep& step) {
+bool isQuiescent(const IslandStep& step) {
   const Simulation& simulation = step.simulation;
-  const double most = calmSpeed(simulation);
+  const double most = quiescentSpeed(simulation);
   for (const std::int32_t block : step.blocks) {
     // What has just been let go of has no speed yet, and what explicit steps brought here may be at a bounce's turn.
     const auto b = static_cast<std::size_t>(block);
-    if (!(simulation.restTime_s[b] > 0.0) || step.engine.clock[b].explicitLast) return false;
+    if (!(simulation.restTime_s[b] > 0.0) || step.engine.blockHistory[b].explicitLast) return false;
     for (std::size_t a = 0; a < 3; ++a) {
       const double* v = simulation.state.velocity.values(a, b);
       for (std::size_t c = 0; c < kCorners; ++c) {
@@ -58,11 +59,12 @@ bool isCalm(const IslandStep& step) {
   return true;
 }
 
-// Whether it touches what sleeps: that wakes by how it is pushed, and would not by a rattle that few steps have damped.
-bool leansOnSleepers(const IslandStep& step) {
+// Whether the island touches a sleeping block. Sleepers wake on a change of contact force; with fewer than kImplicitSteps steps,
+// numerical damping would filter out the vibration that should wake them.
+bool touchesSleeping(const IslandStep& step) {
   return std::any_of(step.pairs.begin(), step.pairs.end(), [&](std::int32_t at) {
     const NearPair& pair = step.engine.pairs[static_cast<std::size_t>(at)];
-    return pair.b >= 0 && pair.manifold.touch != Touch::apart &&
+    return pair.b >= 0 && pair.manifold.touch != PairPhase::separated &&
            (sleeps(step.simulation, pair.a) || sleeps(step.simulation, pair.b));
   });
 }
@@ -71,33 +73,34 @@ bool leansOnSleepers(const IslandStep& step) {
 int implicitSteps(const IslandStep& step, bool forced, bool known, bool heap) {
   const Settings& settings = step.simulation.scene.settings;
   if (settings.substeps > 0) return settings.substeps;
-  const bool calm = isCalm(step) && !forced;
+  const bool calm = isQuiescent(step) && !forced;
   if (settings.method == Method::implicitEuler) return calm ? 1 : kImplicitSteps;
   std::int32_t present = 1;
   for (const std::int32_t block : step.blocks) {
-    const BlockClock& clock = step.engine.clock[static_cast<std::size_t>(block)];
+    const BlockHistory& clock = step.engine.blockHistory[static_cast<std::size_t>(block)];
     present = std::max(present, clock.implicitSteps);
-    known = known && clock.history_s > 0.0;
+    known = known && clock.lastImplicitStep_s > 0.0;
   }
   int least = forced ? kForcedSteps : 1;
-  if (!calm && leansOnSleepers(step)) least = kImplicitSteps;
-  if (!calm && !known) least = std::max(least, heap ? kHandedBackSteps : kMostRingingSteps);
-  if (!calm && !forced) least = std::max(least, stepsForWay(step));
-  const int steps = std::max(least, stepsForRinging(step, present));
-  for (const std::int32_t block : step.blocks) step.engine.clock[static_cast<std::size_t>(block)].implicitSteps = steps;
+  if (!calm && touchesSleeping(step)) least = kImplicitSteps;
+  if (!calm && !known) least = std::max(least, heap ? kHandedBackSteps : kMaxFrequencySteps);
+  if (!calm && !forced) least = std::max(least, stepsForDisplacement(step));
+  const int steps = std::max(least, stepsForFrequency(step, present));
+  for (const std::int32_t block : step.blocks) step.engine.blockHistory[static_cast<std::size_t>(block)].implicitSteps = steps;
   return steps;
 }
 
-// Steps that what is left of a frame takes where it does more than fewer were chosen for: where friction gives way at once all
-// along a block, not even those do.
-int finerSteps(double share, int steps) {
+// Step count for retrying the rest of the frame after Newton failed: 4 a frame, and 8 if 4 were already in use. Needed when a
+// whole face starts to slip at once.
+int retryStepCount(double share, int steps) {
   const auto of = [&](int frame) { return static_cast<int>(std::lround(share * frame)); };
-  return of(kImplicitSteps) > steps ? of(kImplicitSteps) : of(kMostRingingSteps);
+  return of(kImplicitSteps) > steps ? of(kImplicitSteps) : of(kMaxFrequencySteps);
 }
 
-// A force that has ended leaves another acceleration than that of the step before. One that begins has friction against it soon.
-void forgetSteps(IslandStep& step) {
-  for (const std::int32_t block : step.blocks) step.engine.clock[static_cast<std::size_t>(block)].history_s = 0.0;
+// Restarts BDF2 (drops the history) when an external force ends: acceleration jumps, and the history is wrong. Not when one
+// begins: friction balances it at first, so acceleration is continuous.
+void resetHistory(IslandStep& step) {
+  for (const std::int32_t block : step.blocks) step.engine.blockHistory[static_cast<std::size_t>(block)].lastImplicitStep_s = 0.0;
 }
 
 // The angular speed of a block is at most this, rad/s: how fast its mean edges change against their length.
@@ -122,7 +125,7 @@ void prepareImplicit(Simulation& simulation) {
   engine.target.resize(count);
   engine.stepVelocity.resize(count);
   engine.carriedMotion.resize(count);
-  engine.implicitIslands.resize(count);
+  engine.newtonSystems.resize(count);
   engine.nodeOf.assign(count, 0);
   if (isImplicit(simulation.scene.settings.method)) engine.rigidIslands.resize(count);
   if (simulation.scene.settings.method == Method::implicitEigen) engine.sparseFactors.resize(count);
@@ -130,17 +133,17 @@ void prepareImplicit(Simulation& simulation) {
 
 void setJacobians(IslandStep& step, double effective_s) {
   const BlockModel& model = step.simulation.model;
-  ImplicitIsland& island = step.engine.implicitIslands[static_cast<std::size_t>(step.blocks.front())];
+  NewtonSystem& island = step.engine.newtonSystems[static_cast<std::size_t>(step.blocks.front())];
   const auto fits = [&](std::size_t b, std::size_t kind) {
     return model.dimensions[b] == island.kinds[kind].dimensions && model.mass[b] == island.kinds[kind].mass;
   };
-  bool known = island.jacobianStep_s == effective_s && island.kindOf.size() == step.blocks.size();
+  bool known = island.jacobianStep_s == effective_s && island.blockClassOf.size() == step.blocks.size();
   for (std::size_t i = 0; known && i < step.blocks.size(); ++i) {
-    known = fits(static_cast<std::size_t>(step.blocks[i]), static_cast<std::size_t>(island.kindOf[i]));
+    known = fits(static_cast<std::size_t>(step.blocks[i]), static_cast<std::size_t>(island.blockClassOf[i]));
   }
   if (known) return;
   island.jacobianStep_s = effective_s;
-  island.kindOf.resize(step.blocks.size());
+  island.blockClassOf.resize(step.blocks.size());
   std::size_t count = 0;
   for (std::size_t i = 0; i < step.blocks.size(); ++i) {
     const auto b = static_cast<std::size_t>(step.blocks[i]);
@@ -150,21 +153,21 @@ void setJacobians(IslandStep& step, double effective_s) {
                                blockJacobian(model, step.simulation.scene.settings.inertia, b, 1.0 / (effective_s * effective_s),
                                              1.0 + step.simulation.dampingTime_s / effective_s)};
     }
-    island.kindOf[i] = static_cast<std::int32_t>(count - 1);
+    island.blockClassOf[i] = static_cast<std::int32_t>(count - 1);
   }
 }
 
 bool implicitStepsFit(const IslandStep& step, double step_s) {
   const Simulation& simulation = step.simulation;
   const bool touches = std::any_of(step.pairs.begin(), step.pairs.end(), [&](std::int32_t at) {
-    return step.engine.pairs[static_cast<std::size_t>(at)].manifold.touch != Touch::apart;
+    return step.engine.pairs[static_cast<std::size_t>(at)].manifold.touch != PairPhase::separated;
   });
   if (!touches || meetsSoon(step, step_s) || bounces(step, step_s)) return false;
   for (const std::int32_t block : step.blocks) {
     const auto b = static_cast<std::size_t>(block);
-    if (step.engine.clock[b].explicitFrames > 0) return false;
+    if (step.engine.blockHistory[b].explicitFrames > 0) return false;
     const double turning = turningSpeed(affineField(simulation.state.position, b), affineField(simulation.state.velocity, b));
-    if (turning * step_s > kMostTurn) return false;
+    if (turning * step_s > kMaxTurn) return false;
   }
   return true;
 }
@@ -175,10 +178,10 @@ IslandOutcome runImplicitSteps(IslandStep& step, bool heap, double& reached_s) {
   IslandOutcome outcome;
   const double frame_s = simulation.scene.settings.frame_s;
   reached_s = 0.0;
-  ImplicitIsland& island = engine.implicitIslands[static_cast<std::size_t>(step.blocks.front())];
+  NewtonSystem& island = engine.newtonSystems[static_cast<std::size_t>(step.blocks.front())];
   const bool forced = holdsTether(step) || isPushed(step);
-  const bool wasForced = engine.clock[static_cast<std::size_t>(step.blocks.front())].forced;
-  if (wasForced && !forced) forgetSteps(step);
+  const bool wasForced = engine.blockHistory[static_cast<std::size_t>(step.blocks.front())].forced;
+  if (wasForced && !forced) resetHistory(step);
   int steps = implicitSteps(step, forced, forced == wasForced, heap);
   bool fits = implicitStepsFit(step, frame_s / steps);
   if (!fits && steps < kImplicitSteps && simulation.scene.settings.substeps == 0) {
@@ -186,12 +189,12 @@ IslandOutcome runImplicitSteps(IslandStep& step, bool heap, double& reached_s) {
     fits = implicitStepsFit(step, frame_s / steps);
   }
   for (const std::int32_t block : step.blocks) {
-    BlockClock& clock = engine.clock[static_cast<std::size_t>(block)];
+    BlockHistory& clock = engine.blockHistory[static_cast<std::size_t>(block)];
     clock.explicitFrames = std::max(0, clock.explicitFrames - 1);
     clock.forced = forced;
   }
   // Where nothing has come or gone since, the forces are those that the last frame ended with.
-  const bool known = island.forcesKnown && !engine.regrouped && !wasForced && !forced;
+  const bool known = island.forcesKnown && !engine.topologyChanged && !wasForced && !forced;
   island.forcesKnown = false;
   if (!fits) return outcome;
   const auto takeSteps = [&](int count) {
@@ -206,7 +209,7 @@ IslandOutcome runImplicitSteps(IslandStep& step, bool heap, double& reached_s) {
   while (steps > 0) {
     step.time_s = simulation.time_s + reached_s;
     step.gravity = simulation.scene.gravity.at(step.time_s + step.drift_s);  // forces are those of the step's end
-    const int finer = finerSteps(1.0 - reached_s / frame_s, steps);
+    const int finer = retryStepCount(1.0 - reached_s / frame_s, steps);
     const bool finerFollow = finer > steps && simulation.scene.settings.substeps == 0 && !heap;
     if (!stepImplicit(step, finerFollow || heap)) {
       if (finerFollow) {
@@ -214,14 +217,14 @@ IslandOutcome runImplicitSteps(IslandStep& step, bool heap, double& reached_s) {
         continue;
       }
       for (const std::int32_t block : step.blocks)
-        engine.clock[static_cast<std::size_t>(block)].explicitFrames = heap ? kFallenFrames : kExplicitFrames;
+        engine.blockHistory[static_cast<std::size_t>(block)].explicitFrames = heap ? kFallenFrames : kExplicitFrames;
       return outcome;
     }
     ++outcome.substeps;
     --steps;
     reached_s = frame_s - steps * step.drift_s;
     const std::uint64_t looked = step.counters.manifoldRefreshes + step.counters.contactsBorn;
-    outcome.inside = updateContacts(step, renewalOfImplicitSteps(simulation));
+    outcome.inside = updateContacts(step, refreshTravelOfImplicitSteps(simulation));
     if (!outcome.inside) return outcome;
     if (looked != step.counters.manifoldRefreshes + step.counters.contactsBorn) {
       island.forcesKnown = false;

@@ -12,7 +12,7 @@ namespace {
 
 // Share of a swing's amplitude that the steps of a frame may take away. A kicked tower at 0.01 mm then keeps after 2 s within 13
 // % of what explicit steps leave it; with a hundredth within 27 %. At less than half of it fewer steps will do.
-constexpr double kMostDamping = 1.0 / 150.0;
+constexpr double kMaxDamping = 1.0 / 150.0;
 constexpr double kLittleDamping = 1.0 / 300.0;
 // Frames over which ringing is looked at: more than a quarter of a swing that asks for more than one step.
 constexpr double kFrames = 5.0;
@@ -27,7 +27,7 @@ double fourthPower(double value) {
 
 int stepsFor(double ringing, double damping) {
   const double steps = std::cbrt(ringing / (4.0 * damping));
-  return static_cast<int>(std::ceil(std::clamp(steps, 1.0, static_cast<double>(kMostRingingSteps))));
+  return static_cast<int>(std::ceil(std::clamp(steps, 1.0, static_cast<double>(kMaxFrequencySteps))));
 }
 
 // Distance that a calm block's corners go in a frame, in tolerances.
@@ -35,14 +35,14 @@ constexpr double kCalm = 0.1;
 
 }  // namespace
 
-double calmSpeed(const Simulation& simulation) {
+double quiescentSpeed(const Simulation& simulation) {
   return kCalm * simulation.tolerance_m / simulation.scene.settings.frame_s;
 }
 
 SPRINGTOWER_KERNEL
-void noteRinging(IslandStep& step, double effective_s) {
+void updateFrequencyEstimate(IslandStep& step, double effective_s) {
   Engine& engine = step.engine;
-  const CornerArray& velocity = step.simulation.state.velocity;
+  const ParticleArray& velocity = step.simulation.state.velocity;
   const double frame_s = step.simulation.scene.settings.frame_s;
   const double share = step.drift_s / (kFrames * frame_s);
   const double rate = 1.0 / (step.drift_s * step.drift_s);
@@ -50,8 +50,8 @@ void noteRinging(IslandStep& step, double effective_s) {
   const double fastest = fourthPower(kFastestTurn / frame_s);
   for (const std::int32_t block : step.blocks) {
     const auto b = static_cast<std::size_t>(block);
-    BlockClock& clock = engine.clock[b];
-    if (!(clock.history_s > 0.0)) continue;
+    BlockHistory& clock = engine.blockHistory[b];
+    if (!(clock.lastImplicitStep_s > 0.0)) continue;
     double jerk[kCorners] = {};
     double speed[kCorners] = {};
     for (std::size_t a = 0; a < 3; ++a) {
@@ -75,19 +75,19 @@ void noteRinging(IslandStep& step, double effective_s) {
   }
 }
 
-int stepsForRinging(const IslandStep& step, int present) {
+int stepsForFrequency(const IslandStep& step, int present) {
   const Simulation& simulation = step.simulation;
   const double frame_s = simulation.scene.settings.frame_s;
-  const double calm = calmSpeed(simulation);
+  const double calm = quiescentSpeed(simulation);
   double jerk = 0.0;
   double motion = 0.0;
   for (const std::int32_t block : step.blocks) {
     const auto b = static_cast<std::size_t>(block);
-    jerk += step.engine.clock[b].jerk;
-    motion += step.engine.clock[b].motion + simulation.model.mass[b] * static_cast<double>(kCorners) * calm * calm;
+    jerk += step.engine.blockHistory[b].jerk;
+    motion += step.engine.blockHistory[b].motion + simulation.model.mass[b] * static_cast<double>(kCorners) * calm * calm;
   }
   const double ringing = fourthPower(frame_s) * jerk / motion;  // (w T)^4
-  return std::clamp(present, stepsFor(ringing, kMostDamping), stepsFor(ringing, kLittleDamping));
+  return std::clamp(present, stepsFor(ringing, kMaxDamping), stepsFor(ringing, kLittleDamping));
 }
 
 }  // namespace springtower

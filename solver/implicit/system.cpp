@@ -17,7 +17,7 @@ namespace {
 
 // Products of 12 x 12 blocks that a factorisation may take: some 3 s of one thread, and a list of 120 MB. A tower of 18 rows
 // takes 800, a wall of 5000 blocks 340,000, a hundred layers deep solid of 5000 blocks 6 million.
-constexpr std::size_t kMostProducts = 30'000'000;
+constexpr std::size_t kMaxFillProducts = 30'000'000;
 // Products, over those that it was found for, from which on an order of elimination is found anew.
 constexpr double kWorseOrder = 1.25;
 
@@ -109,10 +109,10 @@ SPRINGTOWER_INLINE void addProduct(double factor, const Weights& p, const Weight
 }
 
 SPRINGTOWER_KERNEL
-void addManifold(const IslandStep& step, ImplicitIsland& island, std::size_t at, double step_s) {
+void addManifold(const IslandStep& step, NewtonSystem& island, std::size_t at, double step_s) {
   const Engine& engine = step.engine;
   const Manifold& m = engine.pairs[static_cast<std::size_t>(island.touching[at])].manifold;
-  const ContactMask mask = island.mask[at];
+  const ActiveSetBits mask = island.mask[at];
   if ((mask & 0xFFU) == 0) return;
   const auto upper = static_cast<std::size_t>(m.upper);
   const BlockFrame& frameUpper = engine.frames[upper];
@@ -158,7 +158,7 @@ void addManifold(const IslandStep& step, ImplicitIsland& island, std::size_t at,
 }
 
 // Adds the hand's springs on its block; of those at their limit what is symmetric and takes nothing away.
-void addTether(const IslandStep& step, ImplicitIsland& island, double step_s) {
+void addTether(const IslandStep& step, NewtonSystem& island, double step_s) {
   const Simulation& simulation = step.simulation;
   TetherMatrix resistance =
       tetherResistance(simulation.tether, simulation.model, simulation.state, step.time_s + step.drift_s, step_s);
@@ -196,13 +196,13 @@ bool isCoupled(const IslandStep& step, const Manifold& m) {
 }
 
 // Fills island.touching, and island.edges with the nodes that these pairs couple.
-void findEdges(const IslandStep& step, ImplicitIsland& island) {
+void findEdges(const IslandStep& step, NewtonSystem& island) {
   const Engine& engine = step.engine;
   island.edges.clear();
   island.touching.clear();
   for (const std::int32_t at : step.pairs) {
     const Manifold& m = engine.pairs[static_cast<std::size_t>(at)].manifold;
-    if (m.touch == Touch::apart) continue;
+    if (m.touch == PairPhase::separated) continue;
     island.touching.push_back(at);
     if (!isCoupled(step, m)) continue;
     island.edges.push_back({engine.nodeOf[static_cast<std::size_t>(m.upper)], engine.nodeOf[static_cast<std::size_t>(m.lower)]});
@@ -210,11 +210,11 @@ void findEdges(const IslandStep& step, ImplicitIsland& island) {
 }
 
 // From the bottom up, or by dissection where less fills in.
-void chooseOrder(ImplicitIsland& island) {
+void chooseOrder(NewtonSystem& island) {
   orderBottomUp(island.order);
   if (island.order.centre.size() <= kNarrowBlocks) return;
-  const bool fits = findPattern(island.order.nodes, island.edges, kMostProducts, island.matrix);
-  const std::size_t products = fits ? island.matrix.products : kMostProducts + 1;
+  const bool fits = findPattern(island.order.nodes, island.edges, kMaxFillProducts, island.matrix);
+  const std::size_t products = fits ? island.matrix.products : kMaxFillProducts + 1;
   orderByDissection(island.edges, island.order);
   if (!findPattern(island.order.nodes, island.edges, products - 1, island.matrix)) orderBottomUp(island.order);
 }
@@ -222,11 +222,11 @@ void chooseOrder(ImplicitIsland& island) {
 // Lays out the matrix for island.edges; false where it would take too many products. A wide island keeps its order of elimination
 // while its blocks are the same, and all of the layout where the edges are among those that it has room for: contacts come
 // and go far more often than what is best to be eliminated first changes. `members` is a hash of the blocks.
-bool layOutMatrix(const IslandStep& step, ImplicitIsland& island, std::uint64_t members) {
+bool layOutMatrix(const IslandStep& step, NewtonSystem& island, std::uint64_t members) {
   BlockCholesky& matrix = island.matrix;
   const bool known = island.members == members && step.blocks.size() > kNarrowBlocks;
   if (known && holds(matrix, island.edges)) return true;
-  if (known && analyse(island.order.nodes, island.edges, kMostProducts, matrix) &&
+  if (known && analyse(island.order.nodes, island.edges, kMaxFillProducts, matrix) &&
       static_cast<double>(matrix.products) <= kWorseOrder * static_cast<double>(island.orderProducts))
     return true;
   island.members = 0;
@@ -234,13 +234,13 @@ bool layOutMatrix(const IslandStep& step, ImplicitIsland& island, std::uint64_t 
   for (const std::int32_t block : step.blocks)
     island.order.centre.push_back(centre(step.simulation.state.position, static_cast<std::size_t>(block)));
   chooseOrder(island);
-  if (!analyse(island.order.nodes, island.edges, kMostProducts, matrix)) return false;
+  if (!analyse(island.order.nodes, island.edges, kMaxFillProducts, matrix)) return false;
   island.members = members;
   island.orderProducts = matrix.products;
   return true;
 }
 
-void findSlots(const IslandStep& step, ImplicitIsland& island) {
+void findSlots(const IslandStep& step, NewtonSystem& island) {
   const Engine& engine = step.engine;
   island.slot.clear();
   for (const std::int32_t at : island.touching) {
@@ -261,7 +261,7 @@ std::array<double, kAffine> weightsAt(const BlockFrame& frame, const Vec3& place
   return weights;
 }
 
-void layOut(IslandStep& step, ImplicitIsland& island) {
+void layOut(IslandStep& step, NewtonSystem& island) {
   Engine& engine = step.engine;
   const std::vector<std::uint8_t>& asleep = step.simulation.asleep;
   Hash hash;
@@ -269,7 +269,7 @@ void layOut(IslandStep& step, ImplicitIsland& island) {
   const std::uint64_t members = hash.value();
   for (const std::int32_t at : step.pairs) {
     const Manifold& m = engine.pairs[static_cast<std::size_t>(at)].manifold;
-    if (m.touch == Touch::apart) continue;
+    if (m.touch == PairPhase::separated) continue;
     hash.word(static_cast<std::uint64_t>(m.upper) << 32U | static_cast<std::uint32_t>(m.lower));
     hash.word(static_cast<std::uint64_t>(at));
     if (m.lower >= 0) {
@@ -286,8 +286,8 @@ void layOut(IslandStep& step, ImplicitIsland& island) {
   island.pattern = pattern;
   island.factorised = false;
   if (!engine.sparseFactors.empty()) engine.sparseFactors[firstBlock(step)].analysed = false;
-  island.tooDense = !layOutMatrix(step, island, members);
-  if (island.tooDense) return;
+  island.exceedsFill = !layOutMatrix(step, island, members);
+  if (island.exceedsFill) return;
   findSlots(step, island);
   island.mask.assign(island.touching.size(), 0);
   island.axes.resize(count);
@@ -309,7 +309,7 @@ bool isTetherLimited(const IslandStep& step) {
   return holdsTether(step) && (now.limited || now.acrossLimited || now.turnLimited);
 }
 
-bool assemble(IslandStep& step, ImplicitIsland& island, double step_s) {
+bool assemble(IslandStep& step, NewtonSystem& island, double step_s) {
   clear(island.matrix);
   for (std::size_t i = 0; i < step.blocks.size(); ++i) {
     island.axes[i] = axesOf(step.engine.frames[static_cast<std::size_t>(step.blocks[i])].place);
@@ -333,7 +333,7 @@ bool assemble(IslandStep& step, ImplicitIsland& island, double step_s) {
   return island.factorised;
 }
 
-void solve(IslandStep& step, ImplicitIsland& island) {
+void solve(IslandStep& step, NewtonSystem& island) {
   std::vector<SparseFactors>& sparse = step.engine.sparseFactors;
   if (sparse.empty()) {
     solve(island.matrix, island.affine);

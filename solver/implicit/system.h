@@ -1,7 +1,7 @@
 #pragma once
 
 #include "solver/block/affine.h"
-#include "solver/world/implicit_island.h"
+#include "solver/world/newton_system.h"
 
 #include <array>
 
@@ -13,7 +13,7 @@ struct IslandStep;
 std::array<double, kAffine> weightsAt(const BlockFrame& frame, const Vec3& place);
 
 /// Lays out the matrix anew where blocks have begun or ceased to touch, unless the island is too dense.
-void layOut(IslandStep& step, ImplicitIsland& island);
+void layOut(IslandStep& step, NewtonSystem& island);
 
 /// The hand's springs on the island's block, wherever the hand is. `step_s` as in `assemble`.
 TetherStiffness tetherStiffness(const IslandStep& step, double step_s);
@@ -23,10 +23,10 @@ bool isTetherLimited(const IslandStep& step);
 
 /// Assembles and factorises for contacts that stand as `mask` says. `step_s` is the step times the method's factor. Returns false
 /// where the matrix is not positive definite.
-bool assemble(IslandStep& step, ImplicitIsland& island, double step_s);
+bool assemble(IslandStep& step, NewtonSystem& island, double step_s);
 
 /// Solves for island.affine in place with the factors at hand: forces (N) in, displacements (m) out, in the world's frame, by
 /// node. Precondition: island.factorised.
-void solve(IslandStep& step, ImplicitIsland& island);
+void solve(IslandStep& step, NewtonSystem& island);
 
 }  // namespace springtower

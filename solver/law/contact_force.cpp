@@ -11,8 +11,8 @@ namespace springtower {
 
 namespace {
 
-constexpr double kLeastRelaxingRatio = 1e-9;  // stands for none: no branch, no lag
-constexpr double kLeastShare = 1e-30;         // of friction, left to a point that slides unpressed: that it slides must be seen
+constexpr double kMinRelaxingRatio = 1e-9;  // stands for none: no branch, no lag
+constexpr double kMinShare = 1e-30;         // of friction, left to a point that slides unpressed: that it slides must be seen
 
 // Inverse mass of a point of a face whose four points are pushed alike, over that of the block: 4 (1 + 3), as it moves and
 // squashes.
@@ -55,9 +55,9 @@ SPRINGTOWER_INLINE void pointLaw(const LawStep& s, const Lanes& depth, const Lan
   const ContactLaw& law = s.law;
   const Lanes closing = -(relative[0] * normal[0] + relative[1] * normal[1] + relative[2] * normal[2]);
 
-  // A point that is reached in this step starts with no force: its offset is the depth it is found at (or, seen from a step's
-  // end, the surface), so it adds no energy. It is stiffened so that its impact stops within the depth aimed at. The offset
-  // shrinks as the point lifts, where it stores nothing.
+  // First contact: the offset is the depth when it is detected (explicit steps) or 0 (implicit steps), so the spring starts
+  // unloaded and adds no energy. Stiffness is multiplied so that the impact at the present closing speed stops within the impact
+  // depth. The offset shrinks with the depth as the point lifts, where the spring stores nothing.
   const LaneMask touching = (depth > zero) & (inUse > zero);
   const LaneMask known = touching & (p.live > zero);
   Lanes impact = s.impactFactor * closing * closing;
@@ -70,12 +70,12 @@ SPRINGTOWER_INLINE void pointLaw(const LawStep& s, const Lanes& depth, const Lan
   const Lanes elastic = depth - p.offset;
   const Lanes relaxed = p.relaxed + (elastic - p.relaxed) * s.relaxGain;
   const Lanes pushedOut =
-      elastic * (1.0 + 1.0 / std::max(law.relaxingRatio, kLeastRelaxingRatio));  // beyond this the branch would pull
+      elastic * (1.0 + 1.0 / std::max(law.relaxingRatio, kMinRelaxingRatio));  // beyond this the branch would pull
   p.relaxed = known ? (relaxed < pushedOut ? relaxed : pushedOut) : zero;
   const Lanes stiffness = s.stiffness * p.scale;
-  // Seen from a step's end, a point that is reached in the step has been pressed for a part of it: its dashpot has closed by no
-  // more than its depth, and no jump at the surface keeps the step from a solution. (Where such points begin to push at the depth
-  // they are found at, as in other steps, they do not push yet.)
+  // Implicit steps only: a point that makes contact inside the step has been closing for a part of it. Its damping velocity is
+  // limited to depth / step; otherwise the damping force would jump at zero depth, and the step equation might have no solution.
+  // (In explicit steps such a point has no elastic depth yet, so no force.)
   const Lanes damped = known | (depth > closing * s.step.advance_s) ? closing : depth * s.perAdvance;
   Lanes push = stiffness * (elastic + law.relaxingRatio * (elastic - p.relaxed) + law.dampingTime_s * damped);
   push = touching & (push > zero) & (elastic > zero) ? push : zero;
@@ -121,7 +121,7 @@ SPRINGTOWER_INLINE void pointLaw(const LawStep& s, const Lanes& depth, const Lan
   Lanes size;
   squareRoot(squared, size);
   const Lanes keep = slides ? law.kineticFriction * push / size : one;
-  p.sliding = slides & touching ? (keep > kLeastShare ? keep : zero + kLeastShare) : zero;
+  p.sliding = slides & touching ? (keep > kMinShare ? keep : zero + kMinShare) : zero;
   // What slips frees a little of the offset; friction's own loss pays for the work.
   Lanes stretchSize;
   squareRoot(stretch[0] * stretch[0] + stretch[1] * stretch[1] + stretch[2] * stretch[2], stretchSize);
@@ -290,7 +290,7 @@ SPRINGTOWER_INLINE void edgeForces(const Manifold& m, const ContactSide& upper, 
 SPRINGTOWER_INLINE void evaluate(const Manifold& m, const ContactSide& upper, const ContactSide& lower, const LawStep& law,
                                  PointMemory* keep, PairForce& result, PointForces* report) {
   const bool same = upper.carried == upper.motion;
-  if (m.touch == Touch::edge) {
+  if (m.touch == PairPhase::edge) {
     edgeForces(m, upper, lower, law, keep, result, report);
   } else if (m.lower < 0) {
     same ? faceForces<true, true>(m, upper, lower, law, keep, result, report)

@@ -32,7 +32,7 @@ inline constexpr double kBornError = 1e-6;
 /// Swept boxes are grown by this, for what contacts may add to the motion foreseen.
 inline constexpr double kSweepMargin = 0.1;
 /// A block whose corners move apart by more than this share of its least side in one step has diverged.
-inline constexpr double kMostTravelPerStep = 0.5;
+inline constexpr double kMaxTravelPerStep = 0.5;
 
 /// The scene's own scale, and the sizes above in metres.
 struct Lengths {

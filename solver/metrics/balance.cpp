@@ -6,7 +6,7 @@ namespace springtower {
 
 std::vector<UserPush> userPushes(const Simulation& simulation) {
   std::vector<UserPush> pushes;
-  const CornerArray& position = simulation.state.position;
+  const ParticleArray& position = simulation.state.position;
   for (const UserForce& user : simulation.scene.forces) {
     if (user.start_s >= simulation.time_s || user.end_s < simulation.time_s) continue;
     const auto block = static_cast<std::size_t>(user.block);

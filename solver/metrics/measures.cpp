@@ -18,7 +18,7 @@ double turnTrace(const FittedBox& from, const FittedBox& to) {
 }
 
 // The axis of a block that is nearest to the vertical.
-std::size_t uprightAxis(const CornerArray& position, std::size_t block) {
+std::size_t uprightAxis(const ParticleArray& position, std::size_t block) {
   std::size_t upright = 0;
   double best = -1.0;
   for (std::size_t a = 0; a < 3; ++a) {
@@ -37,7 +37,7 @@ struct Interval {
   double low;
   double high;
 };
-Interval bounds(const CornerArray& position, std::size_t block, std::size_t axis) {
+Interval bounds(const ParticleArray& position, std::size_t block, std::size_t axis) {
   const auto [low, high] = std::minmax_element(position.values(axis, block), position.values(axis, block) + kCorners);
   return {*low, *high};
 }
@@ -48,14 +48,14 @@ bool overlap(const Interval& a, const Interval& b) {
 
 }  // namespace
 
-std::vector<FittedBox> fittedBoxes(const CornerArray& position) {
+std::vector<FittedBox> fittedBoxes(const ParticleArray& position) {
   std::vector<FittedBox> boxes;
   boxes.reserve(position.blockCount());
   for (std::size_t b = 0; b < position.blockCount(); ++b) boxes.push_back(fittedBox(position, b));
   return boxes;
 }
 
-Standing standing(const BlockModel& model, std::span<const FittedBox> start, const CornerArray& position,
+Standing standing(const BlockModel& model, std::span<const FittedBox> start, const ParticleArray& position,
                   std::span<const std::uint8_t> leftOut) {
   static const double leastTrace = 1.0 + 2.0 * std::cos(kFallTurn_deg / kDegreesPerRadian);
   for (std::size_t b = 0; b < position.blockCount(); ++b) {
@@ -89,8 +89,8 @@ std::string describe(const Standing& standing) {
   return "all blocks stand";
 }
 
-CornerArray closedRows(const CornerArray& start, std::span<const int> row, bool floor) {
-  CornerArray closed = start;
+ParticleArray stackedReference(const ParticleArray& start, std::span<const int> row, bool floor) {
+  ParticleArray closed = start;
   std::vector<std::size_t> order(start.blockCount());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return row[a] < row[b]; });
@@ -123,7 +123,7 @@ CornerArray closedRows(const CornerArray& start, std::span<const int> row, bool 
   return closed;
 }
 
-std::vector<BlockId> bottomRow(const BlockModel& model, const CornerArray& start, std::span<const int> row) {
+std::vector<BlockId> bottomRow(const BlockModel& model, const ParticleArray& start, std::span<const int> row) {
   std::vector<BlockId> blocks;
   for (std::size_t b = 0; b < row.size(); ++b) {
     if (row[b] == 0) blocks.push_back(blockId(b));
@@ -137,7 +137,7 @@ std::vector<BlockId> bottomRow(const BlockModel& model, const CornerArray& start
   return blocks;
 }
 
-double meanRowCompression(const BlockModel& model, const CornerArray& start, const CornerArray& position,
+double meanRowCompression(const BlockModel& model, const ParticleArray& start, const ParticleArray& position,
                           std::span<const BlockId> blocks) {
   if (blocks.empty()) return 0.0;
   double lost = 0.0;
@@ -149,7 +149,7 @@ double meanRowCompression(const BlockModel& model, const CornerArray& start, con
   return lost / static_cast<double>(blocks.size());
 }
 
-double maxStrain(const BlockModel& model, const CornerArray& position) {
+double maxStrain(const BlockModel& model, const ParticleArray& position) {
   // Extremes of (length / rest length)^2, so that one square root is enough.
   double least = 1.0;
   double most = 1.0;
@@ -179,7 +179,7 @@ double maxStrain(const BlockModel& model, const CornerArray& position) {
   return std::max(std::sqrt(most) - 1.0, 1.0 - std::sqrt(least));
 }
 
-double largestCornerMove(const CornerArray& reference, const CornerArray& position) {
+double largestCornerMove(const ParticleArray& reference, const ParticleArray& position) {
   double largest = 0.0;
   for (std::size_t i = 0; i < position.component[0].size(); ++i) {
     const double dx = position.component[0][i] - reference.component[0][i];
@@ -190,7 +190,7 @@ double largestCornerMove(const CornerArray& reference, const CornerArray& positi
   return std::sqrt(largest);
 }
 
-double rootMeanSquareCornerSpeed(const CornerArray& velocity) {
+double rootMeanSquareCornerSpeed(const ParticleArray& velocity) {
   const std::size_t corners = velocity.component[0].size();
   if (corners == 0) return 0.0;
   double sum = 0.0;
@@ -200,7 +200,7 @@ double rootMeanSquareCornerSpeed(const CornerArray& velocity) {
   return std::sqrt(sum / static_cast<double>(corners));
 }
 
-double topHeight(const CornerArray& position) {
+double topHeight(const ParticleArray& position) {
   if (position.blockCount() == 0) return 0.0;
   double top = -std::numeric_limits<double>::infinity();
   for (std::size_t b = 0; b < position.blockCount(); ++b) {
@@ -210,7 +210,7 @@ double topHeight(const CornerArray& position) {
   return top;
 }
 
-double topHeightError(const CornerArray& closed, const CornerArray& position) {
+double topHeightError(const ParticleArray& closed, const ParticleArray& position) {
   return topHeight(position) - topHeight(closed);
 }
 

@@ -15,7 +15,7 @@ using Pair = PenetrationWorkspace::Pair;
 // Cross products of edges closer to parallel than this (sine of the angle) have no direction worth testing.
 constexpr double kParallelSine = 1e-6;
 
-Corners corners(const CornerArray& position, std::size_t block, std::size_t axis) {
+Corners corners(const ParticleArray& position, std::size_t block, std::size_t axis) {
   return Eigen::Map<const Corners>(position.values(axis, block));
 }
 
@@ -23,7 +23,7 @@ Corners corners(const CornerArray& position, std::size_t block, std::size_t axis
 struct Hull {
   std::array<Corners, 3> component;
 
-  Hull(const CornerArray& position, std::size_t block)
+  Hull(const ParticleArray& position, std::size_t block)
       : component{corners(position, block, 0), corners(position, block, 1), corners(position, block, 2)} {}
   [[nodiscard]] Corners along(const Vec3& axis) const {
     return axis.x() * component[0] + axis.y() * component[1] + axis.z() * component[2];
@@ -41,7 +41,7 @@ double boxOverlap(const Bounds& a, const Bounds& b) {
   return (a.high - b.low).cwiseMin(b.high - a.low).minCoeff();
 }
 
-void findBounds(const CornerArray& position, std::vector<Bounds>& bounds) {
+void findBounds(const ParticleArray& position, std::vector<Bounds>& bounds) {
   bounds.resize(position.blockCount());
   for (std::size_t b = 0; b < bounds.size(); ++b) {
     for (std::size_t a = 0; a < 3; ++a) {
@@ -103,7 +103,7 @@ void findPairs(PenetrationWorkspace& workspace) {
 
 }  // namespace
 
-double overlapDepth(const CornerArray& position, std::size_t first, std::size_t second, double worth) {
+double overlapDepth(const ParticleArray& position, std::size_t first, std::size_t second, double worth) {
   const Hull a(position, first);
   const Hull b(position, second);
   const FittedBox boxA = fittedBox(position, first);
@@ -132,7 +132,7 @@ double overlapDepth(const CornerArray& position, std::size_t first, std::size_t 
   return depth;
 }
 
-Penetration maxPenetration(const CornerArray& position, bool floor, PenetrationWorkspace& workspace) {
+Penetration maxPenetration(const ParticleArray& position, bool floor, PenetrationWorkspace& workspace) {
   Penetration deepest;
   if (position.blockCount() == 0) return deepest;
   findBounds(position, workspace.bounds);

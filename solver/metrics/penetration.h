@@ -39,11 +39,11 @@ struct PenetrationWorkspace {
 /// is never less than the true depth of the two convex hulls; it is that depth when the blocks are undeformed cuboids (separating
 /// axis theorem; Gottschalk, Lin & Manocha 1996). A result of at most `worth` may be returned early and is then only known to be
 /// at most `worth`.
-double overlapDepth(const CornerArray& position, std::size_t first, std::size_t second, double worth = 0.0);
+double overlapDepth(const ParticleArray& position, std::size_t first, std::size_t second, double worth = 0.0);
 
 /// The deepest penetration among all pairs of blocks and, with a floor, of blocks below z = 0; from geometry alone, without any
 /// slop. Near pairs come from one sort and sweep; only those are tested in full whose bounding boxes overlap by more than the
 /// deepest pair found so far.
-Penetration maxPenetration(const CornerArray& position, bool floor, PenetrationWorkspace& workspace);
+Penetration maxPenetration(const ParticleArray& position, bool floor, PenetrationWorkspace& workspace);
 
 }  // namespace springtower

@@ -26,7 +26,7 @@ struct Path {
   Path(const IslandStep& step, std::int32_t b) : block(b), moves(step.simulation.asleep[static_cast<std::size_t>(b)] == 0) {
     const auto at = static_cast<std::size_t>(b);
     const ReportState& report = step.engine.report;
-    const CornerArray& lies = step.simulation.state.position;
+    const ParticleArray& lies = step.simulation.state.position;
     from = cornersOf(moves ? report.from : lies, at);
     to = cornersOf(moves ? report.to : lies, at);
     low = cornersOf(moves ? report.low : lies, at);

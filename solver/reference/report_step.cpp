@@ -11,7 +11,7 @@ namespace springtower {
 
 namespace {
 
-void addToCorners(CornerArray& force, const ReportSide& side, const Vec3& total) {
+void addToCorners(ParticleArray& force, const ReportSide& side, const Vec3& total) {
   for (std::size_t i = 0; i < side.corner.size(); ++i) {
     force.add(static_cast<std::size_t>(side.block), static_cast<std::size_t>(side.corner[i]), side.weight[i] * total);
   }

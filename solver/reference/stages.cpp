@@ -7,8 +7,8 @@
 
 namespace springtower {
 
-void stageAcceleration(IslandStep& step, const MotionState& source, const CornerArray& carried, double advance_s, bool commit,
-                       CornerArray& acceleration) {
+void stageAcceleration(IslandStep& step, const MotionState& source, const ParticleArray& carried, double advance_s, bool commit,
+                       ParticleArray& acceleration) {
   evaluateForces(step, source, carried, advance_s, commit ? Memory::advance : Memory::drop);
   StageClock clock(step.times);
   for (const std::int32_t block : step.blocks) {
@@ -20,8 +20,8 @@ void stageAcceleration(IslandStep& step, const MotionState& source, const Corner
   clock.lap(Stage::integration);
 }
 
-void advanceStage(const IslandStep& step, const MotionState& base, const CornerArray& velocity, const CornerArray& acceleration,
-                  double duration_s, MotionState& destination) {
+void advanceStage(const IslandStep& step, const MotionState& base, const ParticleArray& velocity,
+                  const ParticleArray& acceleration, double duration_s, MotionState& destination) {
   StageClock clock(step.times);
   for (const std::int32_t block : step.blocks) {
     const auto b = static_cast<std::size_t>(block);
@@ -43,7 +43,7 @@ void advanceStage(const IslandStep& step, const MotionState& base, const CornerA
   clock.lap(Stage::integration);
 }
 
-void copyCorners(const IslandStep& step, const CornerArray& from, CornerArray& to) {
+void copyCorners(const IslandStep& step, const ParticleArray& from, ParticleArray& to) {
   for (const std::int32_t block : step.blocks) {
     const auto b = static_cast<std::size_t>(block);
     for (std::size_t a = 0; a < 3; ++a) std::copy(from.values(a, b), from.values(a, b) + kCorners, to.values(a, b));

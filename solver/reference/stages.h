@@ -8,16 +8,16 @@ namespace springtower {
 // memory is advanced from the step's start to a stage with the velocities that carried the stage's positions there.
 
 /// Evaluates forces at `source` and stores the accelerations of the island's corners in `acceleration`.
-void stageAcceleration(IslandStep& step, const MotionState& source, const CornerArray& carried, double advance_s, bool commit,
-                       CornerArray& acceleration);
+void stageAcceleration(IslandStep& step, const MotionState& source, const ParticleArray& carried, double advance_s, bool commit,
+                       ParticleArray& acceleration);
 
 /// destination = base + duration (rate of position, rate of velocity), for the island's blocks (report Eq. 4.5 with separate
 /// rates).
-void advanceStage(const IslandStep& step, const MotionState& base, const CornerArray& velocity, const CornerArray& acceleration,
-                  double duration_s, MotionState& destination);
+void advanceStage(const IslandStep& step, const MotionState& base, const ParticleArray& velocity,
+                  const ParticleArray& acceleration, double duration_s, MotionState& destination);
 
 /// Copies values of the corners of the island's blocks.
-void copyCorners(const IslandStep& step, const CornerArray& from, CornerArray& to);
+void copyCorners(const IslandStep& step, const ParticleArray& from, ParticleArray& to);
 
 /// Notes the positions the step starts from in engine.previous.
 void rememberPositions(IslandStep& step);

@@ -54,7 +54,7 @@ struct Share {
   double all;  // of the three directions together
 };
 
-SPRINGTOWER_INLINE void shareOf(const ImpulseBody& body, const Lanes& normal, Share& share) {
+SPRINGTOWER_INLINE void shareOf(const SolverBody& body, const Lanes& normal, Share& share) {
   Lanes twice;
   crossLanes(share.arm, normal, share.lever);
   timesLanes(body.inverseInertia, share.lever, share.turn);
@@ -65,7 +65,7 @@ SPRINGTOWER_INLINE void shareOf(const ImpulseBody& body, const Lanes& normal, Sh
 }
 
 // What the point did in the step before, to start from.
-SPRINGTOWER_INLINE void recallImpulse(const Manifold& m, std::size_t i, double step_s, ImpulsePoint& p) {
+SPRINGTOWER_INLINE void recallImpulse(const Manifold& m, std::size_t i, double step_s, ContactConstraint& p) {
   p.push = step_s * m.relaxed[i];
   const Lanes friction = {m.stretchX[i], m.stretchY[i], m.stretchZ[i], 0.0};
   p.idle = !(p.push > 0.0);
@@ -75,17 +75,17 @@ SPRINGTOWER_INLINE void recallImpulse(const Manifold& m, std::size_t i, double s
 
 struct Mover {
   std::int32_t at;
-  const ImpulseBody& body;
+  const SolverBody& body;
   Lanes centre;
 };
 
 SPRINGTOWER_INLINE void addPoints(const Manifold& m, const Mover& upper, const Mover& lower, const BlockFrame& upperFrame,
                                   const BlockFrame* lowerFrame, const Simulation& simulation, double step_s, std::int32_t pair,
-                                  std::vector<ImpulsePoint>& points) {
+                                  std::vector<ContactConstraint>& points) {
   const auto count = static_cast<std::size_t>(m.count);
   for (std::size_t first = 0; first < count; first += 4) {
     Places places;
-    if (m.touch == Touch::edge) {
+    if (m.touch == PairPhase::edge) {
       edgePlaces(m, upperFrame.place, lowerFrame->place, places);
     } else {
       facePlaces(m, upperFrame.place, lowerFrame, first, places);
@@ -93,7 +93,7 @@ SPRINGTOWER_INLINE void addPoints(const Manifold& m, const Mover& upper, const M
     for (std::size_t i = first; i < std::min(count, first + 4); ++i) {
       const std::size_t lane = i - first;
       points.emplace_back();
-      ImpulsePoint& p = points.back();
+      ContactConstraint& p = points.back();
       p.normal = Lanes{places.normal[0], places.normal[1], places.normal[2], 0.0};
       const Lanes place = {places.middle[0][lane], places.middle[1][lane], places.middle[2][lane], 0.0};
       Share up, low;
@@ -143,9 +143,9 @@ void gatherPoints(IslandStep& step, RigidIsland& island, bool again) {
     }
     return Mover{at, island.movers[static_cast<std::size_t>(at)], centre};
   };
-  for (const std::int32_t at : step.watched) {
+  for (const std::int32_t at : step.activePairs) {
     const Manifold& m = engine.pairs[static_cast<std::size_t>(at)].manifold;
-    if (m.touch == Touch::apart) continue;
+    if (m.touch == PairPhase::separated) continue;
     if (known != island.known.end() && known->pair == at) {
       for (; known != island.known.end() && known->pair == at; ++known) {
         island.points.push_back(*known);
@@ -162,7 +162,7 @@ void gatherPoints(IslandStep& step, RigidIsland& island, bool again) {
 
 void keepPoints(IslandStep& step, const RigidIsland& island) {
   const double inverse = 1.0 / step.drift_s;
-  for (const ImpulsePoint& p : island.points) {
+  for (const ContactConstraint& p : island.points) {
     Manifold& m = step.engine.pairs[static_cast<std::size_t>(p.pair)].manifold;
     const auto i = static_cast<std::size_t>(p.point);
     m.relaxed[i] = inverse * p.push;
@@ -177,19 +177,19 @@ void readMovers(RigidIsland& island) {
   island.movers.resize(island.bodies.size() + 1);
   for (std::size_t i = 0; i < island.bodies.size(); ++i) {
     const RigidBody& body = island.bodies[i];
-    ImpulseBody& mover = island.movers[i];
+    SolverBody& mover = island.movers[i];
     mover.velocity = Lanes{body.velocity[0], body.velocity[1], body.velocity[2], 0.0};
     mover.spin = Lanes{body.spin[0], body.spin[1], body.spin[2], 0.0};
     for (int k = 0; k < 3; ++k)
       mover.inverseInertia[k] = Lanes{body.inverseInertia(0, k), body.inverseInertia(1, k), body.inverseInertia(2, k), 0.0};
     mover.inverseMass = body.inverseMass;
   }
-  island.movers.back() = ImpulseBody{};
+  island.movers.back() = SolverBody{};
 }
 
 void writeMovers(RigidIsland& island) {
   for (std::size_t i = 0; i < island.bodies.size(); ++i) {
-    const ImpulseBody& mover = island.movers[i];
+    const SolverBody& mover = island.movers[i];
     for (int k = 0; k < 3; ++k) {
       island.bodies[i].velocity[k] = mover.velocity[k];
       island.bodies[i].spin[k] = mover.spin[k];

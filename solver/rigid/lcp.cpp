@@ -17,19 +17,19 @@ constexpr double kSoftness = 1e-6;
 // Velocities below this count as zero, m/s.
 constexpr double kStill = 1e-12;
 // Pivots for each row before the solution is taken as it stands.
-constexpr std::size_t kMostPivots = 20;
+constexpr std::size_t kMaxPivots = 20;
 
 // A linear complementarity problem with bounds: velocity = matrix impulse + velocity0, each row either clamped (velocity 0) or
 // at a bound of its impulse. Rows enter one by one, as Baraff (1994) has it: a new row's impulse grows from zero, the clamped
 // rows keep their velocities at zero, and whatever reaches a bound on the way changes sides.
 class Pivoting {
  public:
-  Pivoting(PivotingSpace& space, std::size_t rows) : s_(space), rows_(rows) {}
+  Pivoting(LcpWorkspace& space, std::size_t rows) : s_(space), rows_(rows) {}
 
   // Brings row `row` in. Where that takes too many pivots the row is left as it stands: the method cycles.
   void drive(std::size_t row) {
     if (s_.least[row] == 0.0 && s_.velocity[row] >= -kStill) return;
-    for (std::size_t pivot = 0; pivot < kMostPivots * rows_; ++pivot) {
+    for (std::size_t pivot = 0; pivot < kMaxPivots * rows_; ++pivot) {
       if (std::abs(s_.velocity[row]) <= kStill) {
         clamp(row);
         return;
@@ -151,7 +151,7 @@ class Pivoting {
     }
   }
 
-  PivotingSpace& s_;
+  LcpWorkspace& s_;
   std::size_t rows_;
 };
 
@@ -183,7 +183,7 @@ double coupling(const RigidIsland& island, const RigidContact& at, const Vec3& p
 
 // Matrix and velocities without contact impulses: row by row, a unit impulse along one and what it does to all.
 void assemble(IslandStep& step, RigidIsland& island) {
-  PivotingSpace& s = island.pivoting;
+  LcpWorkspace& s = island.pivoting;
   const std::size_t contacts = island.contacts.size();
   const std::size_t rows = 3 * contacts;
   s.matrix.assign(rows * rows, 0.0);
@@ -213,7 +213,7 @@ void assemble(IslandStep& step, RigidIsland& island) {
 
 // Friction is bounded by the normal impulses as they stand without it, by one bound for each tangent: a pyramid, not a cone.
 void boundTangents(RigidIsland& island) {
-  PivotingSpace& s = island.pivoting;
+  LcpWorkspace& s = island.pivoting;
   const std::size_t contacts = island.contacts.size();
   for (std::size_t row = contacts; row < 3 * contacts; ++row) {
     const ConstraintRow at = rowAt(row, contacts);
@@ -229,7 +229,7 @@ void boundTangents(RigidIsland& island) {
 void stepRigidLcp(IslandStep& step, RigidIsland& island) {
   applyForces(step);
   assemble(step, island);
-  PivotingSpace& s = island.pivoting;
+  LcpWorkspace& s = island.pivoting;
   const std::size_t contacts = island.contacts.size();
   Pivoting pivoting(s, 3 * contacts);
   for (std::size_t row = 0; row < 3 * contacts; ++row) {

@@ -50,9 +50,9 @@ struct Pass {
 
 // One point: friction first, bounded by the cone of the push so far, then the push, so that along the normal the blocks do not
 // come closer than their gap.
-SPRINGTOWER_INLINE void solvePoint(const Pass& pass, std::vector<ImpulseBody>& bodies, ImpulsePoint& p) {
-  ImpulseBody& upper = bodies[static_cast<std::size_t>(p.upper)];
-  ImpulseBody& lower = bodies[static_cast<std::size_t>(p.lower)];
+SPRINGTOWER_INLINE void solvePoint(const Pass& pass, std::vector<SolverBody>& bodies, ContactConstraint& p) {
+  SolverBody& upper = bodies[static_cast<std::size_t>(p.upper)];
+  SolverBody& lower = bodies[static_cast<std::size_t>(p.lower)];
   Lanes turningUpper, turningLower;
   crossLanes(upper.spin, p.armUpper, turningUpper);
   crossLanes(lower.spin, p.armLower, turningLower);
@@ -100,17 +100,17 @@ SPRINGTOWER_INLINE void solvePoint(const Pass& pass, std::vector<ImpulseBody>& b
 }
 
 SPRINGTOWER_KERNEL
-void solvePoints(const Pass& pass, std::vector<ImpulseBody>& bodies, std::vector<ImpulsePoint>& points) {
-  for (ImpulsePoint& point : points) solvePoint(pass, bodies, point);
+void solvePoints(const Pass& pass, std::vector<SolverBody>& bodies, std::vector<ContactConstraint>& points) {
+  for (ContactConstraint& point : points) solvePoint(pass, bodies, point);
 }
 
 // The impulses of the step before, to start from.
 SPRINGTOWER_KERNEL
-void applyKnown(std::vector<ImpulseBody>& bodies, const std::vector<ImpulsePoint>& points) {
-  for (const ImpulsePoint& p : points) {
+void applyKnown(std::vector<SolverBody>& bodies, const std::vector<ContactConstraint>& points) {
+  for (const ContactConstraint& p : points) {
     if (p.idle) continue;
-    ImpulseBody& upper = bodies[static_cast<std::size_t>(p.upper)];
-    ImpulseBody& lower = bodies[static_cast<std::size_t>(p.lower)];
+    SolverBody& upper = bodies[static_cast<std::size_t>(p.upper)];
+    SolverBody& lower = bodies[static_cast<std::size_t>(p.lower)];
     const Lanes impulse = p.friction + p.push * p.normal;
     Lanes moment, turn;
     crossLanes(p.armUpper, impulse, moment);
@@ -126,7 +126,7 @@ void applyKnown(std::vector<ImpulseBody>& bodies, const std::vector<ImpulsePoint
 
 // Brings the gaps to the step's end, to first order in the turns.
 SPRINGTOWER_KERNEL
-void moveGaps(const std::vector<RigidBody>& bodies, std::vector<ImpulsePoint>& points) {
+void moveGaps(const std::vector<RigidBody>& bodies, std::vector<ContactConstraint>& points) {
   const auto read = [&](std::int32_t at, Lanes& moved, Lanes& turned) {
     moved = turned = Lanes{0.0, 0.0, 0.0, 0.0};
     if (static_cast<std::size_t>(at) == bodies.size()) return;
@@ -134,7 +134,7 @@ void moveGaps(const std::vector<RigidBody>& bodies, std::vector<ImpulsePoint>& p
     moved = Lanes{body.moved[0], body.moved[1], body.moved[2], 0.0};
     turned = Lanes{body.turned[0], body.turned[1], body.turned[2], 0.0};
   };
-  for (ImpulsePoint& p : points) {
+  for (ContactConstraint& p : points) {
     Lanes movedUpper, turnedUpper, movedLower, turnedLower;
     read(p.upper, movedUpper, turnedUpper);
     read(p.lower, movedLower, turnedLower);
@@ -145,7 +145,7 @@ void moveGaps(const std::vector<RigidBody>& bodies, std::vector<ImpulsePoint>& p
 // Notes which bodies have a contact that pushes. Returns whether any has.
 bool notePushed(RigidIsland& island) {
   for (RigidBody& body : island.bodies) body.pushed = false;
-  for (const ImpulsePoint& p : island.points) {
+  for (const ContactConstraint& p : island.points) {
     for (const std::int32_t at : {p.upper, p.lower}) {
       if (p.push > 0.0 && static_cast<std::size_t>(at) < island.bodies.size())
         island.bodies[static_cast<std::size_t>(at)].pushed = true;
@@ -157,7 +157,7 @@ bool notePushed(RigidIsland& island) {
 // Whether any two blocks overlap by much.
 bool isDeep(const IslandStep& step, const RigidIsland& island) {
   const double deep = -kDeep * step.simulation.lengths.blockHeight_m;
-  return std::any_of(island.points.begin(), island.points.end(), [&](const ImpulsePoint& p) { return p.gap < deep; });
+  return std::any_of(island.points.begin(), island.points.end(), [&](const ContactConstraint& p) { return p.gap < deep; });
 }
 
 double kineticEnergy(const std::vector<RigidBody>& bodies) {
@@ -169,13 +169,13 @@ double kineticEnergy(const std::vector<RigidBody>& bodies) {
   return energy;
 }
 
-// Takes what a step has added to the energy out of the speeds, little of the motion: pushes that part blocks lift what lies on
-// them, and passes that have not settled the contacts leave too much.
-void takeBack(std::vector<RigidBody>& bodies, double added) {
-  constexpr double kMostShare = 0.01;
+// Energy clamp: if push-out or unconverged passes raised kinetic energy beyond the work of gravity, scales all velocities down by
+// the excess, at most 1 % of the energy a step.
+void removeAddedEnergy(std::vector<RigidBody>& bodies, double added) {
+  constexpr double kMaxShare = 0.01;
   if (added <= 0.0) return;
   const double kinetic = kineticEnergy(bodies);
-  const double left = std::sqrt(1.0 - std::min(kMostShare, added / kinetic));
+  const double left = std::sqrt(1.0 - std::min(kMaxShare, added / kinetic));
   for (RigidBody& body : bodies) {
     body.velocity *= left;
     body.spin *= left;
@@ -202,7 +202,7 @@ void runPasses(IslandStep& step, RigidIsland& island, int passes, bool push) {
 // Sequential impulses (projected Gauss-Seidel on velocities; Catto 2005) with warm starting. Blocks that are apart may come as
 // near as the gap in one step; those that overlap are pushed out softly, and a second set of passes takes the push out of the
 // velocities again (soft contacts with relaxing, as in Catto's Solver2D, 2024).
-void moveRigidPgs(IslandStep& step, RigidIsland& island, bool again) {
+void solveAndIntegratePgs(IslandStep& step, RigidIsland& island, bool again) {
   const bool falls = !isRigid(step.simulation.scene.settings.method);
   island.energyBefore_j = kineticEnergy(island.bodies);
   applyForces(step);
@@ -222,13 +222,13 @@ void moveRigidPgs(IslandStep& step, RigidIsland& island, bool again) {
   }
 }
 
-void settleRigidPgs(IslandStep& step, RigidIsland& island) {
+void relaxPgs(IslandStep& step, RigidIsland& island) {
   moveGaps(island.bodies, island.points);
   readMovers(island);
   runPasses(step, island, step.simulation.scene.settings.iterations, false);
   // Blocks that stand are moved by such pushes alone, slowly, and would be kept from it.
   if (!isRigid(step.simulation.scene.settings.method) && island.touches)
-    takeBack(island.bodies, kineticEnergy(island.bodies) - island.energyBefore_j);
+    removeAddedEnergy(island.bodies, kineticEnergy(island.bodies) - island.energyBefore_j);
   keepPoints(step, island);
 }
 

@@ -22,7 +22,7 @@ constexpr int kRigidSubsteps = 64;
 // The pivoting method solves its contacts exactly, and slowly.
 constexpr int kPivotingSubsteps = 4;
 // How often a step is taken again because of contacts found in it.
-constexpr int kMostRepeats = 4;
+constexpr int kMaxRepeats = 4;
 
 // Of a cuboid m (b^2 + c^2) / 12; with the mass in eight corners three times as much.
 Eigen::Matrix3d momentOf(const Simulation& simulation, std::size_t block, const RigidBody& body) {
@@ -62,7 +62,7 @@ void readPoses(IslandStep& step) {
 }
 
 SPRINGTOWER_KERNEL
-void writePositions(const RigidIsland& island, std::span<const std::int32_t> blocks, CornerArray& position) {
+void writePositions(const RigidIsland& island, std::span<const std::int32_t> blocks, ParticleArray& position) {
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     const RigidBody& body = island.bodies[i];
     for (std::size_t a = 0; a < 3; ++a) {
@@ -87,7 +87,7 @@ void writeVelocities(IslandStep& step) {
   }
 }
 
-void rememberStart(IslandStep& step) {
+void saveFrameStart(IslandStep& step) {
   RigidIsland& island = rigidIslandOf(step);
   for (RigidBody& body : island.bodies) {
     body.placeBefore = body.place;
@@ -97,7 +97,7 @@ void rememberStart(IslandStep& step) {
   }
   for (std::size_t i = 0; i < step.blocks.size(); ++i) {
     const auto b = static_cast<std::size_t>(step.blocks[i]);
-    island.bodies[i].travelBefore_m = step.engine.clock[b].travel;
+    island.bodies[i].travelBefore_m = step.engine.blockHistory[b].travel;
     for (std::size_t a = 0; a < 3; ++a)
       std::copy_n(step.simulation.state.position.values(a, b), kCorners, step.engine.previous.values(a, b));
   }
@@ -114,11 +114,11 @@ void backToStart(IslandStep& step) {
   }
   for (std::size_t i = 0; i < step.blocks.size(); ++i) {
     const auto b = static_cast<std::size_t>(step.blocks[i]);
-    engine.clock[b].travel = island.bodies[i].travelBefore_m;
+    engine.blockHistory[b].travel = island.bodies[i].travelBefore_m;
     for (std::size_t a = 0; a < 3; ++a)
       std::copy_n(engine.previous.values(a, b), kCorners, step.simulation.state.position.values(a, b));
   }
-  measureAgain(step);
+  recomputeClearances(step);
 }
 
 void stepOnce(IslandStep& step, bool again) {
@@ -140,7 +140,7 @@ void stepOnce(IslandStep& step, bool again) {
     }
     keepForces(step, island);
   } else {
-    moveRigidPgs(step, island, again);
+    solveAndIntegratePgs(step, island, again);
   }
   clock.lap(Stage::contacts);
   writePositions(island, step.blocks, step.simulation.state.position);
@@ -155,7 +155,7 @@ SPRINGTOWER_INLINE Vec3 turnedVector(const Vec3& half, const Vec3& v) {
 
 }  // namespace
 
-Eigen::Matrix3d straightAxes(const CornerArray& position, std::size_t block) {
+Eigen::Matrix3d straightAxes(const ParticleArray& position, std::size_t block) {
   Eigen::Matrix3d axes;
   axes.col(0) = meanEdge(position, block, 0).normalized();
   const Vec3 second = meanEdge(position, block, 1);
@@ -256,27 +256,27 @@ IslandOutcome runRigidSteps(IslandStep& step, int steps, double begin_s) {
   const bool sequential = method != Method::rigidLcp && method != Method::xpbd;
   readPoses(step);
   computeFrames(simulation.state.position, step.blocks, step.engine.frames);
-  step.lists = true;
-  step.listedFor = 0;
+  step.usesActiveList = true;
+  step.activeListSteps = 0;
   for (int substep = 0; substep < outcome.substeps && outcome.inside; ++substep) {
     step.time_s = simulation.time_s + begin_s + substep * step.drift_s;
     step.gravity = simulation.scene.gravity.at(step.time_s);
-    rememberStart(step);
+    saveFrameStart(step);
     for (int repeat = 0;; ++repeat) {
       const std::uint64_t born = step.counters.contactsBorn;
       stepOnce(step, repeat > 0);
       outcome.inside = findContacts(step);
-      if (!outcome.inside || born == step.counters.contactsBorn || repeat == kMostRepeats) break;
+      if (!outcome.inside || born == step.counters.contactsBorn || repeat == kMaxRepeats) break;
       backToStart(step);
     }
-    if (sequential) settleRigidPgs(step, rigidIslandOf(step));
+    if (sequential) relaxPgs(step, rigidIslandOf(step));
     computeFrames(simulation.state.position, step.blocks, step.engine.frames);
-    if (outcome.inside) renewContacts(step, renewalOfExplicitSteps(simulation));
+    if (outcome.inside) refreshContacts(step, refreshTravelOfExplicitSteps(simulation));
   }
   writeVelocities(step);
   for (const std::int32_t block : step.blocks) {
-    step.engine.clock[static_cast<std::size_t>(block)].lastDrift_s = step.drift_s;
-    step.engine.clock[static_cast<std::size_t>(block)].history_s = 0.0;
+    step.engine.blockHistory[static_cast<std::size_t>(block)].lastExplicitStep_s = step.drift_s;
+    step.engine.blockHistory[static_cast<std::size_t>(block)].lastImplicitStep_s = 0.0;
   }
   return outcome;
 }

@@ -11,7 +11,7 @@ void prepareRigid(Simulation& simulation);
 
 /// Orthonormal axes of a block as columns: its first mean edge, the second as far as it is across that, and the one across both
 /// (Gram & Schmidt).
-Eigen::Matrix3d straightAxes(const CornerArray& position, std::size_t block);
+Eigen::Matrix3d straightAxes(const ParticleArray& position, std::size_t block);
 
 /// Steps of a frame: as the settings say, or the default.
 int rigidSubsteps(const Settings& settings);

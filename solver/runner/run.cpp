@@ -37,7 +37,7 @@ class Recorder {
         startPosition_(simulation.state.position),
         startStages_(simulation.stageTimes) {
     for (const BlockSpec& block : simulation.scene.blocks) row_.push_back(block.row);
-    closed_ = closedRows(startPosition_, row_, simulation.scene.floor);
+    closed_ = stackedReference(startPosition_, row_, simulation.scene.floor);
     reference_ = fittedBoxes(closed_);
     const long framesInASecond = std::lround(1.0 / simulation.scene.settings.frame_s);
     lastSecond_.assign(static_cast<std::size_t>(std::max(1L, framesInASecond)), 0.0);
@@ -152,10 +152,10 @@ class Recorder {
   RunOptions options_;
   RunResult result_;
   double startTime_s_;
-  CornerArray startPosition_;
+  ParticleArray startPosition_;
   StageTimes startStages_;
   std::vector<int> row_;              // of each block, or -1
-  CornerArray closed_;                // the start without gaps between rows
+  ParticleArray closed_;              // the start without gaps between rows
   std::vector<FittedBox> reference_;  // of closed_
   std::size_t laid_ = 0;              // blocks whose new place is known
   PenetrationWorkspace workspace_;
@@ -163,7 +163,7 @@ class Recorder {
   double largestRise_j_ = 0.0;
   bool rested_ = false;  // all blocks were at rest in the frame before
   bool settled_ = false;
-  CornerArray settledPosition_;
+  ParticleArray settledPosition_;
   double settledPenetration_m_ = 0.0;
   double creep_m_ = 0.0;
   std::vector<double> lastSecond_;  // mean square speeds of the last frames, a ring

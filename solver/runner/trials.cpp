@@ -14,7 +14,7 @@ namespace {
 constexpr double kQuickShare = 0.9;  // of what friction bears: reached in kQuickTime_s, then slowly
 constexpr double kQuickTime_s = 1.5;
 constexpr double kSlowShare_s = 0.01;
-constexpr double kMostShare = 1.5;
+constexpr double kMaxShare = 1.5;
 
 double friction_n(const Simulation& simulation, double normal_n) {
   return simulation.scene.staticFriction * normal_n;
@@ -27,22 +27,22 @@ UserForce forceNow(const Simulation& simulation, std::size_t block, const Vec3& 
 }
 
 // Where a point of a block is, given in shares of its edges from its centre.
-Vec3 placeOn(const CornerArray& position, std::size_t block, const Vec3& shares) {
+Vec3 placeOn(const ParticleArray& position, std::size_t block, const Vec3& shares) {
   return centre(position, block) + meanEdges(position, block) * shares;
 }
 
-Vec3 sharesOf(const CornerArray& position, std::size_t block, const Vec3& place) {
+Vec3 sharesOf(const ParticleArray& position, std::size_t block, const Vec3& place) {
   return meanEdges(position, block).inverse() * (place - centre(position, block));
 }
 
 // Where a block bears on another: the centre of the pressure between them, as a point of either. On the floor it is a place.
-struct Seam {
+struct InterfacePoint {
   BlockId other;
   Vec3 onBlock;
   Vec3 onOther;
 };
 
-std::vector<Seam> seamsOf(const Simulation& simulation, const std::vector<ContactForce>& forces, BlockId block) {
+std::vector<InterfacePoint> seamsOf(const Simulation& simulation, const std::vector<ContactForce>& forces, BlockId block) {
   struct Pressure {
     double normal_n = 0.0;
     Vec3 moment = Vec3::Zero();
@@ -54,8 +54,8 @@ std::vector<Seam> seamsOf(const Simulation& simulation, const std::vector<Contac
     pressure.normal_n += force.normalForce;
     pressure.moment += force.normalForce * force.point;
   }
-  const CornerArray& position = simulation.state.position;
-  std::vector<Seam> seams;
+  const ParticleArray& position = simulation.state.position;
+  std::vector<InterfacePoint> seams;
   for (const auto& [other, pressure] : pressures) {
     const Vec3 place = pressure.moment / pressure.normal_n;
     seams.push_back(
@@ -97,10 +97,10 @@ SlipTrial pullUntilSlip(Simulation& simulation, std::size_t block, const Vec3& d
   trial.normal_n = normalForceOn(forces, id, false);
   const double borne_n = friction_n(simulation, trial.normal_n);
 
-  const std::vector<Seam> seams = seamsOf(simulation, forces, id);
+  const std::vector<InterfacePoint> seams = seamsOf(simulation, forces, id);
   const auto slip = [&] {
     double least = std::numeric_limits<double>::infinity();
-    for (const Seam& seam : seams) {
+    for (const InterfacePoint& seam : seams) {
       const Vec3 other =
           seam.other == kFloor ? seam.onOther : placeOn(simulation.state.position, index(seam.other), seam.onOther);
       least = std::min<double>(least, (placeOn(simulation.state.position, block, seam.onBlock) - other).dot(direction));
@@ -113,7 +113,7 @@ SlipTrial pullUntilSlip(Simulation& simulation, std::size_t block, const Vec3& d
     trial.time_s = simulation.time_s + simulation.scene.settings.frame_s - begin_s;
     const double share = trial.time_s < kQuickTime_s ? kQuickShare * trial.time_s / kQuickTime_s
                                                      : kQuickShare + kSlowShare_s * (trial.time_s - kQuickTime_s);
-    if (share > kMostShare) break;
+    if (share > kMaxShare) break;
     trial.force_n = share * borne_n;
     simulation.scene.forces = {forceNow(simulation, block, trial.force_n * direction)};
     const std::vector<ContactForce> before = contactForces(simulation);

@@ -15,8 +15,8 @@ constexpr double kChange = 0.02;
 // Change of force, in a block's weights, and of torque, in its weight times its height, that is left unbalanced when a neighbour
 // has come to rest. Six of them are less than the thousandth that counts as balanced.
 constexpr double kUnbalanced = 1e-4;
-// Change of force, as a share of what goes through the block, that springs around it take up without moving by more than that
-// share of their compression.
+// A sleeper may absorb a change of normal force of up to this share of the load it carried when it fell asleep: the contacts
+// around it then change their compression by at most the same share.
 constexpr double kBorne = 0.35;
 // Share of the friction of its contacts with sleepers that may hold a block against friction of awake ones. A third of a row that
 // is drawn out asks for a fifth of it, half a row for a third; so some is left of what it takes to slip.
@@ -27,8 +27,8 @@ double weightOf(const Simulation& simulation, std::int32_t block) {
 }
 
 // How block a of a pair is pushed now.
-Push pushOnA(const Simulation& simulation, const NearPair& pair) {
-  Push push = pushOnUpper(simulation, pair.manifold);
+ContactWrench pushOnA(const Simulation& simulation, const NearPair& pair) {
+  ContactWrench push = contactWrenchOnUpper(simulation, pair.manifold);
   if (pair.manifold.upper == pair.a) return push;
   return {-push.force, -push.torque, -push.direction};
 }
@@ -36,9 +36,9 @@ Push pushOnA(const Simulation& simulation, const NearPair& pair) {
 // Adds what an awake neighbour does to a sleeping block.
 void addChange(Simulation& simulation, const NearPair& pair, std::int32_t sleeper) {
   Engine& engine = *simulation.engine;
-  PushChange& change = engine.change[static_cast<std::size_t>(sleeper)];
+  LoadChange& change = engine.change[static_cast<std::size_t>(sleeper)];
   const double sign = sleeper == pair.a ? 1.0 : -1.0;
-  const Push now = pushOnA(simulation, pair);
+  const ContactWrench now = pushOnA(simulation, pair);
   const Vec3 difference = sign * (now.force - pair.restForce);
   const double least = kChange * weightOf(simulation, sleeper);
   const bool pushed = pair.restForce.norm() > least;
@@ -55,7 +55,7 @@ void addChange(Simulation& simulation, const NearPair& pair, std::int32_t sleepe
 void findLoads(Simulation& simulation) {
   Engine& engine = *simulation.engine;
   for (const std::int32_t block : engine.pushed) {
-    PushChange& change = engine.change[static_cast<std::size_t>(block)];
+    LoadChange& change = engine.change[static_cast<std::size_t>(block)];
     change.load_n = 0.5 * weightOf(simulation, block);
     if (!change.side.isZero(0.0)) change.side.normalize();
     engine.joined[static_cast<std::size_t>(block)] = 1;
@@ -63,7 +63,7 @@ void findLoads(Simulation& simulation) {
   for (const NearPair& pair : engine.pairs) {
     const auto add = [&](std::int32_t block, std::int32_t partner, const Vec3& force) {
       if (block < 0 || engine.joined[static_cast<std::size_t>(block)] == 0) return;
-      PushChange& change = engine.change[static_cast<std::size_t>(block)];
+      LoadChange& change = engine.change[static_cast<std::size_t>(block)];
       change.load_n += 0.5 * force.norm();
       if (sleeps(simulation, partner)) change.hold_n += simulation.scene.staticFriction * force.norm();
     };
@@ -75,7 +75,7 @@ void findLoads(Simulation& simulation) {
 // Whether a sleeping block bears what is done to it.
 bool bears(const Simulation& simulation, std::int32_t block) {
   const auto b = static_cast<std::size_t>(block);
-  const PushChange& change = simulation.engine->change[b];
+  const LoadChange& change = simulation.engine->change[b];
   if (change.begunOrLost) return false;
   if (change.force.norm() <= kChange * weightOf(simulation, block)) return true;
   const double longest = simulation.model.dimensions[b].maxCoeff();
@@ -91,14 +91,14 @@ bool bears(const Simulation& simulation, std::int32_t block) {
 
 }  // namespace
 
-void rememberPushes(Simulation& simulation, std::span<const std::uint8_t> staysAwake) {
+void recordSleepLoads(Simulation& simulation, std::span<const std::uint8_t> staysAwake) {
   Engine& engine = *simulation.engine;
   for (NearPair& pair : engine.pairs) {
     const auto falls = [&](std::int32_t block) {
       return !sleeps(simulation, block) && staysAwake[static_cast<std::size_t>(block)] == 0;
     };
     if (!falls(pair.a) && !falls(pair.b)) continue;
-    const Push now = pushOnA(simulation, pair);
+    const ContactWrench now = pushOnA(simulation, pair);
     const std::int32_t sleeper =
         pair.b < 0 ? -1 : (sleeps(simulation, pair.a) ? pair.a : (sleeps(simulation, pair.b) ? pair.b : -1));
     if (sleeper >= 0) {
@@ -114,7 +114,7 @@ void rememberPushes(Simulation& simulation, std::span<const std::uint8_t> staysA
   }
 }
 
-bool findBlocksToWake(Simulation& simulation) {
+bool findWakeCandidates(Simulation& simulation) {
   Engine& engine = *simulation.engine;
   engine.toWake.clear();
   engine.pushed.clear();
@@ -126,7 +126,7 @@ bool findBlocksToWake(Simulation& simulation) {
     const NearPair& pair = engine.pairs[static_cast<std::size_t>(at)];
     if (pair.b < 0 || sleeps(simulation, pair.a) == sleeps(simulation, pair.b)) continue;
     const std::int32_t sleeper = sleeps(simulation, pair.a) ? pair.a : pair.b;
-    PushChange& change = engine.change[static_cast<std::size_t>(sleeper)];
+    LoadChange& change = engine.change[static_cast<std::size_t>(sleeper)];
     if (engine.joined[static_cast<std::size_t>(sleeper)] == 0) {
       engine.joined[static_cast<std::size_t>(sleeper)] = 1;
       engine.pushed.push_back(sleeper);
@@ -142,7 +142,7 @@ bool findBlocksToWake(Simulation& simulation) {
     for (const std::int32_t block : engine.pushed) {
       if (!bears(simulation, block)) engine.toWake.push_back(block);
     }
-    if (simulation.scene.settings.sleep == Sleep::on) gives = findWhatGivesWay(simulation);
+    if (simulation.scene.settings.sleep == Sleep::on) gives = findFailedSupports(simulation);
   }
   // A pair that the sweep has dropped pushes no more.
   engine.toWake.insert(engine.toWake.end(), engine.lostPartner.begin(), engine.lostPartner.end());

@@ -53,7 +53,7 @@ double fastestRigidCorner(const Simulation& simulation, std::size_t b) {
 // gravity. A block that starts to tip is slow but out of balance.
 void judge(Simulation& simulation, std::size_t b) {
   const Settings& settings = simulation.scene.settings;
-  RestWindow& window = simulation.engine->rest[b];
+  SleepWindow& window = simulation.engine->rest[b];
   const double slow = settings.restSpeed * speedScale(simulation);
   const bool ends = window.age_s + settings.frame_s >= settings.restTime * timeScale(simulation);
   if (!ends && fastestRigidCorner(simulation, b) < slow) {  // the usual case, without the rigid motion itself
@@ -79,7 +79,7 @@ void judge(Simulation& simulation, std::size_t b) {
 
 // The report's test (its appendix 2.5): how far the block's particles have moved together, compression and all, over one frame.
 void judgeAsReported(Simulation& simulation, std::size_t b) {
-  const CornerArray& before = simulation.engine->frameStart.position;
+  const ParticleArray& before = simulation.engine->frameStart.position;
   double moved = 0.0;
   for (std::size_t c = 0; c < kCorners; ++c) moved += (simulation.state.position.at(b, c) - before.at(b, c)).norm();
   simulation.restTime_s[b] = moved < simulation.scene.settings.reportDisableDistance_m ? simulation.scene.settings.frame_s : 0.0;
@@ -93,11 +93,11 @@ bool isStruck(const Simulation& simulation, const NearPair& pair, std::int32_t a
   const bool held = block == index(simulation.tether.block);
   const double speed =
       std::max(fastestCorner(simulation.state.velocity, block, Vec3::Zero()), held ? simulation.tether.velocity.norm() : 0.0);
-  if (pair.manifold.touch != Touch::apart && anyPointTouches(pair.manifold)) return speed > kRush * scale;
+  if (pair.manifold.touch != PairPhase::separated && anyPointTouches(pair.manifold)) return speed > kRush * scale;
   const bool falls = !supported && !held;
   if (!falls && speed <= kHit * scale) return false;
   const double frame_s = simulation.scene.settings.frame_s;
-  const CornerArray& position = simulation.state.position;
+  const ParticleArray& position = simulation.state.position;
   const Separation separation = findSeparation(cornersOf(position, static_cast<std::size_t>(pair.a)),
                                                cornersOf(position, static_cast<std::size_t>(pair.b)));
   const double gap = std::max(0.0, separation.best());
@@ -118,7 +118,7 @@ void fallAsleep(Simulation& simulation, std::size_t b) {
   Engine& engine = *simulation.engine;
   simulation.asleep[b] = 1;
   engine.loadPath.known.clear();
-  BlockClock& clock = engine.clock[b];
+  BlockHistory& clock = engine.blockHistory[b];
   clock.falls = clock.hasFallen = false;
   clock.explicitFrames = 0;
   --engine.awakeCount;
@@ -129,13 +129,13 @@ void fallAsleep(Simulation& simulation, std::size_t b) {
   if (!engine.report.contacts.empty()) engine.report.contacts[b].clear();
 }
 
-// Where all that touch are at rest, but some sleep on forces that no longer balance, they wake and find their rest together: by
-// turns that would take as many rests as there are rows.
-void restTogether(Simulation& simulation) {
+// If a whole touching cluster is at rest but the recorded loads of some sleepers no longer balance, wakes the cluster at once.
+// Waking one row at a time would need one rest period a row.
+void wakeUnbalancedCluster(Simulation& simulation) {
   Engine& engine = *simulation.engine;
   engine.touchingEdges.clear();
   for (const NearPair& pair : engine.pairs) {
-    if (pair.b >= 0 && pair.manifold.touch != Touch::apart) engine.touchingEdges.push_back({pair.a, pair.b});
+    if (pair.b >= 0 && pair.manifold.touch != PairPhase::separated) engine.touchingEdges.push_back({pair.a, pair.b});
   }
   engine.touched.resize(simulation.asleep.size());
   connectedBlocks(engine.touchingEdges, engine.toWake, engine.parent, engine.touched);
@@ -175,7 +175,7 @@ void putToSleep(Simulation& simulation) {
   const bool nearCounts = settings.method == Method::report;
   if (settings.sleep == Sleep::on) {
     for (const NearPair& pair : engine.pairs) {
-      if (pair.b < 0 || (pair.manifold.touch == Touch::apart && !nearCounts)) continue;
+      if (pair.b < 0 || (pair.manifold.touch == PairPhase::separated && !nearCounts)) continue;
       const bool bothAwake =
           simulation.asleep[static_cast<std::size_t>(pair.a)] == 0 && simulation.asleep[static_cast<std::size_t>(pair.b)] == 0;
       if (bothAwake) engine.touchingEdges.push_back({pair.a, pair.b});
@@ -188,8 +188,8 @@ void putToSleep(Simulation& simulation) {
     if (patient && ready(block) && !nearCounts) engine.joined[static_cast<std::size_t>(block)] = 0;
   }
   engine.toWake.clear();
-  rememberPushes(simulation, engine.joined);
-  if (!engine.toWake.empty() && settings.sleep == Sleep::on) restTogether(simulation);
+  recordSleepLoads(simulation, engine.joined);
+  if (!engine.toWake.empty() && settings.sleep == Sleep::on) wakeUnbalancedCluster(simulation);
   for (const std::int32_t block : engine.awakeBlocks) {
     if (engine.joined[static_cast<std::size_t>(block)] == 0) fallAsleep(simulation, static_cast<std::size_t>(block));
   }
@@ -209,7 +209,7 @@ void wake(Simulation& simulation, std::size_t block) {
   simulation.engine->rest[block] = {motion.centre, motion.velocity, motion.spin, 0.0};
 }
 
-void wakeForFrame(Simulation& simulation) {
+void wakeForInputs(Simulation& simulation) {
   Engine& engine = *simulation.engine;
   if (engine.awakeCount == simulation.asleep.size()) return;
   const double frame_s = simulation.scene.settings.frame_s;
@@ -224,7 +224,7 @@ void wakeForFrame(Simulation& simulation) {
   if (simulation.tether.block != kFloor) wake(simulation, index(simulation.tether.block));
 }
 
-bool wakeWhatIsStruck(Simulation& simulation) {
+bool wakeOnImpact(Simulation& simulation) {
   Engine& engine = *simulation.engine;
   if (simulation.scene.settings.sleep != Sleep::on || engine.awakeCount == simulation.asleep.size()) return false;
   const StageTimer timer(simulation.stageTimes, Stage::islandsAndSleep);
@@ -232,7 +232,7 @@ bool wakeWhatIsStruck(Simulation& simulation) {
   engine.touched.assign(simulation.asleep.size(), 0);
   for (const std::int32_t at : engine.islandPairs) {
     const NearPair& pair = engine.pairs[static_cast<std::size_t>(at)];
-    if (pair.manifold.touch == Touch::apart || !anyPointTouches(pair.manifold)) continue;
+    if (pair.manifold.touch == PairPhase::separated || !anyPointTouches(pair.manifold)) continue;
     engine.touched[static_cast<std::size_t>(pair.a)] = 1;
     if (pair.b >= 0) engine.touched[static_cast<std::size_t>(pair.b)] = 1;
   }
@@ -247,7 +247,7 @@ bool wakeWhatIsStruck(Simulation& simulation) {
   if (engine.toWake.empty()) return false;
   engine.touchingEdges.clear();
   for (const NearPair& pair : engine.pairs) {
-    if (pair.b >= 0 && pair.manifold.touch != Touch::apart && sleeps(simulation, pair.a) && sleeps(simulation, pair.b))
+    if (pair.b >= 0 && pair.manifold.touch != PairPhase::separated && sleeps(simulation, pair.a) && sleeps(simulation, pair.b))
       engine.touchingEdges.push_back({pair.a, pair.b});
   }
   engine.touched.resize(simulation.asleep.size());
@@ -258,12 +258,12 @@ bool wakeWhatIsStruck(Simulation& simulation) {
   return true;
 }
 
-bool wakeWhatGaveWay(Simulation& simulation) {
+bool wakeFailedSupports(Simulation& simulation) {
   Engine& engine = *simulation.engine;
   engine.toWake.clear();
   if (engine.awakeCount == simulation.asleep.size()) return false;
   const StageTimer timer(simulation.stageTimes, Stage::islandsAndSleep);
-  if (!findBlocksToWake(simulation)) return false;
+  if (!findWakeCandidates(simulation)) return false;
   for (const std::int32_t block : engine.toWake) wake(simulation, static_cast<std::size_t>(block));
   return true;
 }

@@ -10,8 +10,9 @@ namespace springtower {
 
 namespace {
 
-// What sleepers have to bear, over what is done to them: waking too late costs the answer, too early time. The middle block of a
-// row, a third of what bears the rows above, asks the others for half of their friction when it is drawn.
+// Safety factor of the support check: a sleeping group must resist 1.5 times the change of load on it. Too small wakes late (a
+// wrong result), too large wakes early (slow). For scale: pulling the middle block of a full row uses half of the outer blocks'
+// friction.
 constexpr double kMargin = 1.5;
 // Contacts below a block rather than beside it, by the cosine.
 constexpr double kBeneath = 0.5;
@@ -31,11 +32,11 @@ double heightOf(const Simulation& simulation, std::int32_t block, const Vec3& up
 // Lists the pairs of each sleeper.
 void listPairsOfSleepers(Simulation& simulation) {
   Engine& engine = *simulation.engine;
-  LoadPath& path = engine.loadPath;
+  SupportCheckScratch& path = engine.loadPath;
   const auto forEach = [&](const auto& visit) {
     for (std::size_t p = 0; p < engine.pairs.size(); ++p) {
       const NearPair& pair = engine.pairs[p];
-      if (pair.manifold.touch == Touch::apart) continue;
+      if (pair.manifold.touch == PairPhase::separated) continue;
       if (sleeps(simulation, pair.a)) visit(static_cast<std::size_t>(pair.a), p);
       if (pair.b >= 0 && sleeps(simulation, pair.b)) visit(static_cast<std::size_t>(pair.b), p);
     }
@@ -52,7 +53,7 @@ void listPairsOfSleepers(Simulation& simulation) {
 
 template <typename Visit>
 void forEachPair(const Engine& engine, std::int32_t block, const Visit& visit) {
-  const LoadPath& path = engine.loadPath;
+  const SupportCheckScratch& path = engine.loadPath;
   const auto b = static_cast<std::size_t>(block);
   for (auto k = static_cast<std::size_t>(path.start[b]); k < static_cast<std::size_t>(path.start[b + 1]); ++k) {
     visit(path.pairs[k], engine.pairs[static_cast<std::size_t>(path.pairs[k])]);
@@ -63,10 +64,10 @@ void forEachPair(const Engine& engine, std::int32_t block, const Visit& visit) {
 // torques about the origin, with the margin.
 void listSleepers(Simulation& simulation, const Vec3& up) {
   Engine& engine = *simulation.engine;
-  LoadPath& path = engine.loadPath;
+  SupportCheckScratch& path = engine.loadPath;
   path.blocks.assign(engine.pushed.begin(), engine.pushed.end());
   for (const std::int32_t block : path.blocks) {
-    PushChange& change = engine.change[static_cast<std::size_t>(block)];
+    LoadChange& change = engine.change[static_cast<std::size_t>(block)];
     change.torque =
         kMargin * (change.torque + centre(simulation.state.position, static_cast<std::size_t>(block)).cross(change.force));
     change.force *= kMargin;
@@ -96,7 +97,7 @@ bool bears(const NearPair& pair, const Vec3& up) {
 // Adds a sleeper to the groups above the level: it joins those it bears, and opens the pairs below it.
 void addToGroups(Simulation& simulation, std::int32_t block, const Vec3& up) {
   Engine& engine = *simulation.engine;
-  LoadPath& path = engine.loadPath;
+  SupportCheckScratch& path = engine.loadPath;
   path.parent[static_cast<std::size_t>(block)] = block;
   forEachPair(engine, block, [&](std::int32_t at, const NearPair& pair) {
     const std::int32_t other = pair.a == block ? pair.b : pair.a;
@@ -109,20 +110,20 @@ void addToGroups(Simulation& simulation, std::int32_t block, const Vec3& up) {
     const std::int32_t from = findRoot(path.parent, other);
     if (into == from) return;
     path.parent[static_cast<std::size_t>(from)] = into;
-    PushChange& sum = engine.change[static_cast<std::size_t>(into)];
+    LoadChange& sum = engine.change[static_cast<std::size_t>(into)];
     sum.force += engine.change[static_cast<std::size_t>(from)].force;
     sum.torque += engine.change[static_cast<std::size_t>(from)].torque;
   });
 }
 
-bool isAbove(const LoadPath& path, std::int32_t block) {
+bool isAbove(const SupportCheckScratch& path, std::int32_t block) {
   return block >= 0 && path.parent[static_cast<std::size_t>(block)] >= 0;
 }
 
 // Lists the groups above the level that are pushed, and the pairs on which each may rest, group by group.
 void listPushedGroups(Simulation& simulation) {
   Engine& engine = *simulation.engine;
-  LoadPath& path = engine.loadPath;
+  SupportCheckScratch& path = engine.loadPath;
   path.groups.clear();
   for (const std::int32_t block : engine.pushed) {
     if (isAbove(path, block)) path.groups.push_back(findRoot(path.parent, block));
@@ -139,12 +140,12 @@ void listPushedGroups(Simulation& simulation) {
 }
 
 // The points on which a group above the level rests, seen from their middle, which is returned.
-Vec3 findSupports(Simulation& simulation, std::span<const PairBeneath> beneath, const Vec3& up) {
-  LoadPath& path = simulation.engine->loadPath;
+Vec3 findSupports(Simulation& simulation, std::span<const SupportPair> beneath, const Vec3& up) {
+  SupportCheckScratch& path = simulation.engine->loadPath;
   path.supports.clear();
   const Scene& scene = simulation.scene;
   Vec3 middle = Vec3::Zero();
-  for (const PairBeneath& of : beneath) {
+  for (const SupportPair& of : beneath) {
     const NearPair& pair = simulation.engine->pairs[static_cast<std::size_t>(of.pair)];
     const std::int32_t above = isAbove(path, pair.a) ? pair.a : pair.b;
     const PointForces points = forcesNow(simulation, pair.manifold);
@@ -160,7 +161,7 @@ Vec3 findSupports(Simulation& simulation, std::span<const PairBeneath> beneath, 
       point.force = sense * (points.normal[i] * points.direction + friction);
       point.friction = scene.staticFriction;
       if (awake && friction.norm() > kSliding * scene.kineticFriction * points.normal[i]) {
-        point.state = SupportState::slides;
+        point.state = SupportState::slip;
         point.slide = sense * friction;
         point.friction = scene.kineticFriction;
       }
@@ -174,8 +175,8 @@ Vec3 findSupports(Simulation& simulation, std::span<const PairBeneath> beneath, 
 }
 
 // Whether a group above the level stays on what bears it.
-bool staysPut(Simulation& simulation, std::int32_t group, std::span<const PairBeneath> beneath, const Vec3& up) {
-  const PushChange& change = simulation.engine->change[static_cast<std::size_t>(group)];
+bool supportHolds(Simulation& simulation, std::int32_t group, std::span<const SupportPair> beneath, const Vec3& up) {
+  const LoadChange& change = simulation.engine->change[static_cast<std::size_t>(group)];
   std::vector<SupportPoint>& supports = simulation.engine->loadPath.supports;
   const double height = simulation.lengths.blockHeight_m;
   const Vec3 middle = findSupports(simulation, beneath, up);
@@ -184,17 +185,17 @@ bool staysPut(Simulation& simulation, std::int32_t group, std::span<const PairBe
   double borne = 0.0;
   for (const SupportPoint& point : supports) borne += point.normal.dot(point.force);
   if (change.force.norm() <= kFelt * borne && torque.norm() <= kFelt * borne * height) return true;
-  return takeUp(supports, change.force, torque, height, simulation.scene.settings.tangentialRatio);
+  return redistribute(supports, change.force, torque, height, simulation.scene.settings.tangentialRatio);
 }
 
 // Whether the same blocks were pushed in much the same way when all stayed last; if not, that is how they are pushed now.
 bool isKnownToStay(Simulation& simulation) {
   Engine& engine = *simulation.engine;
-  std::vector<KnownPush>& known = engine.loadPath.known;
+  std::vector<CheckedLoad>& known = engine.loadPath.known;
   const bool same = std::equal(known.begin(), known.end(), engine.pushed.begin(), engine.pushed.end(),
-                               [&](const KnownPush& before, std::int32_t block) {
+                               [&](const CheckedLoad& before, std::int32_t block) {
                                  const auto b = static_cast<std::size_t>(block);
-                                 const PushChange& now = engine.change[b];
+                                 const LoadChange& now = engine.change[b];
                                  const double most = kSame * now.load_n;
                                  return before.block == block && (now.force - before.force).norm() <= most &&
                                         (now.torque - before.torque).norm() <= most * simulation.model.dimensions[b].minCoeff();
@@ -202,7 +203,7 @@ bool isKnownToStay(Simulation& simulation) {
   if (same) return true;
   known.clear();
   for (const std::int32_t block : engine.pushed) {
-    const PushChange& now = engine.change[static_cast<std::size_t>(block)];
+    const LoadChange& now = engine.change[static_cast<std::size_t>(block)];
     known.push_back({block, now.force, now.torque});
   }
   return false;
@@ -210,9 +211,9 @@ bool isKnownToStay(Simulation& simulation) {
 
 }  // namespace
 
-bool findWhatGivesWay(Simulation& simulation) {
+bool findFailedSupports(Simulation& simulation) {
   Engine& engine = *simulation.engine;
-  LoadPath& path = engine.loadPath;
+  SupportCheckScratch& path = engine.loadPath;
   if (engine.gravitySlept.isZero(0.0) || isKnownToStay(simulation)) return false;
   const Vec3 up = -engine.gravitySlept.normalized();
   listPairsOfSleepers(simulation);
@@ -233,12 +234,12 @@ bool findWhatGivesWay(Simulation& simulation) {
     });
     listPushedGroups(simulation);
     const auto beneathOf = [&](std::int32_t group) {
-      const auto first = std::lower_bound(path.beneath.begin(), path.beneath.end(), PairBeneath{group, 0});
-      const auto last = std::lower_bound(first, path.beneath.end(), PairBeneath{group + 1, 0});
-      return std::span<const PairBeneath>(first, last);
+      const auto first = std::lower_bound(path.beneath.begin(), path.beneath.end(), SupportPair{group, 0});
+      const auto last = std::lower_bound(first, path.beneath.end(), SupportPair{group + 1, 0});
+      return std::span<const SupportPair>(first, last);
     };
     for (const std::int32_t group : path.groups) {
-      if (staysPut(simulation, group, beneathOf(group), up)) continue;
+      if (supportHolds(simulation, group, beneathOf(group), up)) continue;
       gives = true;
       path.known.clear();
       for (std::size_t i = 0; i < above; ++i) {

@@ -19,8 +19,8 @@ constexpr double kFree = 1e-6;
 
 // What the springs of a point do against a motion of it.
 Eigen::Matrix3d stiffnessOf(const SupportPoint& point, double tangentialRatio) {
-  if (point.state == SupportState::lifted) return Eigen::Matrix3d::Zero();
-  const double across = point.state == SupportState::slides ? 0.0 : tangentialRatio;
+  if (point.state == SupportState::open) return Eigen::Matrix3d::Zero();
+  const double across = point.state == SupportState::slip ? 0.0 : tangentialRatio;
   return (1.0 - across) * point.normal * point.normal.transpose() + across * Eigen::Matrix3d::Identity();
 }
 
@@ -32,33 +32,34 @@ Eigen::Matrix3d turning(const Vec3& arm) {
 }
 
 // What a point takes up whatever the block does: all of its force where it has lifted, and of its friction where it slides.
-Vec3 givenUp(const SupportPoint& point) {
-  if (point.state == SupportState::lifted) return -point.force;
-  if (point.state == SupportState::sticks) return Vec3::Zero();
+Vec3 releasedForce(const SupportPoint& point) {
+  if (point.state == SupportState::open) return -point.force;
+  if (point.state == SupportState::stick) return Vec3::Zero();
   return point.slide - (point.force - point.normal.dot(point.force) * point.normal);
 }
 
 // Whether a point keeps to what was taken for granted of it; else what is to be taken next.
-bool keepsState(SupportPoint& point, double slip_n) {
-  if (point.state == SupportState::lifted) return true;
+bool updateContactState(SupportPoint& point, double slip_n) {
+  if (point.state == SupportState::open) return true;
   const Vec3 force = point.force + point.added;
   const double push = point.normal.dot(force);
   if (push < 0.0) {
-    point.state = SupportState::lifted;
+    point.state = SupportState::open;
     return false;
   }
   const Vec3 shear = force - push * point.normal;
-  const bool slides = point.state == SupportState::slides;
+  const bool slides = point.state == SupportState::slip;
   const double off_n = shear.norm() - point.friction * push;
   if (slides ? std::abs(off_n) <= slip_n : off_n <= slip_n) return true;
   point.slide = point.friction * push * shear.normalized();
-  point.state = SupportState::slides;
+  point.state = SupportState::slip;
   return false;
 }
 
 }  // namespace
 
-bool takeUp(std::span<SupportPoint> points, const Vec3& force, const Vec3& torque, double length_m, double tangentialRatio) {
+bool redistribute(std::span<SupportPoint> points, const Vec3& force, const Vec3& torque, double length_m,
+                  double tangentialRatio) {
   if (points.empty()) return false;
   double friction_n = 0.0;
   for (const SupportPoint& point : points) friction_n += point.friction * point.normal.dot(point.force);
@@ -74,7 +75,7 @@ bool takeUp(std::span<SupportPoint> points, const Vec3& force, const Vec3& torqu
       stiffness.topLeftCorner<3, 3>() += spring;
       stiffness.bottomLeftCorner<3, 3>() += coupled.transpose();
       stiffness.bottomRightCorner<3, 3>() += turn.transpose() * coupled;
-      const Vec3 given = givenUp(point);
+      const Vec3 given = releasedForce(point);
       load.head<3>() -= given;
       load.tail<3>() -= turn.transpose() * given;
     }
@@ -84,8 +85,8 @@ bool takeUp(std::span<SupportPoint> points, const Vec3& force, const Vec3& torqu
     bool kept = true;
     for (SupportPoint& point : points) {
       const Vec3 motion = moved.head<3>() + turning(point.arm / length_m) * moved.tail<3>();
-      point.added = givenUp(point) + stiffnessOf(point, tangentialRatio) * motion;
-      kept = keepsState(point, slip_n) && kept;
+      point.added = releasedForce(point) + stiffnessOf(point, tangentialRatio) * motion;
+      kept = updateContactState(point, slip_n) && kept;
     }
     if (kept) return true;
   }

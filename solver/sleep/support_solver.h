@@ -12,6 +12,6 @@ namespace springtower {
 /// point. Returns false where those that are left cannot hold the body, which then tips, slides or turns; without points as well.
 /// `length_m` is a length of the body, by which turns are weighed against moves; `tangentialRatio` the springs' stiffness along
 /// the contact over that across it, > 0.
-bool takeUp(std::span<SupportPoint> points, const Vec3& force, const Vec3& torque, double length_m, double tangentialRatio);
+bool redistribute(std::span<SupportPoint> points, const Vec3& force, const Vec3& torque, double length_m, double tangentialRatio);
 
 }  // namespace springtower

@@ -152,7 +152,7 @@ Vec3 crossingOnA(const Box& a, const Box& b, const Axis& axis) {
   return onA + alongA * ((between.dot(alongA) - cosine * between.dot(alongB)) / (1.0 - cosine * cosine));
 }
 
-void addPoint(Facing& facing, const Vec3& place, double gap, double size, double reach) {
+void addPoint(FacePair& facing, const Vec3& place, double gap, double size, double reach) {
   const double touch = kTouch * size;
   if (gap > touch && (gap > reach || std::abs(facing.normal.z()) < kOver)) return;
   const bool known = std::any_of(facing.points.begin(), facing.points.end(),
@@ -160,7 +160,7 @@ void addPoint(Facing& facing, const Vec3& place, double gap, double size, double
   if (!known) facing.points.push_back({place, gap > touch ? gap : 0.0});
 }
 
-std::optional<Facing> facingOf(const std::vector<Box>& boxes, std::size_t first, std::size_t second, double reach) {
+std::optional<FacePair> facingOf(const std::vector<Box>& boxes, std::size_t first, std::size_t second, double reach) {
   const double size = 2.0 * std::min(boxes[first].half.minCoeff(), boxes[second].half.minCoeff());
   Axis axis = bestAxis(boxes[first], boxes[second], kFaceSlack * size);
   if (axis.gap > std::max(reach, kTouch * size)) return {};
@@ -171,7 +171,7 @@ std::optional<Facing> facingOf(const std::vector<Box>& boxes, std::size_t first,
   }
   const Box& upper = boxes[first];
   const Box& lower = boxes[second];
-  Facing facing{blockId(first), blockId(second), axis.direction, {}};
+  FacePair facing{blockId(first), blockId(second), axis.direction, {}};
   if (axis.ofA >= 0 && axis.ofB >= 0) {
     addPoint(facing, crossingOnA(upper, lower, axis), axis.gap, size, reach);
   } else {
@@ -188,8 +188,8 @@ std::optional<Facing> facingOf(const std::vector<Box>& boxes, std::size_t first,
   return facing;
 }
 
-std::optional<Facing> facingFloor(const Box& box, std::size_t block, double reach) {
-  Facing facing{blockId(block), kFloor, Vec3::UnitZ(), {}};
+std::optional<FacePair> facingFloor(const Box& box, std::size_t block, double reach) {
+  FacePair facing{blockId(block), kFloor, Vec3::UnitZ(), {}};
   const double size = 2.0 * box.half.minCoeff();
   // A block that lies on the floor has gaps at its lower corners alone, however far the reach goes.
   const double middle = box.centre.z();
@@ -203,7 +203,7 @@ std::optional<Facing> facingFloor(const Box& box, std::size_t block, double reac
 
 }  // namespace
 
-std::vector<Facing> facingBlocks(const Scene& scene, double reach_m) {
+std::vector<FacePair> facingBlocks(const Scene& scene, double reach_m) {
   std::vector<Box> boxes;
   std::vector<double> low;
   std::vector<double> high;
@@ -218,7 +218,7 @@ std::vector<Facing> facingBlocks(const Scene& scene, double reach_m) {
   std::vector<std::size_t> order(boxes.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return low[a] < low[b]; });
-  std::vector<Facing> result;
+  std::vector<FacePair> result;
   const double margin = std::max(reach_m, kTouch * thickest);
   for (std::size_t i = 0; i < order.size(); ++i) {
     const std::size_t a = order[i];
@@ -230,7 +230,7 @@ std::vector<Facing> facingBlocks(const Scene& scene, double reach_m) {
     }
   }
   std::sort(result.begin(), result.end(),
-            [](const Facing& a, const Facing& b) { return std::pair(a.upper, a.lower) < std::pair(b.upper, b.lower); });
+            [](const FacePair& a, const FacePair& b) { return std::pair(a.upper, a.lower) < std::pair(b.upper, b.lower); });
   return result;
 }
 

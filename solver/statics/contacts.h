@@ -14,7 +14,7 @@ struct FacingPoint {
 };
 
 /// Two blocks, or a block and the floor, that touch or would touch after a little settling.
-struct Facing {
+struct FacePair {
   BlockId upper = kFloor;
   BlockId lower = kFloor;
   Vec3 normal = Vec3::UnitZ();      ///< unit, from lower to upper
@@ -27,6 +27,6 @@ struct Facing {
 /// within 30 degrees of upright), also points with a gap of up to `reach_m`; gaps between neighbours side by side never count.
 /// Faces that overlap by less than a millionth of a block do not touch. Ordered by upper and lower block. Overlaps within what
 /// checkScene allows count as gap 0.
-std::vector<Facing> facingBlocks(const Scene& scene, double reach_m);
+std::vector<FacePair> facingBlocks(const Scene& scene, double reach_m);
 
 }  // namespace springtower

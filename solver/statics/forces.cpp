@@ -6,10 +6,10 @@
 namespace springtower {
 namespace {
 
-constexpr int kMostRefinements = 200;
-constexpr double kMostImbalance = 1e-9;
+constexpr int kMaxRefinements = 200;
+constexpr double kMaxImbalance = 1e-9;
 constexpr double kDamping = 1e-10;  // keeps the matrix regular where a block touches nothing; far below any stiffness
-constexpr double kLeastStep = 1e-10;
+constexpr double kMinStep = 1e-10;
 constexpr double kArmijo = 1e-4;
 
 // Nearest point of the cone |tangent| <= friction * normal, and how it follows its argument.
@@ -109,14 +109,14 @@ std::optional<std::vector<Vec3>> leastSquaresForces(const StaticsModel& model, s
   Eigen::VectorXd displacement = Eigen::VectorXd::Zero(load.size());
   double value = dual.evaluate(displacement);
   dual.pretendAllStick();
-  for (int step = 0; step < kMostRefinements; ++step) {
+  for (int step = 0; step < kMaxRefinements; ++step) {
     const Eigen::VectorXd imbalance = dual.imbalance();
-    if (imbalance.cwiseAbs().maxCoeff() <= kMostImbalance) return dual.forces();
+    if (imbalance.cwiseAbs().maxCoeff() <= kMaxImbalance) return dual.forces();
     const Eigen::VectorXd direction = dual.newtonStep();
     const double slope = imbalance.dot(direction);
     double length = 1.0;
     for (;; length *= 0.5) {
-      if (!(length > kLeastStep)) return {};
+      if (!(length > kMinStep)) return {};
       const double next = dual.evaluate(displacement + length * direction);
       // Near the end the value no longer resolves the progress; the imbalance does.
       const bool balances = dual.imbalance().norm() < 0.9 * imbalance.norm() && std::abs(next - value) <= 1e-9 * std::abs(value);

@@ -15,7 +15,7 @@ namespace {
 constexpr int kFirstSides = 4;  // edges of every pyramid that are there from the start
 constexpr double kTolerance = 1e-9;
 constexpr double kPriceTolerance = 1e-8;
-constexpr double kMostRowImbalance = 1e-7;
+constexpr double kMaxRowImbalance = 1e-7;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 double angleOf(int side) {
@@ -190,8 +190,8 @@ void EquilibriumProgram::setBounds(std::size_t variableLoad, double lower, doubl
 bool EquilibriumProgram::isFeasible() {
   solver_->seekingBalance = true;
   solver_->setCosts();
-  solver_->solve(kMostRowImbalance);
-  return solver_->clp.objectiveValue() <= kMostRowImbalance;
+  solver_->solve(kMaxRowImbalance);
+  return solver_->clp.objectiveValue() <= kMaxRowImbalance;
 }
 
 double EquilibriumProgram::maximise(std::span<const double> costs, std::span<const double> pointCosts) {
@@ -261,7 +261,7 @@ bool parallelForcesBalance(const StaticsModel& model, std::span<const std::size_
   const auto columns = static_cast<int>(starts.size()) - 1;
   if (columns > 0) clp.addColumns(columns, nullptr, nullptr, nullptr, starts.data(), rows.data(), values.data());
   clp.primal();
-  return clp.status() == 0 && clp.objectiveValue() <= kMostRowImbalance;
+  return clp.status() == 0 && clp.objectiveValue() <= kMaxRowImbalance;
 }
 
 }  // namespace springtower

@@ -35,7 +35,7 @@ Eigen::VectorXd StaticsModel::gravityLoad(const Vec3& gravity) const {
   return load;
 }
 
-StaticsModel staticsModel(const Scene& scene, std::span<const Facing> facings) {
+StaticsModel staticsModel(const Scene& scene, std::span<const FacePair> facings) {
   if (scene.blocks.empty()) throw InputError("statics: found no blocks, allowed is at least one");
   if (scene.gravity.magnitude <= 0.0) throw InputError("statics: found no gravity, allowed is a magnitude above 0");
   StaticsModel model;

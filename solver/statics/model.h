@@ -46,6 +46,6 @@ struct StaticsModel {
 };
 
 /// The model of a scene with the points of `facings`. Throws InputError when the scene has no gravity or no blocks.
-StaticsModel staticsModel(const Scene& scene, std::span<const Facing> facings);
+StaticsModel staticsModel(const Scene& scene, std::span<const FacePair> facings);
 
 }  // namespace springtower

@@ -15,10 +15,10 @@ namespace {
 
 constexpr double kReach = 0.5;        // gaps looked at, in heights of the lowest block
 constexpr double kSettledGap = 1e-6;  // gaps below this are closed, in mean heights
-constexpr double kMostStaticTurn = 5.0 * std::numbers::pi / 180.0;
-constexpr double kMostSinking = 0.5;  // in mean heights
-constexpr double kMostPull = 1e6;     // in mean block weights; what exceeds it is unlimited
-constexpr double kNoLoad = 1e-6;      // in mean block weights
+constexpr double kMaxStaticTurn = 5.0 * std::numbers::pi / 180.0;
+constexpr double kMaxSinking = 0.5;  // in mean heights
+constexpr double kMaxPull = 1e6;     // in mean block weights; what exceeds it is unlimited
+constexpr double kNoLoad = 1e-6;     // in mean block weights
 
 std::vector<std::size_t> allPoints(const StaticsModel& model) {
   std::vector<std::size_t> points(model.points.size());
@@ -59,7 +59,7 @@ std::optional<Settlement> settle(const StaticsModel& model) {
   Settlement settlement;
   for (std::size_t b = 0; b < model.blockCount(); ++b) {
     const Vec6 motion = price.segment<6>(static_cast<Eigen::Index>(6 * b));
-    if (motion.tail<3>().norm() > kMostStaticTurn || motion[2] > kMostSinking) return {};
+    if (motion.tail<3>().norm() > kMaxStaticTurn || motion[2] > kMaxSinking) return {};
     settlement.motion_m = std::max(settlement.motion_m, motion.head<3>().norm() * model.lengthUnit_m);
   }
   for (const ForcePoint& point : model.points) {
@@ -112,7 +112,7 @@ StaticScene staticScene(const Scene& scene) {
   return result;
 }
 
-std::optional<TiltMargin> tiltMargin(const StaticScene& scene, double tolerance_deg) {
+std::optional<StabilityMargin> tiltMargin(const StaticScene& scene, double tolerance_deg) {
   return tiltMargin(scene.model, scene.usable, scene.gravity, tolerance_deg);
 }
 
@@ -131,7 +131,7 @@ ContactLoads contactLoads(const StaticScene& scene) {
     forces = program.forces();
     loads.anyOfMany = true;
   }
-  for (const Facing& facing : scene.facings) {
+  for (const FacePair& facing : scene.facings) {
     ContactLoad& contact = loads.contacts.emplace_back();
     contact.upper = facing.upper;
     contact.lower = facing.lower;
@@ -183,7 +183,7 @@ std::vector<BlockLoad> blockLoads(const StaticScene& scene, const ContactLoads& 
     load.gap_m = std::min(load.gap_m, scene.settledGap_m[p]);
   }
   for (std::size_t c = 0; c < scene.facings.size(); ++c) {
-    const Facing& facing = scene.facings[c];
+    const FacePair& facing = scene.facings[c];
     if (facing.lower != kFloor && facing.normal.z() > 0.5) result[index(facing.lower)].above_n += loads.contacts[c].normal_n;
   }
   EquilibriumProgram program(model, scene.usable, model.gravityLoad(scene.gravity));
@@ -236,9 +236,9 @@ std::optional<double> pullLimit(const StaticScene& scene, BlockId block, const V
   pull.segment<3>(static_cast<Eigen::Index>(6 * index(block))) = direction;
   program.addVariableLoad(pull);
   if (!program.isFeasible()) return {};
-  program.setBounds(0, 0.0, kMostPull);
+  program.setBounds(0, 0.0, kMaxPull);
   const double limit = program.maximise(std::array{1.0});
-  return limit < 0.999 * kMostPull ? limit * model.forceUnit_n : std::numeric_limits<double>::infinity();
+  return limit < 0.999 * kMaxPull ? limit * model.forceUnit_n : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace springtower

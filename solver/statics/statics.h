@@ -15,7 +15,7 @@ enum class Rest { stands, leans, falls };
 
 /// A scene seen by statics: rigid blocks, the points at which they touch once settled, and the verdict.
 struct StaticScene {
-  std::vector<Facing> facings;       ///< of the blocks as placed
+  std::vector<FacePair> facings;     ///< of the blocks as placed
   StaticsModel model;                ///< its points are those of the facings, in their order
   Vec3 gravity = -Vec3::UnitZ();     ///< unit, of the scene at time 0
   std::vector<std::size_t> usable;   ///< points that touch: as placed, after leaning, or for a scene that falls all there are
@@ -33,7 +33,7 @@ StaticScene staticScene(const Scene& scene);
 
 /// How far gravity can turn from the scene's own before it stands no more; negative for a scene that falls (see tiltMargin; then
 /// all gaps are taken as closed).
-std::optional<TiltMargin> tiltMargin(const StaticScene& scene, double tolerance_deg = 0.005);
+std::optional<StabilityMargin> tiltMargin(const StaticScene& scene, double tolerance_deg = 0.005);
 
 /// The largest tilt from straight down towards one side, degrees (see tiltTowards); nothing where straight down is not borne.
 std::optional<double> tiltTowards(const StaticScene& scene, double direction_deg);
@@ -76,7 +76,7 @@ std::vector<BlockLoad> blockLoads(const StaticScene& scene, const ContactLoads& 
 /// settled anew.
 struct Removal {
   Rest rest = Rest::falls;
-  std::optional<TiltMargin> margin;
+  std::optional<StabilityMargin> margin;
 };
 Removal removalOf(const Scene& scene, BlockId block, double tolerance_deg = 0.05);
 

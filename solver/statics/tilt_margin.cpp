@@ -13,10 +13,10 @@ namespace springtower {
 namespace {
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
-const double kMostSlope = std::tan(89.0 / kDegrees);
+const double kMaxSlope = std::tan(89.0 / kDegrees);
 constexpr double kSameSlope = 1e-9;
-constexpr int kMostQuestions = 2000;  // a circle within 0.005 degrees takes some 130
-constexpr int kMostSides = 400;       // of the first polygon
+constexpr int kMaxQuestions = 2000;  // a circle within 0.005 degrees takes some 130
+constexpr int kMaxSides = 400;       // of the first polygon
 
 // Where a hull is nearest to the origin: for an origin inside the outward normal of the nearest edge and its distance; for one
 // outside the direction from the nearest point to the origin, and minus its distance.
@@ -69,7 +69,7 @@ class BearableGravities {
   bool any() {
     program_ = std::make_unique<EquilibriumProgram>(model_, usable_, model_.gravityLoad(gravity_));
     for (int i = 0; i < 2; ++i) {
-      program_->setBounds(program_->addVariableLoad(model_.gravityLoad(plane_.col(i))), -kMostSlope, kMostSlope);
+      program_->setBounds(program_->addVariableLoad(model_.gravityLoad(plane_.col(i))), -kMaxSlope, kMaxSlope);
     }
     return program_->isFeasible();
   }
@@ -96,7 +96,7 @@ std::vector<Vec2> polygonWithin(const std::vector<GravityLimit>& limits, double 
                                 double friction) {
   const double widest = std::acos(std::min(1.0, radius / friction));
   const double sides = std::max(4.0, std::ceil(std::numbers::pi / widest + 1e-6));
-  if (!(sides <= kMostSides)) return {};
+  if (!(sides <= kMaxSides)) return {};
   std::vector<Vec2> polygon;
   for (int i = 0; i < static_cast<int>(sides); ++i) {
     const double angle = std::atan2(first.y(), first.x()) + std::numbers::pi * (2 * i + 1) / sides;
@@ -108,8 +108,8 @@ std::vector<Vec2> polygonWithin(const std::vector<GravityLimit>& limits, double 
 
 }  // namespace
 
-std::optional<TiltMargin> tiltMargin(const StaticsModel& model, const std::vector<std::size_t>& usable, const Vec3& gravity,
-                                     double tolerance_deg) {
+std::optional<StabilityMargin> tiltMargin(const StaticsModel& model, const std::vector<std::size_t>& usable, const Vec3& gravity,
+                                          double tolerance_deg) {
   // In the order in which equal margins are reported.
   const std::array<Vec2, 4> sides = {Vec2(1, 0), Vec2(0, 1), Vec2(-1, 0), Vec2(0, -1)};
   const double tolerance = tolerance_deg / kDegrees;
@@ -136,7 +136,7 @@ std::optional<TiltMargin> tiltMargin(const StaticsModel& model, const std::vecto
     if (support < best.distance - kSameSlope) best = {direction, support};
   };
   bool prepared = false;
-  for (int question = 0; question < kMostQuestions; ++question) {
+  for (int question = 0; question < kMaxQuestions; ++question) {
     hull = convexHull(std::move(hull), kSameSlope);
     const Nearest nearest = nearestTo(hull);
     if (std::isfinite(best.distance) && std::atan(best.distance) - std::atan(nearest.distance) <= tolerance) break;
@@ -158,7 +158,7 @@ std::optional<TiltMargin> tiltMargin(const StaticsModel& model, const std::vecto
   const Vec3 towards = sign * (bearable.towards(best.direction) - gravity);
   double direction_deg = kDegrees * std::atan2(towards.y(), towards.x());
   if (direction_deg < -1e-9) direction_deg += 360.0;
-  return TiltMargin{kDegrees * std::atan(best.distance), std::max(0.0, direction_deg)};
+  return StabilityMargin{kDegrees * std::atan(best.distance), std::max(0.0, direction_deg)};
 }
 
 std::optional<double> tiltTowards(const StaticsModel& model, const std::vector<std::size_t>& usable, double direction_deg) {
@@ -166,7 +166,7 @@ std::optional<double> tiltTowards(const StaticsModel& model, const std::vector<s
   const double direction = direction_deg / kDegrees;
   program.addVariableLoad(model.gravityLoad(Vec3(std::cos(direction), std::sin(direction), 0.0)));
   if (!program.isFeasible()) return {};
-  program.setBounds(0, 0.0, kMostSlope);
+  program.setBounds(0, 0.0, kMaxSlope);
   return kDegrees * std::atan(program.maximise(std::array{1.0}));
 }
 

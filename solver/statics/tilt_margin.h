@@ -8,7 +8,7 @@
 namespace springtower {
 
 /// How far gravity can turn.
-struct TiltMargin {
+struct StabilityMargin {
   double tilt_deg = 0.0;       ///< from the gravity asked about; negative where that cannot be borne
   double direction_deg = 0.0;  ///< towards which side, from +x over +y
 };
@@ -23,8 +23,8 @@ struct TiltMargin {
 /// within `tolerance_deg` (for an origin outside: the distance algorithm of Gilbert, Johnson & Keerthi 1988). For gravity
 /// straight down gravityLimits comes first: a polygon inside those limits and around the circle that the nearest of them touches;
 /// where forces parallel to gravity balance at its corners no programme has to be solved. Precondition: `gravity` is unit.
-std::optional<TiltMargin> tiltMargin(const StaticsModel& model, const std::vector<std::size_t>& usable, const Vec3& gravity,
-                                     double tolerance_deg = 0.005);
+std::optional<StabilityMargin> tiltMargin(const StaticsModel& model, const std::vector<std::size_t>& usable, const Vec3& gravity,
+                                          double tolerance_deg = 0.005);
 
 /// The largest angle by which gravity may turn from straight down towards one side, degrees, up to 89; nothing where the points
 /// `usable` cannot bear straight down. Directions are from +x over +y.

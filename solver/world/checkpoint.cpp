@@ -6,7 +6,7 @@ namespace springtower {
 
 namespace {
 
-void copyBlock(const CornerArray& from, std::size_t block, CornerArray& to) {
+void copyBlock(const ParticleArray& from, std::size_t block, ParticleArray& to) {
   for (std::size_t a = 0; a < 3; ++a) std::copy_n(from.values(a, block), kCorners, to.values(a, block));
 }
 
@@ -40,7 +40,7 @@ void rewindBlock(Simulation& simulation, std::size_t b) {
   Engine& engine = *simulation.engine;
   copyBlock(engine.frameStart.position, b, simulation.state.position);
   copyBlock(engine.frameStart.velocity, b, simulation.state.velocity);
-  engine.clock[b] = engine.frameStartClock[b];
+  engine.blockHistory[b] = engine.frameStartClock[b];
   if (!hasHistory(simulation)) return;
   copyBlock(engine.frameStartPrevious, b, engine.previous);
   copyBlock(engine.frameStartPreviousVelocity, b, engine.previousVelocity);
@@ -50,7 +50,7 @@ void rewindPair(Engine& engine, std::size_t at) {
   NearPair& pair = engine.pairs[at];
   if (engine.pairKept[at] != 0) pair = engine.pairsBefore[at];
   if (at < engine.pose.size()) engine.pose[at] = engine.frameStartPose[at];
-  if (pair.manifold.touch == Touch::apart || pair.manifold.count > kFew) return;
+  if (pair.manifold.touch == PairPhase::separated || pair.manifold.count > kFew) return;
   restorePoints(engine.frameStartPoints[at], pair.manifold);
 }
 
@@ -72,13 +72,13 @@ void prepareFrameStart(Simulation& simulation) {
   engine.pairKept.assign(engine.pairs.size(), 0);
 }
 
-void rememberStart(IslandStep& step) {
+void saveFrameStart(IslandStep& step) {
   Engine& engine = step.engine;
   for (const std::int32_t block : step.blocks) {
     const auto b = static_cast<std::size_t>(block);
     copyBlock(step.simulation.state.position, b, engine.frameStart.position);
     copyBlock(step.simulation.state.velocity, b, engine.frameStart.velocity);
-    engine.frameStartClock[b] = engine.clock[b];
+    engine.frameStartClock[b] = engine.blockHistory[b];
     if (!hasHistory(step.simulation)) continue;
     copyBlock(engine.previous, b, engine.frameStartPrevious);
     copyBlock(engine.previousVelocity, b, engine.frameStartPreviousVelocity);
@@ -87,29 +87,29 @@ void rememberStart(IslandStep& step) {
     const auto at = static_cast<std::size_t>(pair);
     if (at < engine.pose.size()) engine.frameStartPose[at] = engine.pose[at];
     const Manifold& manifold = engine.pairs[at].manifold;
-    if (manifold.touch == Touch::apart) continue;
+    if (manifold.touch == PairPhase::separated) continue;
     if (manifold.count > kFew) {
-      keepPair(engine, at);
+      savePair(engine, at);
     } else {
       keepPoints(manifold, engine.frameStartPoints[at]);
     }
   }
 }
 
-void keepPair(Engine& engine, std::size_t at) {
+void savePair(Engine& engine, std::size_t at) {
   if (engine.pairKept[at] != 0) return;
   engine.pairKept[at] = 1;
   engine.pairsBefore[at] = engine.pairs[at];
 }
 
-void rewindFrame(Simulation& simulation) {
+void restoreFrame(Simulation& simulation) {
   Engine& engine = *simulation.engine;
   for (const std::int32_t block : engine.islands.blocks) rewindBlock(simulation, static_cast<std::size_t>(block));
   for (const std::int32_t at : engine.islandPairs) rewindPair(engine, static_cast<std::size_t>(at));
-  for (ImplicitIsland& island : engine.implicitIslands) island.forcesKnown = false;
+  for (NewtonSystem& island : engine.newtonSystems) island.forcesKnown = false;
 }
 
-void rewindIsland(IslandStep& step) {
+void restoreIsland(IslandStep& step) {
   for (const std::int32_t block : step.blocks) rewindBlock(step.simulation, static_cast<std::size_t>(block));
   for (const std::int32_t at : step.pairs) rewindPair(step.engine, static_cast<std::size_t>(at));
 }

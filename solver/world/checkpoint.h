@@ -9,13 +9,13 @@ void prepareFrameStart(Simulation& simulation);
 
 /// Keeps what an island starts the frame from: state, clocks, contacts, and what implicit steps remember. Islands do it side by
 /// side, each just before its data are needed anyway.
-void rememberStart(IslandStep& step);
+void saveFrameStart(IslandStep& step);
 
 /// Keeps a pair before anything but the memory of its points changes: that is seldom.
-void keepPair(Engine& engine, std::size_t at);
+void savePair(Engine& engine, std::size_t at);
 
 /// Brings it back, for a whole frame that is run again or for one island.
-void rewindFrame(Simulation& simulation);
-void rewindIsland(IslandStep& step);
+void restoreFrame(Simulation& simulation);
+void restoreIsland(IslandStep& step);
 
 }  // namespace springtower

@@ -8,7 +8,7 @@
 #include "narrowphase/manifold.h"
 #include "solver/algebra/eigen_llt.h"
 #include "solver/law/contact_force.h"
-#include "solver/world/implicit_island.h"
+#include "solver/world/newton_system.h"
 #include "solver/world/report_state.h"
 #include "solver/world/rigid_island.h"
 #include "solver/world/simulation.h"
@@ -26,11 +26,11 @@ struct NearPair {
   std::int32_t a = 0;
   std::int32_t b = -1;
   Manifold manifold;
-  Vec3 witness = Vec3::UnitZ();    ///< apart: a direction that separated them last, from b to a
-  double margin = 0.0;             ///< apart: their gap along it when last measured, m
-  double checkedTravel = 0.0;      ///< sum of both blocks' travel when last looked at, m
-  Vec3 restForce = Vec3::Zero();   ///< N on block a when the first of the two fell asleep; what its partner must keep up
-  Vec3 restTorque = Vec3::Zero();  ///< N m, its torque about the world's origin
+  Vec3 separatingAxis = Vec3::UnitZ();  ///< apart: a direction that separated them last, from b to a
+  double clearance = 0.0;               ///< apart: their gap along it when last measured, m
+  double travelAtCheck = 0.0;           ///< sum of both blocks' travel when last looked at, m
+  Vec3 restForce = Vec3::Zero();        ///< N on block a when the first of the two fell asleep; what its partner must keep up
+  Vec3 restTorque = Vec3::Zero();       ///< N m, its torque about the world's origin
 };
 
 /// What up to four points of a manifold remember, in as few cache lines as hold it.
@@ -41,10 +41,11 @@ struct FewPoints {
 /// How the second block of a pair lies to the first: its centre and sides along the other's edges, m.
 using RelativePose = std::array<float, 12>;
 
-/// One island's private record, kept by the island's smallest block so that it survives other islands' coming and going.
-struct BlockClock {
-  double lastDrift_s = 0.0;         ///< s; the explicit step in which the block's positions last moved; 0 after an implicit one
-  double history_s = 0.0;           ///< s; the implicit step that led here from engine.previous, 0 where it was none
+/// Per-block integration history. `explicitFrames`, `implicitSteps`, `forced`, `spectralRadius` and `contactSignature` belong to
+/// the island and are read from the entry of its lowest-numbered block: when islands merge or split, that block's values survive.
+struct BlockHistory {
+  double lastExplicitStep_s = 0.0;  ///< s; the explicit step in which the block's positions last moved; 0 after an implicit one
+  double lastImplicitStep_s = 0.0;  ///< s; the implicit step that led here from engine.previous, 0 where it was none
   std::int32_t explicitFrames = 0;  ///< frames that the block's island is still to be stepped explicitly
   std::int32_t implicitSteps = 0;   ///< steps of a frame that its ringing asked for last
   bool forced = false;              ///< whether a user's force or the hand acts on its island, as of the last frame begun
@@ -59,7 +60,7 @@ struct BlockClock {
 };
 
 /// What is known of a block's rest: its rigid motion when the window that is running began.
-struct RestWindow {
+struct SleepWindow {
   Vec3 centre = Vec3::Zero();    ///< m
   Vec3 velocity = Vec3::Zero();  ///< m/s
   Vec3 spin = Vec3::Zero();      ///< rad/s
@@ -67,7 +68,7 @@ struct RestWindow {
 };
 
 /// How awake neighbours push a sleeping block otherwise than when it fell asleep, and what it could bear.
-struct PushChange {
+struct LoadChange {
   Vec3 force = Vec3::Zero();   ///< N, change of all their forces
   Vec3 torque = Vec3::Zero();  ///< N m, change of their torque about the block's centre
   Vec3 shear = Vec3::Zero();   ///< N, their friction now
@@ -78,29 +79,29 @@ struct PushChange {
 };
 
 /// How a sleeping block was pushed when all sleepers stayed.
-struct KnownPush {
+struct CheckedLoad {
   std::int32_t block = -1;
   Vec3 force = Vec3::Zero();   ///< N, change
   Vec3 torque = Vec3::Zero();  ///< N m, about the block's centre
 };
 
 /// A group of sleepers, by its root, and a pair on which it may rest.
-struct PairBeneath {
+struct SupportPair {
   std::int32_t group;
   std::int32_t pair;
-  auto operator<=>(const PairBeneath&) const = default;
+  auto operator<=>(const SupportPair&) const = default;
 };
 
 /// What looks for sleepers that give way: working space, and what it last found to stay.
-struct LoadPath {
+struct SupportCheckScratch {
   std::vector<std::int32_t> start;  ///< pairs in which sleeper b touches something are pairs[start[b] .. start[b + 1]]
   std::vector<std::int32_t> pairs;
   std::vector<std::int32_t> blocks;  ///< sleepers that touch pushed ones, directly or through others, from the top down
   std::vector<std::int32_t> parent;  ///< of groups above the level, -1 below it, [blocks]
   std::vector<std::int32_t> open;    ///< pairs across the level
   std::vector<std::int32_t> groups;  ///< that are pushed, ascending
-  std::vector<PairBeneath> beneath;  ///< of these groups, ascending
-  std::vector<KnownPush> known;      ///< of all pushed blocks, in their order; none where some gave way
+  std::vector<SupportPair> beneath;  ///< of these groups, ascending
+  std::vector<CheckedLoad> known;    ///< of all pushed blocks, in their order; none where some gave way
   std::vector<SupportPoint> supports;
 };
 
@@ -122,7 +123,7 @@ struct Engine {
   std::vector<NearPair> pairs;        ///< by (a, b), the floor first for each a
   std::vector<NearPair> pairsBefore;  ///< before the last merge; then, where pairKept is 1, as the frame began
   Islands islands;
-  bool regrouped = true;                ///< whether pairs or islands are others than in the frame before
+  bool topologyChanged = true;          ///< whether pairs or islands are others than in the frame before
   std::vector<std::int32_t> pairStart;  ///< pairs of island i are islandPairs[pairStart[i] .. pairStart[i + 1]]
   std::vector<std::int32_t> islandPairs;
   std::vector<std::int32_t> watchedPairs;  ///< by position in islandPairs: those of each island that are watched, from its first
@@ -132,51 +133,51 @@ struct Engine {
   std::vector<std::int32_t> blockPairs;
   std::vector<std::int32_t> cursor;  ///< working space of counting sorts
   std::vector<BlockPair> touchingEdges;
-  CornerArray force;                       ///< N, [blocks][8]
+  ParticleArray force;                     ///< N, [blocks][8]
   std::vector<BlockFrame> frames;          ///< affine parts of the blocks at the stage being evaluated; of sleepers, as they lie
   std::vector<AffineField> motion;         ///< and of their velocities
   std::vector<AffineField> carriedMotion;  ///< and of the velocities that carried them, in the multi-stage methods
   std::vector<AffineField> contactForce;   ///< N, what contacts put on each block
   std::vector<double> springRadius;        ///< 1/s2, largest eigenvalue of M^-1 K of each block alone
   std::vector<Eigen::Matrix4d>
-      contactMetric;     ///< 1/s2, working space: stiffness of each block's contacts on its affine part, over its mass
-  CornerArray previous;  ///< m, positions at the start of the step, [blocks][8]
-  std::array<MotionState, 4> stage;              ///< states inside a step of the multi-stage methods; empty for the others
-  std::array<CornerArray, 4> stageAcceleration;  ///< m/s2, of the stages
-  CornerArray carried;                           ///< m/s, mean velocity of the last step of a multi-stage method
+      contactMetric;       ///< 1/s2, working space: stiffness of each block's contacts on its affine part, over its mass
+  ParticleArray previous;  ///< m, positions at the start of the step, [blocks][8]
+  std::array<MotionState, 4> stage;                ///< states inside a step of the multi-stage methods; empty for the others
+  std::array<ParticleArray, 4> stageAcceleration;  ///< m/s2, of the stages
+  ParticleArray carried;                           ///< m/s, mean velocity of the last step of a multi-stage method
   std::vector<PointMemory> trial;  ///< by position in `pairs`: contact memory at the end of an implicit step not yet taken
-  CornerArray previousVelocity;    ///< m/s, at the start of the step; for implicit steps
-  std::vector<ImplicitIsland> implicitIslands;  ///< by the island's smallest block; empty for other methods
-  std::vector<SparseFactors> sparseFactors;     ///< by the island's smallest block; of `implicitEigen` alone
-  std::vector<RigidIsland> rigidIslands;        ///< by the island's smallest block; of rigid methods, and of what falls
+  ParticleArray previousVelocity;  ///< m/s, at the start of the step; for implicit steps
+  std::vector<NewtonSystem> newtonSystems;   ///< by the island's smallest block; empty for other methods
+  std::vector<SparseFactors> sparseFactors;  ///< by the island's smallest block; of `implicitEigen` alone
+  std::vector<RigidIsland> rigidIslands;     ///< by the island's smallest block; of rigid methods, and of what falls
   std::vector<RelativePose> pose;    ///< by position in `pairs`: where blocks of rigid steps lay when their manifold was renewed
-  CornerArray history;               ///< m, what past steps give of the position at an implicit step's end
-  CornerArray stepVelocity;          ///< m/s, mean over the implicit step
-  CornerArray target;                ///< m, where the implicit step ends without forces
+  ParticleArray history;             ///< m, what past steps give of the position at an implicit step's end
+  ParticleArray stepVelocity;        ///< m/s, mean over the implicit step
+  ParticleArray target;              ///< m, where the implicit step ends without forces
   GripForce tetherNow;               ///< the hand's, as last evaluated
   std::vector<std::int32_t> nodeOf;  ///< the place of each block in its island, for implicit steps and rigid methods
   std::vector<PairForce> pairForce;  ///< N, by position in `pairs`; for islands that run on many threads
-  std::vector<BlockClock> clock;     ///< [blocks]
-  std::vector<std::int32_t> lostPartner;  ///< sleeping blocks whose awake neighbour went out of reach in this frame
-  std::vector<std::int32_t> beginning;    ///< working space: pairs of each block that may begin to push in this frame
-  std::vector<std::int32_t> toWake;       ///< working space
-  std::vector<std::int32_t> pushed;       ///< working space: sleeping blocks with awake neighbours
-  std::vector<PushChange> change;         ///< working space, [blocks]
-  LoadPath loadPath;
+  std::vector<BlockHistory> blockHistory;     ///< [blocks]
+  std::vector<std::int32_t> lostPartner;      ///< sleeping blocks whose awake neighbour went out of reach in this frame
+  std::vector<std::int32_t> newContactCount;  ///< scratch, [blocks]: pairs of the block that may make first contact in this frame
+  std::vector<std::int32_t> toWake;           ///< working space
+  std::vector<std::int32_t> pushed;           ///< working space: sleeping blocks with awake neighbours
+  std::vector<LoadChange> change;             ///< working space, [blocks]
+  SupportCheckScratch loadPath;
   std::vector<std::int32_t> restless;  ///< working space
   std::vector<std::int32_t> parent;    ///< working space of connectedBlocks
   std::vector<std::uint8_t> touched;   ///< working space: 1 where a block touches one of toWake, directly or through others
   std::vector<std::uint8_t> joined;    ///< working space: 1 where a block touches a restless one, directly or through others
-  std::vector<RestWindow> rest;        ///< [blocks]
+  std::vector<SleepWindow> rest;       ///< [blocks]
   Vec3 gravitySlept = Vec3::Zero();    ///< m/s2, gravity when the last block fell asleep
   ReportState report;                  ///< of method `report`; empty for the others
   MotionState frameStart;              ///< what a frame that has to be run again starts from
-  std::vector<BlockClock> frameStartClock;
+  std::vector<BlockHistory> frameStartClock;
   std::vector<FewPoints> frameStartPoints;   ///< by position in `pairs`: what the points of those that touch remember
   std::vector<RelativePose> frameStartPose;  ///< by position in `pairs`, as engine.pose
   std::vector<std::uint8_t> pairKept;        ///< 1 where a pair has changed since otherwise than in that
-  CornerArray frameStartPrevious;            ///< m, and for implicit steps what they started from
-  CornerArray frameStartPreviousVelocity;    ///< m/s
+  ParticleArray frameStartPrevious;          ///< m, and for implicit steps what they started from
+  ParticleArray frameStartPreviousVelocity;  ///< m/s
   std::vector<Counters> chunkCounters;       ///< of ranges of pairs inside a large island
   std::vector<StageTimes> chunkTimes;        ///< and their times, s of one thread each
   std::vector<Counters> islandCounters;
@@ -186,12 +187,12 @@ struct Engine {
 
 /// How far both blocks of a pair have travelled, m; it only ever grows but where a step or a frame is taken again.
 inline double travelOf(const Engine& engine, const NearPair& pair) {
-  const double first = engine.clock[static_cast<std::size_t>(pair.a)].travel;
-  return pair.b < 0 ? first : first + engine.clock[static_cast<std::size_t>(pair.b)].travel;
+  const double first = engine.blockHistory[static_cast<std::size_t>(pair.a)].travel;
+  return pair.b < 0 ? first : first + engine.blockHistory[static_cast<std::size_t>(pair.b)].travel;
 }
 
 /// The velocities that carried the positions during the last step: those of the state, or the mean over the stages of a
 /// multi-stage method.
-const CornerArray& carriedVelocities(const Simulation& simulation);
+const ParticleArray& carriedVelocities(const Simulation& simulation);
 
 }  // namespace springtower

@@ -24,11 +24,11 @@ struct IslandStep {
   double advance_s = 0.0;       ///< s by which the contact memory is behind the positions
   double scaleMost = 1.0;       ///< most a contact that is born now may be stiffened
   /// Pairs that touch or may use up their margin soon: all, but in steps so short that it is worth listing them.
-  std::span<const std::int32_t> watched = pairs;
-  bool lists = false;     ///< whether the steps are so short
-  int listedFor = 0;      ///< steps for which `watched` still holds
-  bool rigid = false;     ///< whether rigid steps carry the island: its points remember forces
-  bool unforced = false;  ///< neither user forces nor the hand act: the equilibrium before the first frame
+  std::span<const std::int32_t> activePairs = pairs;
+  bool usesActiveList = false;  ///< whether the steps are so short
+  int activeListSteps = 0;      ///< steps for which `watched` still holds
+  bool rigid = false;           ///< whether rigid steps carry the island: its points remember forces
+  bool unforced = false;        ///< neither user forces nor the hand act: the equilibrium before the first frame
 };
 
 /// What came of an island's frame.

@@ -10,7 +10,7 @@ std::size_t bytesOf(const Vector& values) {
   return values.size() * sizeof(typename Vector::value_type);
 }
 
-std::size_t bytesOf(const CornerArray& values) {
+std::size_t bytesOf(const ParticleArray& values) {
   std::size_t sum = 0;
   for (const auto& component : values.component) sum += bytesOf(component);
   return sum;
@@ -47,42 +47,42 @@ MemoryUse memoryUse(const Simulation& simulation) {
     use.model += sumOf(model.restLength[g], model.springStiffness[g], model.springDamping[g]);
   }
   use.contacts = bytesOf(engine.pairs);
-  use.working =
-      sumOf(engine.reach, engine.travelAtSweep, engine.sweptPairs, engine.keys, engine.pairKeys, engine.awakeBlocks,
-            engine.pairsBefore, engine.pairStart, engine.islandPairs, engine.watchedPairs, engine.path, engine.foreseenPath,
-            engine.blockPairStart, engine.blockPairs, engine.cursor, engine.touchingEdges, engine.force, engine.frames,
-            engine.motion, engine.carriedMotion, engine.contactForce, engine.springRadius, engine.contactMetric, engine.previous,
-            engine.carried, engine.pairForce, engine.clock, engine.lostPartner, engine.toWake, engine.pushed, engine.change,
-            engine.loadPath.start, engine.loadPath.pairs, engine.loadPath.blocks, engine.loadPath.parent, engine.loadPath.open,
-            engine.loadPath.groups, engine.loadPath.beneath, engine.loadPath.known, engine.loadPath.supports, engine.beginning,
-            engine.restless, engine.parent, engine.joined, engine.touched, engine.rest, engine.report, engine.frameStart,
-            engine.frameStartClock, engine.frameStartPoints, engine.frameStartPose, engine.pairKept, engine.chunkCounters,
-            engine.chunkTimes, engine.islandCounters, engine.islandTimes, engine.islandOutcome);
+  use.working = sumOf(
+      engine.reach, engine.travelAtSweep, engine.sweptPairs, engine.keys, engine.pairKeys, engine.awakeBlocks, engine.pairsBefore,
+      engine.pairStart, engine.islandPairs, engine.watchedPairs, engine.path, engine.foreseenPath, engine.blockPairStart,
+      engine.blockPairs, engine.cursor, engine.touchingEdges, engine.force, engine.frames, engine.motion, engine.carriedMotion,
+      engine.contactForce, engine.springRadius, engine.contactMetric, engine.previous, engine.carried, engine.pairForce,
+      engine.blockHistory, engine.lostPartner, engine.toWake, engine.pushed, engine.change, engine.loadPath.start,
+      engine.loadPath.pairs, engine.loadPath.blocks, engine.loadPath.parent, engine.loadPath.open, engine.loadPath.groups,
+      engine.loadPath.beneath, engine.loadPath.known, engine.loadPath.supports, engine.newContactCount, engine.restless,
+      engine.parent, engine.joined, engine.touched, engine.rest, engine.report, engine.frameStart, engine.frameStartClock,
+      engine.frameStartPoints, engine.frameStartPose, engine.pairKept, engine.chunkCounters, engine.chunkTimes,
+      engine.islandCounters, engine.islandTimes, engine.islandOutcome);
   use.working += sumOf(engine.sweep.order, engine.sweep.place, engine.sweep.columns, engine.sweep.awake, engine.sweep.renewed,
                        engine.sweep.ascending, engine.sweep.outOfOrder);
   for (const MotionState& stage : engine.stage) use.working += bytesOf(stage);
-  for (const CornerArray& acceleration : engine.stageAcceleration) use.working += bytesOf(acceleration);
+  for (const ParticleArray& acceleration : engine.stageAcceleration) use.working += bytesOf(acceleration);
   for (std::size_t a = 0; a < 3; ++a) use.working += sumOf(engine.boxes.lower[a], engine.boxes.upper[a]);
   use.working += sumOf(engine.islands.blocks, engine.islands.start, engine.islands.islandOf, engine.islands.edges,
                        engine.islands.asleep, engine.islands.parent);
-  for (const ImplicitIsland& island : engine.implicitIslands) {
+  for (const NewtonSystem& island : engine.newtonSystems) {
     const BlockCholesky& matrix = island.matrix;
     use.factor += sumOf(matrix.position, matrix.node, matrix.columnStart, matrix.row, matrix.targetStart, matrix.target,
                         matrix.diagonal, matrix.lower);
-    use.working +=
-        sizeof(ImplicitIsland) + sumOf(matrix.mark, matrix.firstChild, matrix.nextChild, matrix.edgeStart, matrix.edgeRow,
-                                       matrix.work, island.touching, island.slot, island.mask, island.axes, island.residual,
-                                       island.affine, island.factorTangents, island.tangents, island.coupled, island.coupledAs,
-                                       island.coupledMotion, island.coupledForce, island.correction, island.kinds, island.kindOf,
-                                       island.order.nodes, island.order.centre, island.edges, island.direction);
+    use.working += sizeof(NewtonSystem) + sumOf(matrix.mark, matrix.firstChild, matrix.nextChild, matrix.edgeStart,
+                                                matrix.edgeRow, matrix.work, island.touching, island.slot, island.mask,
+                                                island.axes, island.residual, island.affine, island.factorTangents,
+                                                island.tangents, island.coupled, island.coupledAs, island.coupledMotion,
+                                                island.coupledForce, island.correction, island.kinds, island.blockClassOf,
+                                                island.order.nodes, island.order.centre, island.edges, island.direction);
   }
-  for (const ImplicitIsland& island : engine.implicitIslands) {
+  for (const NewtonSystem& island : engine.newtonSystems) {
     for (const DissectionSpace& space : island.order.space)
       use.working += sizeof(space) + sumOf(space.neighbourStart, space.neighbour, space.sorted, space.best, space.place,
                                            space.reach, space.change);
   }
   for (const RigidIsland& island : engine.rigidIslands) {
-    const PivotingSpace& pivoting = island.pivoting;
+    const LcpWorkspace& pivoting = island.pivoting;
     use.working += sizeof(RigidIsland) + sumOf(island.bodies, island.contacts, island.movers, island.points, island.known,
                                                pivoting.matrix, pivoting.inverse, pivoting.impulse, pivoting.velocity,
                                                pivoting.least, pivoting.most, pivoting.impulseChange, pivoting.velocityChange,

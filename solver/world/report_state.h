@@ -30,10 +30,10 @@ struct ReportState {
   std::vector<std::vector<ReportContact>> contacts;
   std::vector<std::vector<ReportContact>> frameStartContacts;  ///< what a frame that has to be run again starts from
   std::vector<std::vector<std::int32_t>> struck;  ///< disabled blocks that each awake one has hit hard in this frame, [blocks]
-  CornerArray from;  ///< m; the straight paths of the step, a little longer than the step at both ends
-  CornerArray to;
-  CornerArray low;  ///< m; the box that each corner sweeps
-  CornerArray high;
+  ParticleArray from;  ///< m; the straight paths of the step, a little longer than the step at both ends
+  ParticleArray to;
+  ParticleArray low;  ///< m; the box that each corner sweeps
+  ParticleArray high;
   std::vector<std::uint32_t> version;  ///< changes whenever a block's path does, [blocks]
   std::vector<std::array<std::uint32_t, 2>>
       testedAt;  ///< versions of a pair's blocks when last found clear, by position in the pairs

@@ -53,7 +53,7 @@ struct RigidContact {
 };
 
 /// A body as the passes over the contacts see it. Vectors fill three of four lanes.
-struct alignas(32) ImpulseBody {
+struct alignas(32) SolverBody {
   Lanes velocity;           ///< m/s
   Lanes spin;               ///< rad/s
   Lanes inverseInertia[3];  ///< 1/(kg m2), columns, world axes
@@ -61,7 +61,7 @@ struct alignas(32) ImpulseBody {
 };
 
 /// One point of a manifold as sequential impulses see it. Vectors fill three of four lanes.
-struct alignas(32) ImpulsePoint {
+struct alignas(32) ContactConstraint {
   Lanes normal;        ///< unit, from lower to upper
   Lanes armUpper;      ///< m, from the body's centre to the point
   Lanes armLower;      ///< m
@@ -84,7 +84,7 @@ struct alignas(32) ImpulsePoint {
 };
 
 /// Working space of the pivoting method: rows are the contacts' normals, then their tangents.
-struct PivotingSpace {
+struct LcpWorkspace {
   std::vector<double> matrix;    ///< 1/kg, how an impulse along one row changes the velocity along another, [rows][rows]
   std::vector<double> inverse;   ///< kg, inverse of its part for the clamped rows, [rows][rows] with the first of them in use
   std::vector<double> impulse;   ///< N s, [rows]
@@ -102,12 +102,12 @@ struct PivotingSpace {
 struct RigidIsland {
   std::vector<RigidBody> bodies;  ///< [blocks of the island]
   std::vector<RigidContact> contacts;
-  std::vector<ImpulseBody> movers;   ///< those of `bodies`, and what does not move
-  std::vector<ImpulsePoint> points;  ///< of the method of sequential impulses, in place of `contacts`
-  std::vector<ImpulsePoint> known;   ///< those of the attempt before, in steps taken again
-  double energyBefore_j = 0.0;       ///< kinetic energy before the step, and what gravity has added in it
-  bool touches = false;              ///< whether any contact pushes in the step
-  PivotingSpace pivoting;
+  std::vector<SolverBody> movers;         ///< those of `bodies`, and what does not move
+  std::vector<ContactConstraint> points;  ///< of the method of sequential impulses, in place of `contacts`
+  std::vector<ContactConstraint> known;   ///< those of the attempt before, in steps taken again
+  double energyBefore_j = 0.0;            ///< kinetic energy before the step, and what gravity has added in it
+  bool touches = false;                   ///< whether any contact pushes in the step
+  LcpWorkspace pivoting;
 };
 
 }  // namespace springtower

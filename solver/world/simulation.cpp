@@ -9,7 +9,7 @@ Simulation::~Simulation() = default;
 Simulation::Simulation(Simulation&&) noexcept = default;
 Simulation& Simulation::operator=(Simulation&&) noexcept = default;
 
-const CornerArray& carriedVelocities(const Simulation& simulation) {
+const ParticleArray& carriedVelocities(const Simulation& simulation) {
   const bool multiStage = !simulation.engine->carried.component[0].empty();
   return multiStage ? simulation.engine->carried : simulation.state.velocity;
 }

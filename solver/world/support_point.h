@@ -7,7 +7,7 @@
 namespace springtower {
 
 /// What a point does on which a body rests.
-enum class SupportState : std::uint8_t { sticks, slides, lifted };
+enum class SupportState : std::uint8_t { stick, slip, open };
 
 /// A point on which a rigid body rests, and what it takes up of a change.
 struct SupportPoint {
@@ -17,7 +17,7 @@ struct SupportPoint {
   Vec3 added = Vec3::Zero();   ///< N, by the change
   Vec3 slide = Vec3::Zero();   ///< N, its friction where it slides
   double friction = 0.0;       ///< Coulomb's coefficient
-  SupportState state = SupportState::sticks;
+  SupportState state = SupportState::stick;
 };
 
 }  // namespace springtower

@@ -22,7 +22,7 @@ constexpr int kBottom = 4;  // and of the least
 
 // Two blocks of one size, the second lying on the first, turned about the upright and shifted.
 Manifold manifoldOf(double turn_rad, const Vec3& shift_m, const ManifoldLimits& limits = kLimits) {
-  CornerArray position;
+  ParticleArray position;
   position.resize(2);
   const Eigen::AngleAxisd turn(turn_rad, Vec3::UnitZ());
   for (std::size_t c = 0; c < kCorners; ++c) {

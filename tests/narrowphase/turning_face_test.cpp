@@ -13,8 +13,8 @@ const Vec3 kDimensions_m(0.075, 0.025, 0.015);
 
 // Blocks 0 and 1 at the start of a step and at its end.
 struct Step {
-  CornerArray start;
-  CornerArray end;
+  ParticleArray start;
+  ParticleArray end;
 
   Step() {
     start.resize(2);
@@ -23,7 +23,7 @@ struct Step {
   [[nodiscard]] MovingBlock block(std::size_t b) const { return {cornersOf(start, b), cornersOf(end, b)}; }
 };
 
-void place(CornerArray& corners, std::size_t block, const Eigen::Quaterniond& turn, const Vec3& centre) {
+void place(ParticleArray& corners, std::size_t block, const Eigen::Quaterniond& turn, const Vec3& centre) {
   for (std::size_t c = 0; c < kCorners; ++c) {
     const Vec3 side(cornerSide(c, 0), cornerSide(c, 1), cornerSide(c, 2));
     corners.set(block, c, turn * Vec3(0.5 * side.cwiseProduct(kDimensions_m)) + centre);
@@ -85,7 +85,7 @@ TEST(TurningFace, NeverPromisesMoreThanThereIs) {
     ++promised;
     Counters counters;
     EXPECT_FALSE(featuresMeet(step.block(0), step.block(1), counters)) << "case " << i;
-    CornerArray now;
+    ParticleArray now;
     now.resize(2);
     for (const double time : {0.0, 0.25, 0.5, 0.75, 1.0}) {
       for (std::size_t b = 0; b < 2; ++b) {

@@ -53,7 +53,7 @@ Leader drawingHand(std::uint64_t from, int block) {
     const BlockId held = blockId(static_cast<std::size_t>(block));
     const Vec3 along = simulation.scene.blocks[static_cast<std::size_t>(block)].orientation * Vec3::UnitX();
     if (!draw) draw = drawingFrom(simulation, held, along, 0.04);
-    drawOn(*draw, contactForcesOn(simulation, held), simulation);
+    advancePull(*draw, contactForcesOn(simulation, held), simulation);
   };
 }
 

@@ -23,13 +23,13 @@ Simulation ringingBlock(Inertia inertia, Method method, double step_s, int steps
   return simulation;
 }
 
-Vector24 cornerVector(const CornerArray& values, std::size_t block) {
+Vector24 cornerVector(const ParticleArray& values, std::size_t block) {
   Vector24 result;
   for (std::size_t c = 0; c < kCorners; ++c) result.segment<3>(static_cast<Eigen::Index>(3 * c)) = values.at(block, c);
   return result;
 }
 
-void addCornerVector(const Vector24& change, CornerArray& values, std::size_t block) {
+void addCornerVector(const Vector24& change, ParticleArray& values, std::size_t block) {
   for (std::size_t c = 0; c < kCorners; ++c) values.add(block, c, change.segment<3>(static_cast<Eigen::Index>(3 * c)));
 }
 
@@ -52,7 +52,7 @@ Vector24 stiffestMode(const Simulation& simulation, std::size_t block) {
   const auto forceAt = [&](Eigen::Index i, double by) {
     MotionState state = simulation.state;
     addCornerVector(by * Vector24::Unit(i), state.position, block);
-    CornerArray force;
+    ParticleArray force;
     force.resize(simulation.model.blockCount());
     springForces(simulation.model, state, only, noContacts, force);
     return cornerVector(force, block);

@@ -36,9 +36,9 @@ using Vector24 = Eigen::Matrix<double, 24, 1>;
 using Matrix24 = Eigen::Matrix<double, 24, 24>;
 
 /// The numbers of one block's corners as a vector: component a of corner c at 3 c + a.
-Vector24 cornerVector(const CornerArray& values, std::size_t block);
+Vector24 cornerVector(const ParticleArray& values, std::size_t block);
 
-void addCornerVector(const Vector24& change, CornerArray& values, std::size_t block);
+void addCornerVector(const Vector24& change, ParticleArray& values, std::size_t block);
 
 /// Mass matrix of a block's corners, kg: the mean moves with the whole mass, what differs from it with m / own each.
 Matrix24 massMatrix(Inertia inertia, double mass);
@@ -57,7 +57,7 @@ struct BreathingModes {
 BreathingModes breathingModes(const BlockModel& model, Inertia inertia, std::size_t block);
 
 /// Stretches the sides of an undeformed block along the world's axes by these shares.
-inline void stretch(CornerArray& position, std::size_t block, const Vec3& shares) {
+inline void stretch(ParticleArray& position, std::size_t block, const Vec3& shares) {
   const Vec3 middle = centre(position, block);
   for (std::size_t c = 0; c < kCorners; ++c) position.add(block, c, shares.cwiseProduct(position.at(block, c) - middle));
 }

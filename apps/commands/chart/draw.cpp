@@ -243,7 +243,7 @@ const ChartResult* fastestWithin(const Chart& chart, ChartScene scene, double to
 }
 
 AutoChoice choiceOf(const Chart& chart, ChartScene scene) {
-  constexpr double kMostRatio = 1.5;
+  constexpr double kMaxRatio = 1.5;
   AutoChoice choice;
   for (const ChartResult& result : chart.results) {
     if (result.what.scene == scene && result.what.method == Method::automatic) choice.chosen = &result;
@@ -252,7 +252,7 @@ AutoChoice choiceOf(const Chart& chart, ChartScene scene) {
   choice.best = fastestWithin(chart, scene, 1e3 * kAutoTolerance_m);
   choice.within = meets(*choice.chosen, 1e3 * kAutoTolerance_m);
   if (choice.best != nullptr) choice.ratio = choice.chosen->frame_ms / choice.best->frame_ms;
-  choice.passes = choice.within && (choice.best == nullptr || choice.ratio <= kMostRatio);
+  choice.passes = choice.within && (choice.best == nullptr || choice.ratio <= kMaxRatio);
   return choice;
 }
 

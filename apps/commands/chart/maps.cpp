@@ -40,7 +40,7 @@ Scene sceneOf(Method method, int rows, double tolerance_m, int steps) {
 
 double largestOmega(const Simulation& simulation) {
   double squared = 0.0;
-  for (const BlockClock& clock : simulation.engine->clock) squared = std::max(squared, clock.spectralRadius);
+  for (const BlockHistory& clock : simulation.engine->blockHistory) squared = std::max(squared, clock.spectralRadius);
   return std::sqrt(squared);
 }
 
@@ -71,10 +71,10 @@ MapPoint tried(Method method, int rows, double tolerance_m, int steps, const Map
   const std::vector<FittedBox> start = fittedBoxes(simulation.state.position);
   std::vector<int> row;
   for (const BlockSpec& block : simulation.scene.blocks) row.push_back(block.row);
-  const CornerArray closed = closedRows(simulation.state.position, row, true);
+  const ParticleArray closed = stackedReference(simulation.state.position, row, true);
   const long frames = std::max(4L, std::lround(limits.seconds / frame_s));
   const long half = frames / 2;
-  CornerArray settled;
+  ParticleArray settled;
   double squares = 0.0;
   try {
     for (long frame = 0; frame < frames; ++frame) {
@@ -98,7 +98,7 @@ MapPoint tried(Method method, int rows, double tolerance_m, int steps, const Map
     return point;
   }
   PenetrationWorkspace workspace;
-  const CornerArray& position = simulation.state.position;
+  const ParticleArray& position = simulation.state.position;
   point.verdict = verdictOf({std::sqrt(squares), largestCornerMove(settled, position),
                              maxPenetration(position, true, workspace).depth, std::abs(topHeightError(closed, position)) / rows},
                             0.5 * limits.seconds);

@@ -53,7 +53,7 @@ double tooSlowAtFewRows(const ChartCase& what, const ChartLimits& limits) {
 
 // Where the corners are at the end of a smooth scene when its model is stepped so finely that the steps no longer show: springs
 // of the case's stiffness, or rigid blocks.
-CornerArray convergedEnd(const ChartCase& what, const ChartLimits& limits) {
+ParticleArray convergedEnd(const ChartCase& what, const ChartLimits& limits) {
   constexpr double kFinerSteps = 8.0;     // of a method of fourth order
   constexpr double kRigidSteps = 5000.0;  // of methods of first order, which chart with up to 200
   ChartCase finest = what;
@@ -74,7 +74,7 @@ CornerArray convergedEnd(const ChartCase& what, const ChartLimits& limits) {
 
 // What the last frame has made of each block's momentum, in weights of the block: for an engine whose contact forces are not
 // known.
-double imbalanceFromMomentum(const Simulation& simulation, const CornerArray& velocityBefore) {
+double imbalanceFromMomentum(const Simulation& simulation, const ParticleArray& velocityBefore) {
   double largest = 0.0;
   for (std::size_t b = 0; b < simulation.model.blockCount(); ++b)
     largest = std::max(largest, (centre(simulation.state.velocity, b) - centre(velocityBefore, b)).norm());
@@ -91,7 +91,7 @@ class ChartRun {
     const Scene& scene = simulation_.scene;
     start_ = simulation_.state.position;
     for (const BlockSpec& block : scene.blocks) row_.push_back(block.row);
-    closed_ = closedRows(start_, row_, scene.floor);
+    closed_ = stackedReference(start_, row_, scene.floor);
     reference_ = fittedBoxes(closed_);
     if (what.method == Method::automatic) result.note = fmt::format("took {}", nameOf(scene.settings.method));
     if (what.peer != Peer::none) peer_ = std::make_unique<PeerProcess>(what, scene);
@@ -243,7 +243,7 @@ class ChartRun {
 
   // What is looked at after every frame.
   void observe() {
-    const CornerArray& position = simulation_.state.position;
+    const ParticleArray& position = simulation_.state.position;
     const ChartScene scene = result.what.scene;
     if (fall_.empty() && expectedToStand(scene)) {
       const Standing now = standing(simulation_.model, reference_, position, leftOut_);
@@ -302,8 +302,8 @@ class ChartRun {
   ChartLimits limits_;
   ChartTimes times_;
   Simulation simulation_;
-  CornerArray start_;
-  CornerArray closed_;  // the start without gaps between rows
+  ParticleArray start_;
+  ParticleArray closed_;  // the start without gaps between rows
   std::vector<FittedBox> reference_;
   std::vector<int> row_;
   std::vector<std::uint8_t> leftOut_;
@@ -311,11 +311,11 @@ class ChartRun {
   SteadyPull hand_;
   SteadyPull handKept_;
   std::unique_ptr<PeerProcess> peer_;  // instead of our own steps
-  CornerArray velocityBefore_;         // of its last frame
+  ParticleArray velocityBefore_;       // of its last frame
   bool kept_ = false;
   std::shared_ptr<const Snapshot> snapshot_;
   PenetrationWorkspace workspace_;
-  CornerArray settledPosition_;
+  ParticleArray settledPosition_;
   std::string fall_;
   double start_j_ = 0.0;
   double penetration_m_ = -1.0;

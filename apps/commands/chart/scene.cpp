@@ -15,7 +15,7 @@ constexpr double kDrop_m = 0.02;
 constexpr int kDropRows = 3;
 // The collapsing tower leans by a little more than it can stand; a short one would slide before.
 constexpr double kBeyondStanding_deg = 0.6;
-constexpr double kMostTilt_deg = 30.0;
+constexpr double kMaxTilt_deg = 30.0;
 constexpr double kHeavyFactor = 10.0;
 constexpr int kLeanRows = 9;
 constexpr double kLean_deg = 9.0;
@@ -24,7 +24,7 @@ constexpr double kMotion_s = 2.0;  // of scenes that do not come to rest
 
 double collapseTilt_deg(int rows) {
   const double standing = std::atan(kBlockLength_m / (rows * kBlockHeight_m)) * 180.0 / std::numbers::pi;
-  return std::min(standing + kBeyondStanding_deg, kMostTilt_deg);
+  return std::min(standing + kBeyondStanding_deg, kMaxTilt_deg);
 }
 
 // One block that slides until friction stops it, eight that fall askew and come to lie in a heap, or two that are thrown at one

@@ -22,7 +22,7 @@
 namespace springtower {
 namespace {
 
-constexpr Range kProfileRowsRange{1, kMostRows, ""};
+constexpr Range kProfileRowsRange{1, kMaxRows, ""};
 constexpr Range kTowersRange{1, 2000, ""};
 constexpr Range kToleranceRange{1e-7, 1e-2, "m"};
 constexpr Range kProfileSamplesRange{1, 1000, ""};

@@ -114,7 +114,7 @@ void startPulling(PreparedScene& scene, int rows, const Deadline& deadline) {
 
 void PreparedScene::step() {
   const BlockId held = hand.hand.block;
-  if (held != kFloor) drawOn(hand, contactForcesOn(simulation, held), simulation);
+  if (held != kFloor) advancePull(hand, contactForcesOn(simulation, held), simulation);
   stepFrame(simulation);
 }
 

@@ -16,8 +16,8 @@ using Json = nlohmann::ordered_json;
 
 Json forcesJson(const Simulation& simulation) {
   const Scene& scene = simulation.scene;
-  const std::vector<ContactForce> contactsNow = contactForces(simulation);
-  const std::vector<Imbalance> left = imbalances(simulation, contactsNow);
+  const std::vector<ContactForce> activeSetNow = contactForces(simulation);
+  const std::vector<Imbalance> left = imbalances(simulation, activeSetNow);
   Json blocks = Json::array();
   for (std::size_t b = 0; b < simulation.model.blockCount(); ++b) {
     const BlockSpec& spec = scene.blocks[b];
@@ -36,7 +36,7 @@ Json forcesJson(const Simulation& simulation) {
   for (const UserPush& user : userPushes(simulation))
     pushes.push_back({{"block", user.block}, {"place_m", vectorJson(user.place)}, {"force_n", vectorJson(user.force)}});
   Json contacts = Json::array();
-  for (const ContactForce& contact : contactsNow) {
+  for (const ContactForce& contact : activeSetNow) {
     contacts.push_back({{"upper", blockJson(contact.upper)},
                         {"lower", blockJson(contact.lower)},
                         {"place_on_upper_m", vectorJson(contact.point)},

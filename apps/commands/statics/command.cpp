@@ -21,7 +21,7 @@ namespace springtower {
 namespace {
 
 // A programme's time grows with the cube of this.
-constexpr std::size_t kMostStaticBlocks = 1000;
+constexpr std::size_t kMaxStaticBlocks = 1000;
 
 constexpr std::string_view kHelp =
     R"help(Blocks are taken as rigid, with Coulomb friction where faces touch: no motion is simulated. The scene stands if some
@@ -82,9 +82,9 @@ Scene sceneOf(const StaticsCommand& command) {
   }
   std::sort(gone.rbegin(), gone.rend());
   for (const std::size_t block : gone) scene.blocks.erase(scene.blocks.begin() + static_cast<std::ptrdiff_t>(block));
-  if (scene.blocks.empty() || scene.blocks.size() > kMostStaticBlocks) {
+  if (scene.blocks.empty() || scene.blocks.size() > kMaxStaticBlocks) {
     throw InputError(fmt::format("{}: found {} blocks, allowed for statics are 1 to {}", onOneLine(command.scene),
-                                 scene.blocks.size(), kMostStaticBlocks));
+                                 scene.blocks.size(), kMaxStaticBlocks));
   }
   return scene;
 }

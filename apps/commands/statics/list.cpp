@@ -32,7 +32,7 @@ struct Sequence {
 
 struct Answer {
   Rest rest = Rest::falls;
-  std::optional<TiltMargin> margin;
+  std::optional<StabilityMargin> margin;
   std::vector<bool> standsAfter;  // of a sequence: at the start and after each removal
 };
 

@@ -32,7 +32,7 @@ std::string placeOf(const Scene& scene, BlockId id) {
 
 Json contactJson(const StaticsAnswer& answer, std::size_t c) {
   const ContactLoad& contact = answer.loads.contacts[c];
-  const Facing& facing = answer.statics.facings[c];
+  const FacePair& facing = answer.statics.facings[c];
   Json points = Json::array();
   for (std::size_t p = 0; p < facing.points.size(); ++p) {
     points.push_back({{"place_m", vectorJson(facing.points[p].place)},
@@ -100,7 +100,7 @@ std::string_view nameOf(Rest rest) {
   return "falls";
 }
 
-Json restJson(Rest rest, const std::optional<TiltMargin>& margin) {
+Json restJson(Rest rest, const std::optional<StabilityMargin>& margin) {
   Json json;
   json["stands"] = rest != Rest::falls;
   json["leans"] = rest == Rest::leans;

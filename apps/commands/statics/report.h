@@ -20,7 +20,7 @@ struct PullAnswer {
 /// All that statics says of a scene; what was not asked for or has no meaning for a scene that falls is empty.
 struct StaticsAnswer {
   StaticScene statics;
-  std::optional<TiltMargin> margin;
+  std::optional<StabilityMargin> margin;
   ContactLoads loads;
   std::vector<BlockLoad> blocks;
   std::vector<Removal> removals;
@@ -32,7 +32,7 @@ struct StaticsAnswer {
 std::string_view nameOf(Rest rest);
 
 /// Verdict and margin under the names that lists and reports share: stands, leans, tilt_deg, tilt_direction_deg.
-nlohmann::ordered_json restJson(Rest rest, const std::optional<TiltMargin>& margin);
+nlohmann::ordered_json restJson(Rest rest, const std::optional<StabilityMargin>& margin);
 
 /// All figures under the names that the README explains.
 nlohmann::ordered_json staticsJson(const Scene& scene, const StaticsAnswer& answer);

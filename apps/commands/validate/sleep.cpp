@@ -67,7 +67,7 @@ DrawnOut drawOut(Scene scene, int row, Sleep sleep) {
   const Vec3 before = centre(simulation.state.position, block);
   const double begin_s = simulation.time_s;
   while (!drawn.freed && simulation.time_s < begin_s + kLongestPull_s) {
-    drawOn(draw, contactForcesOn(simulation, blockId(block)), simulation);
+    advancePull(draw, contactForcesOn(simulation, blockId(block)), simulation);
     stepFrame(simulation);
     const double moved = (centre(simulation.state.position, block) - before).dot(direction);
     if (moved < kSlides_m) continue;

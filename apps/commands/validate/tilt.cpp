@@ -13,9 +13,9 @@
 namespace springtower {
 namespace {
 
-constexpr double kMostMargin_deg = 20.0;
-constexpr double kLeastMargin_deg = 1.0;
-constexpr int kMostRows = 8;
+constexpr double kMaxMargin_deg = 20.0;
+constexpr double kMinMargin_deg = 1.0;
+constexpr int kMaxRows = 8;
 constexpr double kTolerance_deg = 0.3;
 constexpr double kEarlier_deg = 0.5;    // where friction is active
 constexpr double kAhead_deg = 1.2;      // where the ramp begins
@@ -36,10 +36,10 @@ struct Tilted {
 };
 
 Tilted tiltedScene(const std::string& id, Scene scene) {
-  const std::optional<TiltMargin> margin = tiltMargin(staticScene(scene));
+  const std::optional<StabilityMargin> margin = tiltMargin(staticScene(scene));
   Scene rough = scene;
   rough.staticFriction = kManyFriction;
-  const std::optional<TiltMargin> roughMargin = tiltMargin(staticScene(rough));
+  const std::optional<StabilityMargin> roughMargin = tiltMargin(staticScene(rough));
   scene.settings.sleep = Sleep::off;
   const double tilt_deg = margin ? margin->tilt_deg : -1.0;
   const double rough_deg = roughMargin ? roughMargin->tilt_deg : -1.0;
@@ -70,10 +70,10 @@ std::vector<Tilted> tiltedScenes(const ValidationPlan& plan, std::size_t count) 
   if (!file) throw InputError(fmt::format("--oracle: found no file {}, allowed is the folder of the reference sets", path));
   std::vector<VerdictLine> fit;
   for (VerdictLine& line : readVerdictLines(file, path)) {
-    if (rowsOf(line.scene) > kMostRows || !line.expect.is_object() || !line.expect.value("clear", false)) continue;
+    if (rowsOf(line.scene) > kMaxRows || !line.expect.is_object() || !line.expect.value("clear", false)) continue;
     if (!line.expect.contains("tilt_deg") || !line.expect.at("tilt_deg").is_number()) continue;
     const double tilt_deg = line.expect.at("tilt_deg").get<double>();
-    if (tilt_deg > kLeastMargin_deg && tilt_deg < kMostMargin_deg) fit.push_back(std::move(line));
+    if (tilt_deg > kMinMargin_deg && tilt_deg < kMaxMargin_deg) fit.push_back(std::move(line));
   }
   std::vector<Tilted> drawn;
   for (std::size_t i = 0; i < std::min(count, fit.size()); ++i) {

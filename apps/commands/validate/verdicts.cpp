@@ -22,7 +22,7 @@ constexpr double kSeconds = 10.0;
 constexpr double kWatch_s = 0.5;
 constexpr double kSameEnd_m = 1e-4;
 constexpr double kSameTime = 0.05;
-constexpr std::size_t kMostNotes = 12;
+constexpr std::size_t kMaxNotes = 12;
 
 struct OracleSet {
   std::string_view name;
@@ -35,7 +35,7 @@ struct Fate {
   std::string divergence;
   Standing standing;
   double fall_s = 0.0;
-  CornerArray end;
+  ParticleArray end;
 };
 
 Fate fateOf(Scene scene, Sleep sleep) {
@@ -221,9 +221,9 @@ ValidationSection validateVerdicts(const ValidationPlan& plan) {
     addClaims(set, counts, section);
   }
   addRemovalStatics(plan, section);
-  if (section.notes.size() > kMostNotes) {
-    const std::size_t more = section.notes.size() - kMostNotes;
-    section.notes.resize(kMostNotes);
+  if (section.notes.size() > kMaxNotes) {
+    const std::size_t more = section.notes.size() - kMaxNotes;
+    section.notes.resize(kMaxNotes);
     section.notes.push_back(fmt::format("and {} more", more));
   }
   return section;

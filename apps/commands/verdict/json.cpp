@@ -14,7 +14,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 // The library parses any depth, but copies and prints by recursion, which ends the program where there is very much of it.
-constexpr int kMostNesting = 32;
+constexpr int kMaxNesting = 32;
 
 // Follows the parser through a line and refuses what the parser would let pass.
 class Watch {
@@ -23,9 +23,9 @@ class Watch {
 
   void see(int depth, Json::parse_event_t event, const Json& parsed) {
     const bool opens = event == Json::parse_event_t::object_start || event == Json::parse_event_t::array_start;
-    if (opens && depth == kMostNesting) {
+    if (opens && depth == kMaxNesting) {
       throw InputError(
-          fmt::format("{}: found nesting deeper than {} levels, allowed are at most {}", place(), kMostNesting, kMostNesting));
+          fmt::format("{}: found nesting deeper than {} levels, allowed are at most {}", place(), kMaxNesting, kMaxNesting));
     }
     if (event == Json::parse_event_t::object_start) keys_.emplace_back();
     if (event == Json::parse_event_t::object_end) keys_.pop_back();

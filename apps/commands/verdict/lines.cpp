@@ -105,11 +105,11 @@ VerdictLine readLine(const Json& json, const std::string& where) {
                       {"id", "config", "mu", "offsets_m", "lower_m", "gravity_tilt_deg", "gravity_direction_deg", "expect"});
   TowerOptions options;
   for (const Object& offset : object.list("offsets_m", {"row", "position", "dx", "dy"})) {
-    options.offsets.push_back({offset.wholeNumber("row", 0, kMostRows - 1), offset.wholeNumber("position", 1, 3),
+    options.offsets.push_back({offset.wholeNumber("row", 0, kMaxRows - 1), offset.wholeNumber("position", 1, 3),
                                offset.number("dx", kOffsetRange, 0.0), offset.number("dy", kOffsetRange, 0.0)});
   }
   for (const Object& loose : object.list("lower_m", {"row", "position", "by"})) {
-    options.loose.push_back({loose.wholeNumber("row", 0, kMostRows - 1), loose.wholeNumber("position", 1, 3),
+    options.loose.push_back({loose.wholeNumber("row", 0, kMaxRows - 1), loose.wholeNumber("position", 1, 3),
                              loose.number("by", kLooseRange, LooseBlock{}.by)});
   }
   VerdictLine line;

@@ -11,7 +11,7 @@ namespace {
 constexpr Viewport kViewport{1280, 800};
 
 // Slow and plain: each face as a plane and four half planes.
-std::optional<Pick> pickByPlanes(const CornerArray& position, const Ray& ray) {
+std::optional<Pick> pickByPlanes(const ParticleArray& position, const Ray& ray) {
   std::optional<Pick> nearest;
   for (std::size_t b = 0; b < position.blockCount(); ++b) {
     for (std::size_t f = 0; f < kFaces; ++f) {

@@ -38,7 +38,7 @@ TEST(ViewerGame, AForbiddenBlockIsNotHeld) {
 TEST(ViewerGame, DrawingPlacingAndUndoing) {
   Session session(bitCodeScene(kLooseTower), 2);
   wait(session, 60);
-  const CornerArray start = session.simulation.state.position;
+  const ParticleArray start = session.simulation.state.position;
   drawAndPlace(session, kLooseBlock, -1.0, kTop_m, true);
   EXPECT_EQ(session.game.phase, Phase::moving);
   EXPECT_EQ(session.game.block, blockId(kLooseBlock));

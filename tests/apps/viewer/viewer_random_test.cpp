@@ -124,7 +124,7 @@ void play(Viewer& viewer, double seconds, Dice& dice) {
   }
 }
 
-bool finite(const CornerArray& position) {
+bool finite(const ParticleArray& position) {
   for (const auto& values : position.component) {
     for (const double value : values) {
       if (!std::isfinite(value)) return false;

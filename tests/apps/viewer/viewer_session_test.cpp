@@ -77,7 +77,7 @@ TEST(ViewerSession, PicturesLieBetweenTheLastTwoFrames) {
   scene.blocks[0].velocity = {1.0, 0.0, 0.0};
   Session session(scene);
   step(session, idle(session));
-  CornerArray half;
+  ParticleArray half;
   between(session, 0.5, half);
   const Vec3 middle = 0.5 * (session.before.at(0, 0) + session.simulation.state.position.at(0, 0));
   EXPECT_LT((half.at(0, 0) - middle).norm(), 1e-15);
@@ -139,7 +139,7 @@ TEST(ViewerSession, GoesBackOverAChangeOfMethodAndTolerance) {
 TEST(ViewerSession, ALiveChangeOfStiffnessHardlyMovesTheTower) {
   Session session(towerScene(6));
   wait(session, 90);
-  const CornerArray before = session.simulation.state.position;
+  const ParticleArray before = session.simulation.state.position;
   Tuning tuning = session.tuning;
   tuning.method = Method::midpoint;
   for (int i = 0; i < 60; ++i) step(session, {{}, tuning});
@@ -268,7 +268,7 @@ TEST(ViewerControls, ADragBesideTheBlocksGoesRound) {
 TEST(ViewerControls, LookingMovesNothing) {
   Session session(towerScene(6));
   wait(session, 120);
-  const CornerArray before = session.simulation.state.position;
+  const ParticleArray before = session.simulation.state.position;
   Controls controls;
   showAll(controls.camera, before);
   int hovered = 0;

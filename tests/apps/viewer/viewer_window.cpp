@@ -12,7 +12,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kFirstWords = "first picture after ";
 
-CornerArray readPoses(const std::string& path) {
+ParticleArray readPoses(const std::string& path) {
   std::vector<std::vector<double>> rows;
   for (const std::string& line : linesOf(contentOf(path))) {
     if (line.starts_with("time_s")) continue;
@@ -21,7 +21,7 @@ CornerArray readPoses(const std::string& path) {
     for (std::string cell; std::getline(stream, cell, ',');) values.push_back(std::stod(cell));
     rows.push_back(values);
   }
-  CornerArray position;
+  ParticleArray position;
   position.resize(rows.size());
   for (std::size_t b = 0; b < rows.size(); ++b) {
     for (std::size_t c = 0; c < kCorners; ++c) position.set(b, c, {rows[b][2 + 3 * c], rows[b][3 + 3 * c], rows[b][4 + 3 * c]});

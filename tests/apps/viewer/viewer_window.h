@@ -17,7 +17,7 @@ inline constexpr int kWindowHeight = 600;
 /// What the key I writes: what is seen, where the blocks are, and the report.
 struct Inspection {
   nlohmann::json report;
-  CornerArray position;
+  ParticleArray position;
   std::vector<std::int32_t> seen;  ///< rows from the top, -1 none
 
   [[nodiscard]] Vec3 centreOf(std::size_t block) const { return centre(position, block); }

@@ -11,7 +11,7 @@
 namespace springtower {
 namespace {
 
-constexpr std::size_t kMostProductsHere = 100'000'000;
+constexpr std::size_t kMaxProductsHere = 100'000'000;
 
 // A wall in running bond: `rows` rows of `columns` bricks of unit size, each on two of the row below.
 struct Coupled {
@@ -60,7 +60,7 @@ std::vector<std::int32_t> orderOf(const Coupled& nodes) {
 
 std::size_t productsOf(const std::vector<std::int32_t>& order, const Coupled& nodes) {
   BlockCholesky matrix;
-  EXPECT_TRUE(analyse(order, nodes.edges, kMostProductsHere, matrix));
+  EXPECT_TRUE(analyse(order, nodes.edges, kMaxProductsHere, matrix));
   return matrix.products;
 }
 
@@ -113,7 +113,7 @@ TEST(EliminationOrder, DoesNotMindPartsThatAreNotCoupled) {
 TEST(BlockCholesky, HoldsThePairsThatItHasBlocksFor) {
   const Coupled nodes = wall(12, 8);
   BlockCholesky matrix;
-  ASSERT_TRUE(analyse(orderOf(nodes), nodes.edges, kMostProductsHere, matrix));
+  ASSERT_TRUE(analyse(orderOf(nodes), nodes.edges, kMaxProductsHere, matrix));
   EXPECT_TRUE(holds(matrix, nodes.edges));
   std::vector<BlockPair> fewer(nodes.edges.begin() + 5, nodes.edges.end());
   EXPECT_TRUE(holds(matrix, fewer));

@@ -143,7 +143,7 @@ Eigen::MatrixXd fullMatrix(const Simulation& simulation, Inertia inertia, double
     Vec3 x = state.position.at(0, at(moved).first);
     x[at(moved).second] += by;
     state.position.set(0, at(moved).first, x);
-    CornerArray force;
+    ParticleArray force;
     force.resize(1);
     springForces(simulation.model, state, blocks, none, force);
     Eigen::VectorXd values(24);
@@ -153,11 +153,11 @@ Eigen::MatrixXd fullMatrix(const Simulation& simulation, Inertia inertia, double
   const double step = 1e-8;
   Eigen::MatrixXd full(24, 24);
   for (Eigen::Index i = 0; i < 24; ++i) full.col(i) = springFactor * (forces(i, -step) - forces(i, step)) / (2.0 * step);
-  CornerArray unit[2];
+  ParticleArray unit[2];
   for (Eigen::Index i = 0; i < 24; ++i) {
     for (Eigen::Index k = 0; k < 24; ++k) {
-      for (CornerArray& field : unit) {
-        field = CornerArray{};
+      for (ParticleArray& field : unit) {
+        field = ParticleArray{};
         field.resize(1);
       }
       unit[0].set(0, at(i).first, Vec3::Unit(at(i).second));
@@ -178,7 +178,7 @@ TEST_P(JacobianTest, SolvesAsTheFullMatrixDoes) {
   const double springFactor = 1.01;
   const Eigen::MatrixXd full = fullMatrix(simulation, GetParam(), rate, springFactor);
   Eigen::VectorXd load(24);
-  CornerArray force;
+  ParticleArray force;
   force.resize(1);
   for (std::size_t c = 0; c < kCorners; ++c) {
     const double d = static_cast<double>(c);
@@ -204,7 +204,7 @@ TEST_P(JacobianTest, SolvesAsTheFullMatrixDoes) {
   ModeVectors change{};
   for (std::size_t i = 0; i < kAffineFreedoms; ++i) change[i / 3][i % 3] = affine[static_cast<Eigen::Index>(i)];
   recoverWarps(jacobian, residual, change);
-  CornerArray moved;
+  ParticleArray moved;
   moved.resize(1);
   addModes(change, moved, 0);
   for (Eigen::Index i = 0; i < 24; ++i) {

@@ -16,8 +16,8 @@ struct TestBox {
 };
 
 /// The corners of undeformed cuboids.
-inline CornerArray cornersOf(const std::vector<TestBox>& boxes) {
-  CornerArray position;
+inline ParticleArray cornersOf(const std::vector<TestBox>& boxes) {
+  ParticleArray position;
   position.resize(boxes.size());
   for (std::size_t b = 0; b < boxes.size(); ++b) {
     for (std::size_t c = 0; c < kCorners; ++c) {

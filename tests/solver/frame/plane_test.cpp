@@ -23,7 +23,7 @@ Scene prototype(Method method) {
 }
 
 // Largest distance of any corner from the mirror image, in the plane y = 0, of its partner across a block's second axis.
-double asymmetry(const CornerArray& position) {
+double asymmetry(const ParticleArray& position) {
   double largest = 0.0;
   for (std::size_t b = 0; b < position.blockCount(); ++b) {
     for (const std::size_t c : {0U, 1U, 4U, 5U}) {
@@ -51,7 +51,7 @@ Outcome outcomeOf(const Scene& scene) {
   constexpr int kFrames = 30;
   for (int frame = 0; frame < kFrames; ++frame) {
     stepFrame(simulation);
-    const CornerArray& position = simulation.state.position;
+    const ParticleArray& position = simulation.state.position;
     outcome.meanPenetration_m += maxPenetration(position, true, workspace).depth / kFrames;
     outcome.strain = std::max(outcome.strain, maxStrain(simulation.model, position));
     outcome.asymmetry_m = std::max(outcome.asymmetry_m, asymmetry(position));

@@ -35,7 +35,7 @@ Vec3 horizontal(double direction_deg) {
   return {std::cos(angle), std::sin(angle), 0.0};
 }
 
-bool allFinite(const CornerArray& values) {
+bool allFinite(const ParticleArray& values) {
   for (std::size_t b = 0; b < values.blockCount(); ++b) {
     for (std::size_t c = 0; c < kCorners; ++c) {
       if (!values.at(b, c).allFinite()) return false;
@@ -60,12 +60,12 @@ double turnBetween(const FittedBox& from, const FittedBox& to) {
 
 struct SlopeTest : ::testing::TestWithParam<double> {};
 
-// True static friction: the friction angle is 21.8 degrees. A micrometre in a minute is what the design demands; a friction that
+// True static friction: the friction angle is 21.8 degrees. It may creep by a micrometre in a minute; a friction that
 // is only drag would slide by a decimetre.
 TEST_P(SlopeTest, StaysJustBelowTheFrictionAngle) {
   Simulation simulation(slopeScene(0.99, GetParam()));
   stepFor(simulation, 1.0);
-  const CornerArray reference = simulation.state.position;
+  const ParticleArray reference = simulation.state.position;
   double move_m = 0.0;
   while (simulation.time_s < 61.0 - 1e-9) {
     stepFrame(simulation);

@@ -213,7 +213,7 @@ TEST(Grip, FrictionAnswersTheHand) {
 TEST(Grip, TakingABlockOfTheTowerMovesNothing) {
   Held held(towerScene(6));
   wait(held, 150);
-  const CornerArray before = held.simulation.state.position;
+  const ParticleArray before = held.simulation.state.position;
   Hand hand = handOn(held.simulation, blockId(7));
   lead(held, hand, Vec3::Zero(), 1.0, 1.0);
   EXPECT_LT(largestCornerMove(before, held.simulation.state.position), 2e-5);
@@ -225,7 +225,7 @@ TEST(Grip, TakingABlockOfTheTowerMovesNothing) {
 // the block's weight and hands it back within some frames.
 TEST(Grip, MayHoldABlockFromTheFirstFrame) {
   Held held(towerScene(3));
-  const CornerArray before = held.simulation.state.position;
+  const ParticleArray before = held.simulation.state.position;
   Hand hand = handOn(held.simulation, blockId(4));
   lead(held, hand, Vec3::Zero(), 1.0, 0.5);
   EXPECT_LT(largestCornerMove(before, held.simulation.state.position), 2.0 * toleranceOf(held.simulation.scene));
@@ -262,7 +262,7 @@ TEST(Grip, AShearedBlockIsNotTurned) {
 TEST(Grip, TakesAnotherBlockAtOnce) {
   Held held(towerScene(6));
   wait(held, 60);
-  const CornerArray before = held.simulation.state.position;
+  const ParticleArray before = held.simulation.state.position;
   for (const std::size_t block : {7U, 10U, 16U}) {
     Hand hand = handOn(held.simulation, blockId(block));
     lead(held, hand, Vec3::Zero(), 1.0, 0.1);
@@ -285,7 +285,7 @@ TEST(Grip, DrawsABlockOutAtItsSpeed) {
   std::vector<double> times_s;  // when it had come so many millimetres
   double tilt = 0.0;
   for (int i = 0; i < 240 && times_s.size() < 90; ++i) {
-    drawOn(draw, contactForces(simulation), simulation);
+    advancePull(draw, contactForces(simulation), simulation);
     stepFrame(simulation);
     EXPECT_LE(gripForce(simulation).force.norm(), kGripForce_n * (1.0 + 1e-12));
     const double moved = (centre(simulation.state.position, block) - start[block].centre).x();

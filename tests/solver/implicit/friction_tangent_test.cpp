@@ -29,8 +29,8 @@ struct DrawnBlock {
     step.drift_s = 0.25 * simulation.scene.settings.frame_s;
     effective_s = endShare(Method::implicit) * step.drift_s;
     evaluateForces(step, simulation.state, simulation.engine->stepVelocity, step.drift_s, Memory::trial);
-    island().moved = true;
-    island().near = true;
+    island().trialIsAhead = true;
+    island().useConsistentTangent = true;
   }
 
   static Scene scene() {
@@ -51,7 +51,7 @@ struct DrawnBlock {
 
   // New factors for the contacts as they stand.
   bool factorise() {
-    for (std::size_t at = 0; at < island().touching.size(); ++at) island().mask[at] = contactMask(step, island(), at);
+    for (std::size_t at = 0; at < island().touching.size(); ++at) island().mask[at] = activeSetBits(step, island(), at);
     setJacobians(step, effective_s);
     return assemble(step, island(), effective_s);
   }
@@ -68,7 +68,7 @@ struct DrawnBlock {
     return matrix;
   }
 
-  ImplicitIsland& island() { return simulation.engine->implicitIslands[0]; }
+  NewtonSystem& island() { return simulation.engine->newtonSystems[0]; }
 
   // Moves the step's end by displacements [node][12], and finds the forces there.
   void move(const std::vector<double>& displacement) {
@@ -93,7 +93,7 @@ struct DrawnBlock {
   std::vector<double> contactForcesAt(const std::vector<double>& displacement) {
     Simulation& s = simulation;
     const auto place = s.state;
-    const CornerArray carried = s.engine->stepVelocity;
+    const ParticleArray carried = s.engine->stepVelocity;
     move(displacement);
     std::vector<double> force(displacement.size());
     for (const std::int32_t block : step.blocks) {
@@ -131,7 +131,7 @@ std::vector<double> randomVector(std::size_t count, double size) {
 // normal force included. Central differences over so small a way, against some tenths of a micrometre that contacts are deep:
 // within a part in a thousand of the largest force, which friction alone, at 0.4 of the normal forces, is far above.
 void expectTangentsToBeTheDerivative(DrawnBlock& drawn, double way_m) {
-  ImplicitIsland& island = drawn.island();
+  NewtonSystem& island = drawn.island();
   island.mask.assign(island.touching.size(), 0);
   island.factorTangents.clear();
   findTangents(drawn.step, island, drawn.effective_s);
@@ -151,7 +151,7 @@ TEST(ContactTangent, IsTheDerivativeOfTheContactsForces) {
   DrawnBlock drawn;
   int sliding = 0;
   for (std::size_t at = 0; at < drawn.island().touching.size(); ++at)
-    sliding += contactMask(drawn.step, drawn.island(), at) > 0xFFU ? 1 : 0;
+    sliding += activeSetBits(drawn.step, drawn.island(), at) > 0xFFU ? 1 : 0;
   ASSERT_GE(sliding, 6) << "the block slides on three and under three";
   expectTangentsToBeTheDerivative(drawn, 1e-9);
 }
@@ -215,7 +215,7 @@ TEST(ContactTangent, APointThatIsReachedInTheStepPushesFromNothing) {
 // What the factors know and what the contacts are then differ by what is not symmetric alone.
 TEST(ContactTangent, FactorsLackWhatIsNotSymmetric) {
   DrawnBlock drawn;
-  ImplicitIsland& island = drawn.island();
+  NewtonSystem& island = drawn.island();
   ASSERT_TRUE(drawn.factorise());
   ASSERT_FALSE(island.factorTangents.empty());
   findTangents(drawn.step, island, drawn.effective_s);
@@ -230,7 +230,7 @@ TEST(ContactTangent, FactorsLackWhatIsNotSymmetric) {
 // The solution with tangents against a dense one: forces left over are within what was allowed, and ten times as much without.
 TEST(CoupledSolve, SolvesWithTangents) {
   DrawnBlock drawn;
-  ImplicitIsland& island = drawn.island();
+  NewtonSystem& island = drawn.island();
   ASSERT_TRUE(drawn.factorise());
   findTangents(drawn.step, island, drawn.effective_s);
   const std::size_t count = kNodeSize * drawn.step.blocks.size();

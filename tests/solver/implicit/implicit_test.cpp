@@ -89,7 +89,7 @@ INSTANTIATE_TEST_SUITE_P(Speeds, KickTest,
                          });
 
 // Implicit Euler is as sound at rest and dishonest in motion: at four steps a frame it swallows most of a swing that the two-step
-// formula and explicit steps keep (design, section 11, trap 5). The chart shows the first; this is the second.
+// formula and explicit steps keep. The chart shows the first; this is the second.
 TEST(ImplicitEuler, SwallowsASwingThatTheTwoStepFormulaKeeps) {
   const std::vector<double> twoSteps = kickedTop(Method::implicit, 0.02);
   const std::vector<double> oneStep = kickedTop(Method::implicitEuler, 0.02);
@@ -134,7 +134,7 @@ TEST(Implicit, ATowerWithStrongDashpotsBeginsAtRest) {
     Simulation simulation(scene);
     stepFrame(simulation);
     EXPECT_LE(simulation.substeps, 8) << "seed " << seed;
-    const CornerArray start = simulation.state.position;
+    const ParticleArray start = simulation.state.position;
     stepFor(simulation, 0.5);
     for (std::size_t b = 0; b < simulation.model.blockCount(); ++b) {
       for (std::size_t c = 0; c < kCorners; ++c)
@@ -175,7 +175,7 @@ TEST(Implicit, AFrameRunAgainTakesTheSameSteps) {
   const std::vector<double> restTime_s = simulation.restTime_s;
   stepFrame(simulation);
   const std::uint64_t hash = stateHash(simulation);
-  rewindFrame(simulation);
+  restoreFrame(simulation);
   simulation.time_s = time_s;
   --simulation.frame;
   simulation.restTime_s = restTime_s;

@@ -23,7 +23,7 @@ struct RingingBlock {
     step.gravity = simulation.scene.gravity.at(0.0);
   }
 
-  BlockClock& clock() { return simulation.engine->clock[0]; }
+  BlockHistory& clock() { return simulation.engine->blockHistory[0]; }
 
   // A step that ends at time `end_s` of a swing of angular frequency `omega` along x.
   void swing(double omega, double end_s) {
@@ -56,8 +56,8 @@ struct RingingBlock {
             0.1 + effective_s * (speed + change / 3.0) + effective_s * effective_s * step.gravity[static_cast<Eigen::Index>(a)];
       }
     }
-    clock().history_s = h;
-    noteRinging(step, effective_s);
+    clock().lastImplicitStep_s = h;
+    updateFrequencyEstimate(step, effective_s);
   }
 
   static Scene scene() {
@@ -93,7 +93,7 @@ TEST(Ringing, StepsFollowItsFrequency) {
   const auto stepsAt = [&](double turn, int present) {
     block.clock().motion = 1.0;
     block.clock().jerk = std::pow(turn / frame_s, 4.0);
-    return stepsForRinging(block.step, present);
+    return stepsForFrequency(block.step, present);
   };
   EXPECT_EQ(stepsAt(0.1, 1), 1);
   EXPECT_EQ(stepsAt(0.6, 1), 2);   // 1.69
@@ -113,17 +113,17 @@ TEST(Ringing, JumpsOfTheForceDoNotKeepTheStepsFine) {
   for (int frame = 0; frame < 60; ++frame) {
     for (int i = 0; i < kSteps; ++i) block.push(frame % 2 == 0 ? 2.0 : -2.0);
   }
-  EXPECT_LE(stepsForRinging(block.step, kSteps), kSteps / 2 + 1);
+  EXPECT_LE(stepsForFrequency(block.step, kSteps), kSteps / 2 + 1);
 }
 
 TEST(Ringing, OfWhatIsCalmIsNotFollowed) {
   RingingBlock block;
   const double frame_s = block.simulation.scene.settings.frame_s;
-  const double calm = calmSpeed(block.simulation);
+  const double calm = quiescentSpeed(block.simulation);
   const auto stepsAt = [&](double speed) {
     block.clock().motion = block.simulation.model.mass[0] * static_cast<double>(kCorners) * speed * speed;
     block.clock().jerk = std::pow(2.0 / frame_s, 4.0) * block.clock().motion;
-    return stepsForRinging(block.step, 1);
+    return stepsForFrequency(block.step, 1);
   };
   EXPECT_EQ(stepsAt(10.0 * calm), 8);
   EXPECT_EQ(stepsAt(0.01 * calm), 1);

@@ -65,7 +65,7 @@ double deepest(const Simulation& simulation) {
 }
 
 // What moved farthest, m.
-double farthest(const CornerArray& before, const CornerArray& now) {
+double farthest(const ParticleArray& before, const ParticleArray& now) {
   double most = 0.0;
   for (std::size_t b = 0; b < now.blockCount(); ++b) most = std::max(most, (centre(now, b) - centre(before, b)).norm());
   return most;
@@ -76,7 +76,7 @@ double farthest(const CornerArray& before, const CornerArray& now) {
 TEST(WideIsland, AWallRestsWithoutASolution) {
   Simulation simulation(wallScene(20, 12));
   stepFor(simulation, 1.0);
-  const CornerArray before = simulation.state.position;
+  const ParticleArray before = simulation.state.position;
   const Counters then = simulation.counters;
   stepFor(simulation, 1.0);
   EXPECT_EQ(simulation.counters.handedOver, 0U);
@@ -91,11 +91,11 @@ TEST(WideIsland, AWallRestsWithoutASolution) {
 // forces change, the search for its equilibrium ended or not as rounding had it.
 TEST(WideIsland, APyramidOf40RowsBeginsInEquilibrium) {
   Simulation simulation(pyramidScene(40));
-  const CornerArray start = simulation.state.position;
+  const ParticleArray start = simulation.state.position;
   stepFor(simulation, 0.5);
   EXPECT_EQ(simulation.counters.handedOver, 0U);
   EXPECT_LE(deepest(simulation), simulation.tolerance_m);
-  const CornerArray before = simulation.state.position;
+  const ParticleArray before = simulation.state.position;
   stepFor(simulation, 0.5);
   EXPECT_LE(farthest(before, simulation.state.position), 1e-6 / 60.0);
   EXPECT_LE(farthest(start, simulation.state.position), 40.0 * simulation.tolerance_m) << "a row sags by a tolerance at most";
@@ -130,7 +130,7 @@ TEST(WideIsland, IsEliminatedInTheOrderThatFillsInLess) {
   const auto fromBelow = [](const Scene& scene) {
     Simulation simulation(scene);
     stepFrame(simulation);
-    const EliminationOrder& order = simulation.engine->implicitIslands[0].order;
+    const EliminationOrder& order = simulation.engine->newtonSystems[0].order;
     return std::is_sorted(order.nodes.begin(), order.nodes.end(), [&](std::int32_t p, std::int32_t q) {
       return order.centre[static_cast<std::size_t>(p)].z() + 1e-3 < order.centre[static_cast<std::size_t>(q)].z();
     });

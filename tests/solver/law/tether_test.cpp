@@ -155,7 +155,7 @@ TEST(Tether, ABlockDrawnOutTakesImplicitSteps) {
     int most = 0;
     for (int frame = 0; frame < 200 && loaded.drawn() < kBlockLength_m; ++frame) {
       draw.speed_m_s = LoadedBlock::speedAt(frame);
-      drawOn(draw, contactForcesOn(simulation, loaded.block), simulation);
+      advancePull(draw, contactForcesOn(simulation, loaded.block), simulation);
       stepFrame(simulation);
       most = std::max(most, simulation.substeps);
     }

@@ -82,7 +82,7 @@ TEST_F(StandingTest, LeavesOutHeldAndRemovedBlocks) {
 }
 
 TEST_F(StandingTest, APositionThatIsNoNumberHasFallen) {
-  CornerArray position = cornersOf(boxes);
+  ParticleArray position = cornersOf(boxes);
   position.component[0][9] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(standing(model, start, position).stands);
 }
@@ -93,34 +93,34 @@ TEST(ClosedRows, AreTheTowerWithoutItsStartGap) {
   const Scene tight = towerScene(6, options);
   options.startGap_m = 0.004;
   const Scene spaced = towerScene(6, options);
-  const CornerArray expected = cornersOf(boxesOf(tight));
-  const CornerArray closed = closedRows(cornersOf(boxesOf(spaced)), rowsOf(spaced), true);
+  const ParticleArray expected = cornersOf(boxesOf(tight));
+  const ParticleArray closed = stackedReference(cornersOf(boxesOf(spaced)), rowsOf(spaced), true);
   EXPECT_GT(largestCornerMove(cornersOf(boxesOf(spaced)), expected), 0.0199);
   EXPECT_LT(largestCornerMove(closed, expected), 1e-15);
 }
 
 TEST(ClosedRows, AreTheStartItselfWhenThereIsNoGap) {
   const Scene scene = bitCodeScene("(101)-(010)-(111)");
-  const CornerArray start = cornersOf(boxesOf(scene));
-  EXPECT_LT(largestCornerMove(start, closedRows(start, rowsOf(scene), true)), 1e-15);
+  const ParticleArray start = cornersOf(boxesOf(scene));
+  EXPECT_LT(largestCornerMove(start, stackedReference(start, rowsOf(scene), true)), 1e-15);
 }
 
 TEST(ClosedRows, LeaveWhatIsInNoRowOrOverNothing) {
   std::vector<TestBox> boxes = {{{0.0, 0.0, 0.5}, kBlock}, {{0.5, 0.0, 0.5}, kBlock}, {{0.0, 0.0, 0.6}, kBlock}};
-  const CornerArray start = cornersOf(boxes);
+  const ParticleArray start = cornersOf(boxes);
   const std::vector<int> row = {-1, 1, 2};
-  EXPECT_EQ(largestCornerMove(start, closedRows(start, row, true)), 0.0);
+  EXPECT_EQ(largestCornerMove(start, stackedReference(start, row, true)), 0.0);
   const std::vector<int> bottom = {0, -1, 1};
-  EXPECT_EQ(closedRows(start, bottom, false).component[2], [&] {
+  EXPECT_EQ(stackedReference(start, bottom, false).component[2], [&] {
     boxes[2].centre.z() = 0.5 + kBlock.z();
     return cornersOf(boxes).component[2];
   }()) << "without a floor the bottom row stays, the next closes up to it";
-  EXPECT_NEAR(centre(closedRows(start, bottom, true), 2).z(), 1.5 * kBlock.z(), 1e-15);
+  EXPECT_NEAR(centre(stackedReference(start, bottom, true), 2).z(), 1.5 * kBlock.z(), 1e-15);
 }
 
 TEST(BottomRow, IsRowZeroOrTheLowestBlocks) {
   const Scene scene = bitCodeScene("(1L0)-(010)");
-  const CornerArray start = cornersOf(boxesOf(scene));
+  const ParticleArray start = cornersOf(boxesOf(scene));
   const BlockModel model = modelOf(boxesOf(scene));
   const std::vector<BlockId> expected = {blockId(0), blockId(1)};
   EXPECT_EQ(bottomRow(model, start, rowsOf(scene)), expected);
@@ -129,7 +129,7 @@ TEST(BottomRow, IsRowZeroOrTheLowestBlocks) {
 
 TEST(MeanRowCompression, IsTheMeanHeightLost) {
   std::vector<TestBox> boxes = {{Vec3::Zero(), kBlock}, {{0.2, 0.0, 0.0}, kBlock}};
-  const CornerArray start = cornersOf(boxes);
+  const ParticleArray start = cornersOf(boxes);
   const BlockModel model = modelOf(boxes);
   boxes[0].dimensions.z() -= 2e-5;
   boxes[1].dimensions.z() -= 4e-5;
@@ -142,7 +142,7 @@ TEST(MeanRowCompression, IsTheMeanHeightLost) {
 
 TEST(MeanRowCompression, OfABlockOnItsEndIsAlongItsLength) {
   std::vector<TestBox> boxes = {{Vec3::Zero(), kBlock, turned(90.0, Vec3::UnitY())}};
-  const CornerArray start = cornersOf(boxes);
+  const ParticleArray start = cornersOf(boxes);
   const BlockModel model = modelOf(boxes);
   boxes[0].dimensions.x() -= 1e-4;
   EXPECT_NEAR(meanRowCompression(model, start, cornersOf(boxes), std::vector<BlockId>{blockId(0)}), 1e-4, 1e-16);
@@ -162,7 +162,7 @@ TEST(MaxStrain, OfACuboidStretchedOrSquashedAlongOneAxis) {
 
 TEST(MaxStrain, OfAShearedCubeIsThatOfItsDiagonal) {
   const std::vector<TestBox> boxes = {{Vec3::Zero(), Vec3::Ones()}};
-  CornerArray position = cornersOf(boxes);
+  ParticleArray position = cornersOf(boxes);
   const double shear = 0.1;
   for (std::size_t c = 0; c < kCorners; ++c) position.add(0, c, {shear * position.at(0, c).z(), 0.0, 0.0});
   EXPECT_NEAR(maxStrain(modelOf(boxes), position), std::sqrt((1.0 + shear) * (1.0 + shear) + 1.0) / std::sqrt(2.0) - 1.0, 1e-14);
@@ -170,22 +170,22 @@ TEST(MaxStrain, OfAShearedCubeIsThatOfItsDiagonal) {
 
 TEST(MaxStrain, SeesEachOfTheTwentyEightSprings) {
   const std::vector<TestBox> boxes = {{Vec3::Zero(), kBlock}};
-  const CornerArray position = cornersOf(boxes);
+  const ParticleArray position = cornersOf(boxes);
   for (std::size_t group = 0; group < kSpringGroups; ++group) {
     BlockModel model = modelOf(boxes);
     model.restLength[group][0] /= 1.5;
     EXPECT_NEAR(maxStrain(model, position), 0.5, 1e-14);
   }
   for (std::size_t c = 0; c < kCorners; ++c) {
-    CornerArray changed = position;
+    ParticleArray changed = position;
     changed.add(0, c, 1e-3 * Vec3(1.0, 2.0, 3.0));
     EXPECT_GT(maxStrain(modelOf(boxes), changed), 1e-3) << "corner " << c;
   }
 }
 
 TEST(LargestCornerMove, IsTheLargestDistance) {
-  const CornerArray before = cornersOf({{Vec3::Zero(), kBlock}, {Vec3::Ones(), kBlock}});
-  CornerArray after = before;
+  const ParticleArray before = cornersOf({{Vec3::Zero(), kBlock}, {Vec3::Ones(), kBlock}});
+  ParticleArray after = before;
   after.add(0, 3, {1e-3, 0.0, 0.0});
   after.add(1, 6, {3e-3, -4e-3, 12e-3});
   EXPECT_NEAR(largestCornerMove(before, after), 13e-3, 1e-15);
@@ -193,7 +193,7 @@ TEST(LargestCornerMove, IsTheLargestDistance) {
 }
 
 TEST(RootMeanSquareCornerSpeed, IsTheMeanOverAllCorners) {
-  CornerArray velocity;
+  ParticleArray velocity;
   EXPECT_EQ(rootMeanSquareCornerSpeed(velocity), 0.0);
   velocity.resize(2);
   for (std::size_t c = 0; c < kCorners; ++c) velocity.set(1, c, {2.0, -3.0, 6.0});
@@ -201,7 +201,7 @@ TEST(RootMeanSquareCornerSpeed, IsTheMeanOverAllCorners) {
 }
 
 TEST(TopHeight, IsTheMiddleOfTheFaceThatLooksUp) {
-  EXPECT_EQ(topHeight(CornerArray{}), 0.0);
+  EXPECT_EQ(topHeight(ParticleArray{}), 0.0);
   const Scene scene = towerScene(18);
   EXPECT_NEAR(topHeight(cornersOf(boxesOf(scene))), 18 * kBlockHeight_m, 1e-14);
   const std::vector<TestBox> onEnd = {{{0.0, 0.0, 0.05}, kBlock, turned(-90.0, Vec3::UnitY())}};
@@ -214,10 +214,10 @@ TEST(TopHeightError, IsAgainstRigidBlocksWithoutGaps) {
   TowerOptions options;
   options.startGap_m = 0.001;
   const Scene scene = towerScene(4, options);
-  const CornerArray start = cornersOf(boxesOf(scene));
-  const CornerArray closed = closedRows(start, rowsOf(scene), true);
+  const ParticleArray start = cornersOf(boxesOf(scene));
+  const ParticleArray closed = stackedReference(start, rowsOf(scene), true);
   EXPECT_NEAR(topHeightError(closed, start), 0.003, 1e-14);
-  CornerArray lower = closed;
+  ParticleArray lower = closed;
   for (double& z : lower.component[2]) z *= 0.99;
   EXPECT_NEAR(topHeightError(closed, lower), -0.04 * kBlockHeight_m, 1e-14);
 }

@@ -83,21 +83,21 @@ TEST(OverlapDepth, ABlockInsideAnotherMustLeaveThroughTheNearestFace) {
 TEST(OverlapDepth, DeformationCountsInFull) {
   // One lower corner of the upper block hangs down: its fitted cuboid would hide three quarters of that.
   const std::vector<TestBox> boxes = {{Vec3::Zero(), kSides}, {{0.0, 0.0, kSides.z()}, kSides}};
-  CornerArray position = cornersOf(boxes);
+  ParticleArray position = cornersOf(boxes);
   position.add(1, 0, {0.0, 0.0, -1e-4});
   EXPECT_NEAR(overlapDepth(position, 0, 1), 1e-4, 1e-9);
 }
 
 TEST(OverlapDepth, MayStopEarlyOnceThePairIsNotWorthIt) {
   const std::vector<TestBox> boxes = {{Vec3::Zero(), kSides}, {{0.0, 0.0, kSides.z() - 1e-4}, kSides}};
-  const CornerArray position = cornersOf(boxes);
+  const ParticleArray position = cornersOf(boxes);
   EXPECT_NEAR(overlapDepth(position, 0, 1, 0.99e-4), 1e-4, kExact);
   EXPECT_LE(overlapDepth(position, 0, 1, 1.01e-4), 1.01e-4);
 }
 
 TEST(MaxPenetration, OfNothingIsNone) {
   PenetrationWorkspace workspace;
-  const Penetration none = maxPenetration(CornerArray{}, true, workspace);
+  const Penetration none = maxPenetration(ParticleArray{}, true, workspace);
   EXPECT_EQ(none.depth, 0.0);
   EXPECT_EQ(none.first, kFloor);
 }
@@ -105,7 +105,7 @@ TEST(MaxPenetration, OfNothingIsNone) {
 TEST(MaxPenetration, NamesTheLowestCornerBelowTheFloor) {
   const std::vector<TestBox> boxes = {{{0.0, 0.0, 0.5 * kSides.z() - 1e-5}, kSides},
                                       {{1.0, 0.0, 0.5 * kSides.z()}, kSides, turned(2.0, Vec3::UnitX())}};
-  const CornerArray position = cornersOf(boxes);
+  const ParticleArray position = cornersOf(boxes);
   double lowest = 0.0;
   for (std::size_t c = 0; c < kCorners; ++c) lowest = std::min(lowest, position.at(1, c).z());
   PenetrationWorkspace workspace;
@@ -142,7 +142,7 @@ TEST(MaxPenetration, FindsTheDeepestOfAllPairsWhileBlocksMove) {
   PenetrationWorkspace kept;
   int overlapping = 0;
   for (int frame = 0; frame < 40; ++frame) {
-    const CornerArray position = cornersOf(boxes);
+    const ParticleArray position = cornersOf(boxes);
     Penetration expected;
     for (std::size_t a = 0; a < boxes.size(); ++a) {
       for (std::size_t b = a + 1; b < boxes.size(); ++b) {

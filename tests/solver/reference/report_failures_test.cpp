@@ -22,7 +22,7 @@ TEST(ReportFailure, ABlockCreepsDownASlope) {
   const auto moved = [](const Scene& slope) {
     Simulation simulation(slope);
     stepFor(simulation, 0.5);
-    const CornerArray settled = simulation.state.position;
+    const ParticleArray settled = simulation.state.position;
     stepFor(simulation, 2.0);
     return largestCornerMove(settled, simulation.state.position);
   };
@@ -43,7 +43,7 @@ TEST(ReportFailure, ATowerJittersAndCreeps) {
     Simulation simulation(scene);
     const std::vector<FittedBox> start = fittedBoxes(simulation.state.position);
     stepFor(simulation, 1.5);
-    const CornerArray settled = simulation.state.position;
+    const ParticleArray settled = simulation.state.position;
     Motion motion;
     for (int frame = 0; frame < 30; ++frame) {
       stepFrame(simulation);

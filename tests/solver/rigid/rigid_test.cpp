@@ -92,7 +92,7 @@ TEST_P(RigidMethod, SticksBelowTheFrictionAngle) {
   scene.gravity.direction_deg = 30.0;
   Simulation simulation(scene);
   stepFor(simulation, 0.2);
-  const CornerArray then = simulation.state.position;
+  const ParticleArray then = simulation.state.position;
   stepFor(simulation, 1.0);
   EXPECT_LT(largestCornerMove(then, simulation.state.position), 1e-5);
 }
@@ -259,7 +259,7 @@ TEST(RigidSteps, TakenAgainAreGoneOnce) {
   stepFrame(simulation);
   ASSERT_EQ(simulation.counters.contactsBorn, 1U);
   const double way = start - centre(simulation.state.position, 0).z();
-  EXPECT_NEAR(simulation.engine->clock[0].travel, way, 1e-9);
+  EXPECT_NEAR(simulation.engine->blockHistory[0].travel, way, 1e-9);
   EXPECT_EQ(simulation.counters.manifoldRefreshes, 1U);
 }
 

@@ -131,10 +131,10 @@ TEST(RunScene, MeasuresWhatItsCallbackSees) {
     Scene scene = towerScene(3);
     scene.settings.sleep = sleep;
     Simulation simulation(scene);
-    const CornerArray start = simulation.state.position;
+    const ParticleArray start = simulation.state.position;
     RunOptions options;
     options.seconds = 6.0;
-    std::vector<CornerArray> positions;
+    std::vector<ParticleArray> positions;
     std::vector<double> meanSquareSpeeds;
     std::vector<double> energies;
     const RunResult result = runScene(simulation, options, [&](const Simulation& now) {

@@ -85,7 +85,7 @@ TEST(Pull, LightBlocksTurnWithTheOneThatIsDrawn) {
 TEST(Tilt, AColumnGoesAtItsEdge) {
   const Scene scene = bitCodeScene("(010)-(010)-(010)-(010)-(010)-(010)");
   const double edge_deg = std::atan(0.5 * kBlockWidth_m / (3.0 * kBlockHeight_m)) * 57.29577951;
-  const std::optional<TiltMargin> margin = tiltMargin(staticScene(scene));
+  const std::optional<StabilityMargin> margin = tiltMargin(staticScene(scene));
   ASSERT_TRUE(margin.has_value());
   EXPECT_NEAR(margin->tilt_deg, edge_deg, 0.01);
   const TiltTrial trial =

@@ -55,7 +55,7 @@ TEST(Sleep, AWeakForceWakesItsBlockAlone) {
   ASSERT_TRUE(allAsleep(simulation));
   while (simulation.frame < 240) stepFrame(simulation);
   ASSERT_TRUE(allAsleep(simulation)) << "a force that does not act yet wakes nobody";
-  const CornerArray still = simulation.state.position;
+  const ParticleArray still = simulation.state.position;
   for (int frame = 0; frame < 12; ++frame) {
     stepFrame(simulation);
     EXPECT_EQ(simulation.asleep[kBlock], 0);
@@ -78,7 +78,7 @@ TEST(Sleep, AStrongPullMovesBlocks) {
   stepUntilAsleep(simulation, 3.9);
   ASSERT_TRUE(allAsleep(simulation));
   while (simulation.frame < 240) stepFrame(simulation);
-  const CornerArray still = simulation.state.position;
+  const ParticleArray still = simulation.state.position;
   std::size_t fewestAsleep = simulation.asleep.size();
   for (int frame = 0; frame < 12; ++frame) {
     stepFrame(simulation);

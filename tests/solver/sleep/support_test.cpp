@@ -10,7 +10,7 @@ namespace {
 constexpr double kSetWeight_n = 2.0;
 constexpr double kHalf_m = 0.0135;  // of the square on whose corners the body rests
 constexpr double kHeight_m = 0.018;
-constexpr double kFriction = 0.4;
+constexpr double kSetFriction = 0.4;
 
 using Square = std::array<SupportPoint, 4>;
 
@@ -28,7 +28,7 @@ Square restingSquare(double friction) {
 
 bool stays(const Vec3& force, const Vec3& torque, double friction) {
   Square square = restingSquare(friction);
-  return takeUp(square, force, torque, kHeight_m, 1.0);
+  return redistribute(square, force, torque, kHeight_m, 1.0);
 }
 
 // Pulled at a height, it tips when the torque about its edge is that of its weight.
@@ -46,9 +46,9 @@ TEST(Support, TipsOverItsEdge) {
 // which points keep to Coulomb's cone.
 TEST(Support, SlidesAndTurnsWhenFrictionIsUsedUp) {
   for (const double share : {0.97, 1.03}) {
-    EXPECT_EQ(stays(share * kFriction * kSetWeight_n * Vec3::UnitY(), Vec3::Zero(), kFriction), share < 1.0) << share;
-    const double turning = kFriction * kSetWeight_n * std::sqrt(2.0) * kHalf_m;
-    EXPECT_EQ(stays(Vec3::Zero(), share * turning * Vec3::UnitZ(), kFriction), share < 1.0) << share;
+    EXPECT_EQ(stays(share * kSetFriction * kSetWeight_n * Vec3::UnitY(), Vec3::Zero(), kSetFriction), share < 1.0) << share;
+    const double turning = kSetFriction * kSetWeight_n * std::sqrt(2.0) * kHalf_m;
+    EXPECT_EQ(stays(Vec3::Zero(), share * turning * Vec3::UnitZ(), kSetFriction), share < 1.0) << share;
   }
 }
 
@@ -56,8 +56,8 @@ TEST(Support, SlidesAndTurnsWhenFrictionIsUsedUp) {
 TEST(Support, TakesUpAllOfTheChange) {
   const Vec3 force{0.45, 0.1, 0.3};
   const Vec3 torque = Vec3(0.0, 0.0, 0.01).cross(force) + Vec3(0.0, 0.012, 0.001);
-  Square square = restingSquare(kFriction);
-  ASSERT_TRUE(takeUp(square, force, torque, kHeight_m, 1.0));
+  Square square = restingSquare(kSetFriction);
+  ASSERT_TRUE(redistribute(square, force, torque, kHeight_m, 1.0));
   Vec3 sum = force;
   Vec3 moment = torque;
   int lifted = 0;
@@ -68,9 +68,9 @@ TEST(Support, TakesUpAllOfTheChange) {
     const Vec3 after = point.force + point.added;
     const double shear = after.head<2>().norm();
     EXPECT_GE(after.z(), -1e-12);
-    EXPECT_LE(shear, kFriction * (after.z() + 0.02 * 0.25 * kSetWeight_n) + 1e-12);
-    lifted += point.state == SupportState::lifted ? 1 : 0;
-    sliding += point.state == SupportState::slides ? 1 : 0;
+    EXPECT_LE(shear, kSetFriction * (after.z() + 0.02 * 0.25 * kSetWeight_n) + 1e-12);
+    lifted += point.state == SupportState::open ? 1 : 0;
+    sliding += point.state == SupportState::slip ? 1 : 0;
   }
   EXPECT_LT(sum.norm(), 1e-12);
   EXPECT_LT(moment.norm(), 1e-13);
@@ -78,13 +78,13 @@ TEST(Support, TakesUpAllOfTheChange) {
 }
 
 TEST(Support, HoldsNothingWithoutPoints) {
-  EXPECT_FALSE(takeUp({}, Vec3::Zero(), Vec3::Zero(), kHeight_m, 1.0));
+  EXPECT_FALSE(redistribute({}, Vec3::Zero(), Vec3::Zero(), kHeight_m, 1.0));
 }
 
 // Two points hold it up, but not against a turn about the line through them.
 TEST(Support, OnALineIsFreeToTurn) {
   Square square = restingSquare(10.0);
-  EXPECT_FALSE(takeUp(std::span(square).first(2), Vec3::Zero(), 1e-4 * Vec3::UnitX(), kHeight_m, 1.0));
+  EXPECT_FALSE(redistribute(std::span(square).first(2), Vec3::Zero(), 1e-4 * Vec3::UnitX(), kHeight_m, 1.0));
 }
 
 }  // namespace

@@ -82,7 +82,7 @@ TEST_P(StaticsTiltTest, SixteenDirectionsGiveTheReferencesTilt) {
   double worst = 0.0;
   for (const Row& row : rows) {
     const StaticScene statics = staticScene(row.scene);
-    const std::optional<TiltMargin> margin = tiltMargin(statics);
+    const std::optional<StabilityMargin> margin = tiltMargin(statics);
     ASSERT_TRUE(margin) << row.id;
     // For a tower that falls sixteen directions make the turn too small, for one that stands too large.
     const double ours = std::tan(std::abs(margin->tilt_deg) / kDegreesOfRadian);

@@ -48,7 +48,7 @@ Scene loneBlock(double friction) {
 }
 
 double margin_deg(const Scene& scene) {
-  const std::optional<TiltMargin> margin = tiltMargin(staticScene(scene));
+  const std::optional<StabilityMargin> margin = tiltMargin(staticScene(scene));
   return margin ? margin->tilt_deg : -90.0;
 }
 
@@ -64,7 +64,7 @@ TEST(Statics, ABlockSlidesAtTheFrictionAngle) {
 }
 
 TEST(Statics, ABlockTipsOverItsNarrowSideWhenItCannotSlide) {
-  const std::optional<TiltMargin> margin = tiltMargin(staticScene(loneBlock(5.0)));
+  const std::optional<StabilityMargin> margin = tiltMargin(staticScene(loneBlock(5.0)));
   ASSERT_TRUE(margin);
   EXPECT_NEAR(margin->tilt_deg, kDegrees * std::atan(kBlockWidth_m / kBlockHeight_m), kTilt_deg);
   EXPECT_TRUE(std::abs(margin->direction_deg - 90.0) < 0.1 || std::abs(margin->direction_deg - 270.0) < 0.1)
@@ -80,12 +80,12 @@ TEST(Statics, WithoutFrictionOnlyGravityStraightDownIsBorne) {
 }
 
 TEST(Statics, TheMarginIsCountedFromTheScenesGravity) {
-  const std::optional<TiltMargin> leaning = tiltMargin(staticScene(tilted(loneBlock(0.4), 10.0, 0.0)));
+  const std::optional<StabilityMargin> leaning = tiltMargin(staticScene(tilted(loneBlock(0.4), 10.0, 0.0)));
   ASSERT_TRUE(leaning);
   EXPECT_NEAR(leaning->tilt_deg, kDegrees * std::atan(0.4) - 10.0, kTilt_deg);
   EXPECT_NEAR(leaning->direction_deg, 0.0, 0.5);
   // A block that slides stands again when gravity turns back by what is too much.
-  const std::optional<TiltMargin> sliding = tiltMargin(staticScene(tilted(loneBlock(0.4), 25.0, 90.0)));
+  const std::optional<StabilityMargin> sliding = tiltMargin(staticScene(tilted(loneBlock(0.4), 25.0, 90.0)));
   ASSERT_TRUE(sliding);
   EXPECT_NEAR(sliding->tilt_deg, kDegrees * std::atan(0.4) - 25.0, kTilt_deg);
   EXPECT_NEAR(sliding->direction_deg, 270.0, 0.5);
@@ -120,7 +120,7 @@ TEST(Statics, ATowerTipsOverTheEdgeItsCentreOfMassPasses) {
 
 TEST(Statics, ATowerThatFallsHasANegativeMargin) {
   // The report's second configuration: its support ends 0.22 mm before the common centre of mass.
-  const std::optional<TiltMargin> margin = tiltMargin(staticScene(bitCodeScene("(001)-(010)-(001)")));
+  const std::optional<StabilityMargin> margin = tiltMargin(staticScene(bitCodeScene("(001)-(010)-(001)")));
   ASSERT_TRUE(margin);
   EXPECT_NEAR(margin->tilt_deg, -0.71, 0.01);
   // Nothing under a block helps it: it falls however gravity turns.
@@ -150,7 +150,7 @@ TEST(Statics, NoDirectionIsWorseThanTheWorst) {
       "(110)-(011)-(111)-(101)-(010)",
       {.offsets = {{.row = 1, .position = 2, .dx = -0.004, .dy = 0.006}, {.row = 4, .position = 2, .dx = 0.003, .dy = -0.005}}});
   const StaticScene statics = staticScene(scene);
-  const std::optional<TiltMargin> margin = tiltMargin(statics);
+  const std::optional<StabilityMargin> margin = tiltMargin(statics);
   ASSERT_TRUE(margin);
   ASSERT_EQ(statics.rest, Rest::stands);
   double least = 90.0;
@@ -191,7 +191,7 @@ TEST(Statics, ForcesBalanceEveryBlock) {
   std::vector<Vec3> torque(scene.blocks.size(), Vec3::Zero());
   for (const BlockSpec& block : scene.blocks) force.push_back(block.mass * scene.gravity.at(0.0));
   for (std::size_t c = 0; c < statics.facings.size(); ++c) {
-    const Facing& facing = statics.facings[c];
+    const FacePair& facing = statics.facings[c];
     Vec3 sum = Vec3::Zero();
     for (std::size_t p = 0; p < facing.points.size(); ++p) {
       const Vec3& pushed = loads.contacts[c].pointForces[p];
@@ -325,9 +325,9 @@ TEST(Statics, APulledBlockHoldsByItsFriction) {
 }
 
 TEST(Statics, FacesThatTouchAreFound) {
-  const std::vector<Facing> tower = facingBlocks(towerScene(2), 0.0);
+  const std::vector<FacePair> tower = facingBlocks(towerScene(2), 0.0);
   ASSERT_EQ(tower.size(), 3U + 9U);
-  for (const Facing& facing : tower) {
+  for (const FacePair& facing : tower) {
     EXPECT_EQ(facing.points.size(), 4U);
     EXPECT_EQ(facing.normal, Vec3(Vec3::UnitZ()));
     for (const FacingPoint& point : facing.points) EXPECT_EQ(point.gap_m, 0.0);
@@ -336,14 +336,14 @@ TEST(Statics, FacesThatTouchAreFound) {
   Scene turned = stack({0.0, 0.0});
   for (BlockSpec& block : turned.blocks) block.dimensions = Vec3(0.03, 0.03, kBlockHeight_m);
   turned.blocks[1].orientation = Eigen::AngleAxisd(std::numbers::pi / 4.0, Vec3::UnitZ());
-  const std::vector<Facing> octagon = facingBlocks(turned, 0.0);
+  const std::vector<FacePair> octagon = facingBlocks(turned, 0.0);
   ASSERT_EQ(octagon.size(), 2U);
   EXPECT_EQ(octagon[1].points.size(), 8U);
   // Flush sides: one block beside another, touching along a whole face.
   Scene beside = stack({0.0});
   beside.blocks.push_back(beside.blocks[0]);
   beside.blocks[1].centre.y() += kBlockWidth_m;
-  const std::vector<Facing> flush = facingBlocks(beside, 0.0);
+  const std::vector<FacePair> flush = facingBlocks(beside, 0.0);
   ASSERT_EQ(flush.size(), 3U);
   EXPECT_EQ(restOf(beside), Rest::stands);
 }

@@ -13,7 +13,7 @@
 namespace springtower {
 
 /// Which points of a pair's manifold push (low byte) and which of them slide (high byte).
-using ContactMask = std::uint16_t;
+using ActiveSetBits = std::uint16_t;
 
 /// How the forces of up to four points of a pair on upper change with the displacement g of upper against lower at each of them:
 /// isotropic g + n alongNormal (n . g) + s (alongSlip (s . g) + coupling (n . g)), n the normal and s the way of sliding.
@@ -44,33 +44,33 @@ struct TetherStiffness {
 
 /// What an island keeps from implicit step to implicit step: the factors of M / step^2 + K as the contacts stood when they were
 /// last assembled, and working space of the iteration.
-struct ImplicitIsland {
+struct NewtonSystem {
   /// Blocks of one size and mass share their own matrix.
-  struct Kind {
+  struct BlockClass {
     Vec3 dimensions;  ///< m
     double mass;      ///< kg
     BlockJacobian jacobian;
   };
   std::uint64_t pattern = 0;  ///< of which blocks touch which; what the matrix is laid out for
-  bool tooDense = false;      ///< so much fills in that there are no factors
+  bool exceedsFill = false;   ///< so much fills in that there are no factors
   bool factorised = false;
-  double step_s = 0.0;       ///< the step times the method's factor that the factors are for
-  TetherStiffness tether;    ///< the hand's springs that the factors contain
-  bool limited = false;      ///< whether one of them was at its limit then
-  int directions = 0;        ///< that the last correction took beside the factors
-  bool moved = false;        ///< whether engine.trial holds a state after the step's start
-  bool near = false;         ///< whether the iteration is so near the solution that contacts may be taken as they stand
-  bool forcesKnown = false;  ///< engine.force holds the forces at the island's present state
+  double step_s = 0.0;                ///< the step times the method's factor that the factors are for
+  TetherStiffness tether;             ///< the hand's springs that the factors contain
+  bool limited = false;               ///< whether one of them was at its limit then
+  int directions = 0;                 ///< that the last correction took beside the factors
+  bool trialIsAhead = false;          ///< whether engine.trial holds a state after the step's start
+  bool useConsistentTangent = false;  ///< whether the iteration is so near the solution that contacts may be taken as they stand
+  bool forcesKnown = false;           ///< engine.force holds the forces at the island's present state
   BlockCholesky matrix;
   std::vector<std::int32_t> touching;                      ///< touching pairs, as positions in engine.pairs
   std::vector<BlockSlot> slot;                             ///< of each of these; at = -1 where one side is the floor or asleep
-  std::vector<ContactMask> mask;                           ///< what each of these was assembled for
+  std::vector<ActiveSetBits> mask;                         ///< what each of these was assembled for
   std::vector<std::array<std::array<double, 3>, 3>> axes;  ///< the frames the blocks were assembled in, [node][axis][component]
   std::vector<ModeVectors> residual;                       ///< N, in the blocks' frames, by node
   std::vector<ModeVectors> direction;                      ///< m, the last correction, in the world's frame, by node
   std::vector<double> affine;                              ///< right-hand sides and solutions, [nodes][12]
-  std::vector<Kind> kinds;                                 ///< of the island's blocks; maybe more than it has now
-  std::vector<std::int32_t> kindOf;                        ///< of each node
+  std::vector<BlockClass> kinds;                           ///< of the island's blocks; maybe more than it has now
+  std::vector<std::int32_t> blockClassOf;                  ///< of each node
   double jacobianStep_s = 0.0;                             ///< what step these are for
   AlignedVector<ContactTangent> factorTangents;            ///< what the factors know of pairs that slid when they were made
   AlignedVector<ContactTangent> tangents;                  ///< what is to be added to what they know; may be empty
@@ -89,8 +89,8 @@ struct ImplicitIsland {
 inline constexpr std::size_t kNarrowBlocks = 60;
 
 /// The own matrix of a node's block.
-inline const BlockJacobian& jacobianOf(const ImplicitIsland& island, std::size_t node) {
-  return island.kinds[static_cast<std::size_t>(island.kindOf[node])].jacobian;
+inline const BlockJacobian& jacobianOf(const NewtonSystem& island, std::size_t node) {
+  return island.kinds[static_cast<std::size_t>(island.blockClassOf[node])].jacobian;
 }
 
 }  // namespace springtower
