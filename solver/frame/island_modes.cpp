@@ -25,23 +25,31 @@ constexpr int kFallSteps = 20;
 constexpr double kMaxDisplacementPerStep = 0.06;
 constexpr int kMaxFallSteps = 6000;
 
-// Whether the root of the blocks' mean squared speed, by mass, is above this one, in sqrt(g h).
-bool isFasterThan(const IslandStep& step, double speed) {
+// How an island moves on the whole.
+struct Motion {
+  double mass_kg = 0.0;
+  double momentOfSpeed = 0.0;  // kg m2/s2: the blocks' masses by their squared speeds
+  double height_m = 0.0;
+  double fallTime_s = 0.0;  // sqrt(h / g)
+
+  // Whether the root of the mean squared speed, by mass, is above this one, in sqrt(g h).
+  [[nodiscard]] bool isFasterThan(double speed) const {
+    const double least = speed * height_m / fallTime_s;
+    return momentOfSpeed > mass_kg * least * least;
+  }
+};
+
+Motion motionOf(const IslandStep& step) {
   const Simulation& simulation = step.simulation;
-  double mass = 0.0;
-  double motion = 0.0;
+  Motion motion;
+  motion.height_m = simulation.lengths.blockHeight_m;
+  motion.fallTime_s = simulation.lengths.fallTime_s;
   for (const std::int32_t block : step.blocks) {
     const auto b = static_cast<std::size_t>(block);
-    mass += simulation.model.mass[b];
-    motion += simulation.model.mass[b] * centre(simulation.state.velocity, b).squaredNorm();
+    motion.mass_kg += simulation.model.mass[b];
+    motion.momentOfSpeed += simulation.model.mass[b] * centre(simulation.state.velocity, b).squaredNorm();
   }
-  const double least = speed * simulation.lengths.blockHeight_m / simulation.lengths.fallTime_s;
-  return motion > mass * least * least;
-}
-
-bool hasAny(const IslandStep& step, bool BlockHistory::*flag) {
-  return std::any_of(step.blocks.begin(), step.blocks.end(),
-                     [&](std::int32_t block) { return step.engine.blockHistory[static_cast<std::size_t>(block)].*flag; });
+  return motion;
 }
 
 bool isLeftAlone(const IslandStep& step) {
@@ -89,25 +97,36 @@ bool mayFall(std::size_t blocks) {
   return blocks >= kFewest && blocks < kParallelBlocks;
 }
 
-bool falls(const IslandStep& step) {
-  if (!isLeftAlone(step)) return false;
-  if (hasAny(step, &BlockHistory::falls)) {
-    const bool handedOver = std::any_of(step.blocks.begin(), step.blocks.end(), [&](std::int32_t block) {
-      return step.engine.blockHistory[static_cast<std::size_t>(block)].explicitFrames > 0;
-    });
-    return handedOver || isFasterThan(step, kFallenSpeed);
+IslandFacts islandFacts(const IslandStep& step) {
+  IslandFacts facts;
+  facts.blocks = step.blocks.size();
+  facts.leftAlone = isLeftAlone(step);
+  if (!facts.leftAlone) return facts;  // nothing else counts then
+  std::size_t fallen = 0;
+  for (const std::int32_t block : step.blocks) {
+    const BlockHistory& history = step.engine.blockHistory[static_cast<std::size_t>(block)];
+    facts.rigidBefore = facts.rigidBefore || history.falls;
+    facts.rigidPinned = facts.rigidPinned || history.explicitFrames > 0;
+    fallen += history.hasFallen ? 1U : 0U;
   }
-  return mayFall(step.blocks.size()) && isFasterThan(step, kFallSpeed);
+  facts.mostlyFallen = 2 * fallen > facts.blocks;
+  if (!facts.rigidBefore && !mayFall(facts.blocks)) return facts;
+  const Motion motion = motionOf(step);
+  facts.fast = motion.isFasterThan(kFallSpeed);
+  facts.moving = motion.isFasterThan(kFallenSpeed);
+  return facts;
 }
 
-bool mostlyFallen(const IslandStep& step) {
-  const auto fallen = std::count_if(step.blocks.begin(), step.blocks.end(), [&](std::int32_t block) {
-    return step.engine.blockHistory[static_cast<std::size_t>(block)].hasFallen;
-  });
-  return isLeftAlone(step) && 2 * static_cast<std::size_t>(fallen) > step.blocks.size();
+IslandMode nextMode(ModeChange when, const IslandFacts& facts) {
+  if (when == ModeChange::implicitGaveUp)
+    return facts.leftAlone && facts.mostlyFallen ? IslandMode::rigid : IslandMode::explicitFallback;
+  if (!facts.leftAlone) return IslandMode::implicit;
+  const bool rigid = facts.rigidBefore ? facts.rigidPinned || facts.moving : mayFall(facts.blocks) && facts.fast;
+  return rigid ? IslandMode::rigid : IslandMode::implicit;
 }
 
-void setFalling(IslandStep& step, bool falling) {
+void setMode(IslandStep& step, IslandMode mode) {
+  const bool falling = mode == IslandMode::rigid;
   std::vector<BlockHistory>& clock = step.engine.blockHistory;
   const auto forEachManifold = [&](bool rigid, const auto& change) {
     for (const std::int32_t at : step.pairs) {

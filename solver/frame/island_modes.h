@@ -3,6 +3,7 @@
 #include "solver/world/island_step.h"
 
 #include <cstddef>
+#include <cstdint>
 
 namespace springtower {
 
@@ -13,17 +14,33 @@ namespace springtower {
 /// run on many threads.
 bool mayFall(std::size_t blocks);
 
-/// Whether the island falls: three blocks or more move so fast on the mean, square by mass, that they could rise by a tenth of
-/// a block's height; or they fell in the last frame and are not slow yet. Not while a hand or a user's force acts, nor where the
-/// island is so large that its steps run on many threads.
-bool falls(const IslandStep& step);
+/// What carries an island through a frame, or through what is left of one.
+enum class IslandMode : std::uint8_t { implicit, rigid, explicitFallback };
 
-/// Whether most of the island's blocks have fallen since they slept last: rigid steps carry it where implicit ones do not do.
-bool mostlyFallen(const IslandStep& step);
+/// When that is decided.
+enum class ModeChange : std::uint8_t { frameBegins, implicitGaveUp };
 
-/// Makes the points of the island's contacts remember what rigid steps do, or what springs do, and notes in its blocks' clocks
-/// whether they fall. Forces stay as they are, and so does the depth where they hold.
-void setFalling(IslandStep& step, bool falling);
+/// What it depends on, as the frame begins.
+struct IslandFacts {
+  std::size_t blocks = 0;
+  bool leftAlone = false;     ///< neither a hand nor a user's force acts, and its steps do not run on many threads
+  bool rigidBefore = false;   ///< rigid steps carried one of its blocks in the last frame
+  bool rigidPinned = false;   ///< they are to carry it for some frames more, as implicit ones failed
+  bool mostlyFallen = false;  ///< most of its blocks have fallen since they slept last
+  bool fast = false;    ///< root mean square speed, by mass, above 0.45 sqrt(g h): blocks could rise by a tenth of their height
+  bool moving = false;  ///< above 0.05 sqrt(g h)
+};
+IslandFacts islandFacts(const IslandStep& step);
+
+/// The transition table:
+///   frame begins: rigid if left alone, of 3 to 255 blocks and fast; stays rigid while it is left alone and pinned or moving;
+///                 else implicit.
+///   implicit gave up (steps do not fit or do not converge): rigid if left alone and mostly fallen, else explicit fallback.
+IslandMode nextMode(ModeChange when, const IslandFacts& facts);
+
+/// The only place where an island's mode is set: contacts change hands between springs and impulses, and its blocks' histories
+/// note whether rigid steps carry them. Forces stay as they are, and so does the depth where they hold.
+void setMode(IslandStep& step, IslandMode mode);
 
 /// Carries an island that falls through the frame from `begin_s` on. As `runRigidSteps`.
 IslandOutcome runFall(IslandStep& step, double begin_s);

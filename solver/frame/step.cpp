@@ -195,16 +195,16 @@ IslandOutcome runIsland(IslandStep& step) {
   if (simulation.frame == 0 && settings.method != Method::report) startInEquilibrium(step);
   double begin_s = 0.0;
   if (isImplicit(settings.method)) {
-    bool falling = falls(step);
-    setFalling(step, falling);
-    if (!falling) {
-      const bool heap = mostlyFallen(step);
-      outcome = runImplicitSteps(step, heap, begin_s);
+    const IslandFacts facts = islandFacts(step);
+    IslandMode mode = nextMode(ModeChange::frameBegins, facts);
+    setMode(step, mode);
+    if (mode == IslandMode::implicit) {
+      outcome = runImplicitSteps(step, facts.mostlyFallen, begin_s);
       if (!outcome.inside || begin_s >= settings.frame_s) return outcome;
-      falling = heap;
-      if (falling) setFalling(step, true);
+      mode = nextMode(ModeChange::implicitGaveUp, facts);
+      if (mode == IslandMode::rigid) setMode(step, mode);
     }
-    if (falling) {
+    if (mode == IslandMode::rigid) {
       const int before = outcome.substeps;
       outcome = runFall(step, begin_s);
       outcome.substeps += before;

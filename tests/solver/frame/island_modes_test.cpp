@@ -1,0 +1,60 @@
+#include "solver/frame/island_modes.h"
+
+#include <gtest/gtest.h>
+
+namespace springtower {
+namespace {
+
+IslandFacts fastIsland() {
+  IslandFacts facts;
+  facts.blocks = 54;
+  facts.leftAlone = true;
+  facts.fast = true;
+  facts.moving = true;
+  return facts;
+}
+
+TEST(IslandModes, RigidStepsTakeOverWhatIsFastAndLeftAlone) {
+  EXPECT_EQ(nextMode(ModeChange::frameBegins, fastIsland()), IslandMode::rigid);
+  IslandFacts slow = fastIsland();
+  slow.fast = false;
+  EXPECT_EQ(nextMode(ModeChange::frameBegins, slow), IslandMode::implicit);
+  IslandFacts held = fastIsland();
+  held.leftAlone = false;
+  EXPECT_EQ(nextMode(ModeChange::frameBegins, held), IslandMode::implicit);
+}
+
+TEST(IslandModes, OneOrTwoBlocksReboundSoTheyStayImplicit) {
+  for (const std::size_t blocks : {1U, 2U, 3U, 255U, 256U}) {
+    IslandFacts facts = fastIsland();
+    facts.blocks = blocks;
+    const bool rigid = blocks == 3 || blocks == 255;
+    EXPECT_EQ(nextMode(ModeChange::frameBegins, facts), rigid ? IslandMode::rigid : IslandMode::implicit) << blocks;
+  }
+}
+
+// Below the speed at which it would begin, a fall goes on until it is slow.
+TEST(IslandModes, AFallGoesOnUntilItIsSlow) {
+  IslandFacts falling = fastIsland();
+  falling.rigidBefore = true;
+  falling.fast = false;
+  EXPECT_EQ(nextMode(ModeChange::frameBegins, falling), IslandMode::rigid);
+  falling.moving = false;
+  EXPECT_EQ(nextMode(ModeChange::frameBegins, falling), IslandMode::implicit);
+  falling.rigidPinned = true;
+  EXPECT_EQ(nextMode(ModeChange::frameBegins, falling), IslandMode::rigid) << "implicit steps have just failed";
+  falling.leftAlone = false;
+  EXPECT_EQ(nextMode(ModeChange::frameBegins, falling), IslandMode::implicit) << "a hand takes hold";
+}
+
+TEST(IslandModes, WhatImplicitStepsGiveUpGoesToRigidOnesWhereItHasFallen) {
+  IslandFacts facts = fastIsland();
+  EXPECT_EQ(nextMode(ModeChange::implicitGaveUp, facts), IslandMode::explicitFallback);
+  facts.mostlyFallen = true;
+  EXPECT_EQ(nextMode(ModeChange::implicitGaveUp, facts), IslandMode::rigid);
+  facts.leftAlone = false;
+  EXPECT_EQ(nextMode(ModeChange::implicitGaveUp, facts), IslandMode::explicitFallback);
+}
+
+}  // namespace
+}  // namespace springtower
