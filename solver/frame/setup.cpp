@@ -166,7 +166,7 @@ void kick(Simulation& simulation, std::size_t block, const Vec3& velocity) {
   simulation.engine->blockHistory[block].lastImplicitStep_s = 0.0;
   simulation.engine->blockHistory[block].explicitFrames = kExplicitFrames;
   simulation.restTime_s[block] = 0.0;
-  wake(simulation, block);
+  wake(simulation, block, WakeReason::kick);
 }
 
 }  // namespace springtower

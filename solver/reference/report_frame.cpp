@@ -14,7 +14,7 @@ void prepareReportFrame(Simulation& simulation) {
 void rewindReportFrame(Simulation& simulation) {
   ReportState& report = simulation.engine->report;
   for (std::vector<std::int32_t>& struck : report.struck) {
-    for (const std::int32_t block : struck) wake(simulation, static_cast<std::size_t>(block));
+    for (const std::int32_t block : struck) wake(simulation, static_cast<std::size_t>(block), WakeReason::reportedImpact);
     struck.clear();
   }
   report.contacts = report.frameStartContacts;

@@ -73,6 +73,7 @@ class Recorder {
     result_.frames = wall_ms_.size();
     result_.simulated_s = simulation.time_s - startTime_s_;
     result_.counters = simulation.counters;
+    result_.wakes = simulation.wakes;
     timeFrames(simulation);
     if (settled_) {
       result_.maxPenetration_m = std::max(settledPenetration_m_, now_.penetration.depth);

@@ -49,6 +49,7 @@ struct RunResult {
   FrameTimes frameTimes;                   ///< ms
   std::array<double, kStages> stage_ms{};  ///< mean over the frames of this run
   Counters counters;                       ///< of the simulation, since it was made
+  WakeCounts wakes{};                      ///< blocks woken since then, by reason
   std::optional<double> maxPenetration_m;  ///< largest from restTime_s on, or from 5 s on without rest
   Penetration deepest;                     ///< largest of the whole run, its start included
   double deepestTime_s = 0.0;              ///< when that was

@@ -107,7 +107,7 @@ void recordSleepLoads(Simulation& simulation, std::span<const std::uint8_t> stay
       const Vec3 force = now.force - pair.restForce;
       const Vec3 torque = now.torque - pair.restTorque - centre(simulation.state.position, s).cross(force);
       if (force.norm() <= most && torque.norm() <= most * simulation.model.dimensions[s].minCoeff()) continue;
-      engine.toWake.push_back(sleeper);
+      engine.toWake.push_back({sleeper, WakeReason::unbalanced});
     }
     pair.restForce = now.force;
     pair.restTorque = now.torque;
@@ -140,12 +140,12 @@ bool findWakeCandidates(Simulation& simulation) {
   if (changed) {
     findLoads(simulation);
     for (const std::int32_t block : engine.pushed) {
-      if (!bears(simulation, block)) engine.toWake.push_back(block);
+      if (!bears(simulation, block)) engine.toWake.push_back({block, WakeReason::loadChange});
     }
     if (simulation.scene.settings.sleep == Sleep::on) gives = findFailedSupports(simulation);
   }
   // A pair that the sweep has dropped pushes no more.
-  engine.toWake.insert(engine.toWake.end(), engine.lostPartner.begin(), engine.lostPartner.end());
+  for (const std::int32_t block : engine.lostPartner) engine.toWake.push_back({block, WakeReason::lostNeighbour});
   return gives;
 }
 

@@ -129,6 +129,16 @@ void fallAsleep(Simulation& simulation, std::size_t b) {
   if (!engine.report.contacts.empty()) engine.report.contacts[b].clear();
 }
 
+void findRoots(Engine& engine) {
+  engine.wakeRoots.clear();
+  for (const WakeRequest& request : engine.toWake) engine.wakeRoots.push_back(request.block);
+}
+
+void wakeRequested(Simulation& simulation) {
+  for (const WakeRequest& request : simulation.engine->toWake)
+    wake(simulation, static_cast<std::size_t>(request.block), request.reason);
+}
+
 // If a whole touching cluster is at rest but the recorded loads of some sleepers no longer balance, wakes the cluster at once.
 // Waking one row at a time would need one rest period a row.
 void wakeUnbalancedCluster(Simulation& simulation) {
@@ -138,13 +148,14 @@ void wakeUnbalancedCluster(Simulation& simulation) {
     if (pair.b >= 0 && pair.manifold.touch != PairPhase::separated) engine.touchingEdges.push_back({pair.a, pair.b});
   }
   engine.touched.resize(simulation.asleep.size());
-  connectedBlocks(engine.touchingEdges, engine.toWake, engine.parent, engine.touched);
+  findRoots(engine);
+  connectedBlocks(engine.touchingEdges, engine.wakeRoots, engine.parent, engine.touched);
   const auto touches = [&](std::int32_t block) { return engine.touched[static_cast<std::size_t>(block)] != 0; };
   if (std::any_of(engine.restless.begin(), engine.restless.end(), touches)) return;
   for (std::size_t b = 0; b < engine.touched.size(); ++b) {
     if (engine.touched[b] == 0) continue;
     engine.joined[b] = 1;
-    engine.toWake.push_back(static_cast<std::int32_t>(b));
+    engine.toWake.push_back({static_cast<std::int32_t>(b), WakeReason::unbalanced});
   }
 }
 
@@ -193,14 +204,15 @@ void putToSleep(Simulation& simulation) {
   for (const std::int32_t block : engine.awakeBlocks) {
     if (engine.joined[static_cast<std::size_t>(block)] == 0) fallAsleep(simulation, static_cast<std::size_t>(block));
   }
-  for (const std::int32_t block : engine.toWake) wake(simulation, static_cast<std::size_t>(block));
+  wakeRequested(simulation);
   engine.gravitySlept = simulation.scene.gravity.at(simulation.time_s);
 }
 
 }  // namespace
 
-void wake(Simulation& simulation, std::size_t block) {
+void wake(Simulation& simulation, std::size_t block, WakeReason reason) {
   if (simulation.asleep[block] == 0) return;
+  ++simulation.wakes[static_cast<std::size_t>(reason)];
   simulation.asleep[block] = 0;
   simulation.engine->loadPath.known.clear();
   simulation.restTime_s[block] = 0.0;
@@ -215,13 +227,13 @@ void wakeForInputs(Simulation& simulation) {
   const double frame_s = simulation.scene.settings.frame_s;
   const Vec3 gravity = simulation.scene.gravity.at(simulation.time_s + frame_s);
   if ((gravity - engine.gravitySlept).norm() > kWakeGravity * simulation.scene.gravity.magnitude) {
-    for (std::size_t b = 0; b < simulation.asleep.size(); ++b) wake(simulation, b);
+    for (std::size_t b = 0; b < simulation.asleep.size(); ++b) wake(simulation, b, WakeReason::gravity);
     return;
   }
   for (const UserForce& user : simulation.scene.forces) {
-    if (acts(user, simulation.time_s, frame_s)) wake(simulation, static_cast<std::size_t>(user.block));
+    if (acts(user, simulation.time_s, frame_s)) wake(simulation, static_cast<std::size_t>(user.block), WakeReason::force);
   }
-  if (simulation.tether.block != kFloor) wake(simulation, index(simulation.tether.block));
+  if (simulation.tether.block != kFloor) wake(simulation, index(simulation.tether.block), WakeReason::hand);
 }
 
 bool wakeOnImpact(Simulation& simulation) {
@@ -242,7 +254,7 @@ bool wakeOnImpact(Simulation& simulation) {
     const bool sleepsA = sleeps(simulation, pair.a);
     const std::int32_t awake = sleepsA ? pair.b : pair.a;
     if (isStruck(simulation, pair, awake, engine.touched[static_cast<std::size_t>(awake)] != 0))
-      engine.toWake.push_back(sleepsA ? pair.a : pair.b);
+      engine.toWake.push_back({sleepsA ? pair.a : pair.b, WakeReason::impact});
   }
   if (engine.toWake.empty()) return false;
   engine.touchingEdges.clear();
@@ -251,9 +263,10 @@ bool wakeOnImpact(Simulation& simulation) {
       engine.touchingEdges.push_back({pair.a, pair.b});
   }
   engine.touched.resize(simulation.asleep.size());
-  connectedBlocks(engine.touchingEdges, engine.toWake, engine.parent, engine.touched);
+  findRoots(engine);
+  connectedBlocks(engine.touchingEdges, engine.wakeRoots, engine.parent, engine.touched);
   for (std::size_t b = 0; b < engine.touched.size(); ++b) {
-    if (engine.touched[b] != 0) wake(simulation, b);
+    if (engine.touched[b] != 0) wake(simulation, b, WakeReason::impact);
   }
   return true;
 }
@@ -264,7 +277,7 @@ bool wakeFailedSupports(Simulation& simulation) {
   if (engine.awakeCount == simulation.asleep.size()) return false;
   const StageTimer timer(simulation.stageTimes, Stage::islandsAndSleep);
   if (!findWakeCandidates(simulation)) return false;
-  for (const std::int32_t block : engine.toWake) wake(simulation, static_cast<std::size_t>(block));
+  wakeRequested(simulation);
   return true;
 }
 
@@ -276,7 +289,7 @@ void updateRest(Simulation& simulation) {
     sleep == Sleep::report ? judgeAsReported(simulation, b) : judge(simulation, b);
   }
   if (sleep == Sleep::off) return;
-  for (const std::int32_t block : engine.toWake) wake(simulation, static_cast<std::size_t>(block));
+  wakeRequested(simulation);
   putToSleep(simulation);
 }
 

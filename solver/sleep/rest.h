@@ -22,7 +22,7 @@ bool wakeFailedSupports(Simulation& simulation);
 /// and puts groups of touching blocks to sleep that are all at rest.
 void updateRest(Simulation& simulation);
 
-/// Wakes one block.
-void wake(Simulation& simulation, std::size_t block);
+/// Wakes one block, if it sleeps, and counts why.
+void wake(Simulation& simulation, std::size_t block, WakeReason reason);
 
 }  // namespace springtower

@@ -243,7 +243,7 @@ bool findFailedSupports(Simulation& simulation) {
       gives = true;
       path.known.clear();
       for (std::size_t i = 0; i < above; ++i) {
-        if (findRoot(path.parent, path.blocks[i]) == group) engine.toWake.push_back(path.blocks[i]);
+        if (findRoot(path.parent, path.blocks[i]) == group) engine.toWake.push_back({path.blocks[i], WakeReason::failedSupport});
       }
     }
   }

@@ -13,6 +13,7 @@
 #include "solver/world/rigid_island.h"
 #include "solver/world/simulation.h"
 #include "solver/world/support_point.h"
+#include "solver/world/wake_reason.h"
 
 #include <array>
 #include <cstdint>
@@ -83,6 +84,12 @@ struct CheckedLoad {
   std::int32_t block = -1;
   Vec3 force = Vec3::Zero();   ///< N, change
   Vec3 torque = Vec3::Zero();  ///< N m, about the block's centre
+};
+
+/// A sleeping block that is to wake.
+struct WakeRequest {
+  std::int32_t block = -1;
+  WakeReason reason = WakeReason::loadChange;
 };
 
 /// A group of sleepers, by its root, and a pair on which it may rest.
@@ -160,7 +167,8 @@ struct Engine {
   std::vector<BlockHistory> blockHistory;     ///< [blocks]
   std::vector<std::int32_t> lostPartner;      ///< sleeping blocks whose awake neighbour went out of reach in this frame
   std::vector<std::int32_t> newContactCount;  ///< scratch, [blocks]: pairs of the block that may make first contact in this frame
-  std::vector<std::int32_t> toWake;           ///< working space
+  std::vector<WakeRequest> toWake;            ///< working space: sleeping blocks that are to wake, and why
+  std::vector<std::int32_t> wakeRoots;        ///< working space: blocks from which others are reached
   std::vector<std::int32_t> pushed;           ///< working space: sleeping blocks with awake neighbours
   std::vector<LoadChange> change;             ///< working space, [blocks]
   SupportCheckScratch loadPath;

@@ -52,12 +52,12 @@ MemoryUse memoryUse(const Simulation& simulation) {
       engine.pairStart, engine.islandPairs, engine.watchedPairs, engine.path, engine.foreseenPath, engine.blockPairStart,
       engine.blockPairs, engine.cursor, engine.touchingEdges, engine.force, engine.frames, engine.motion, engine.carriedMotion,
       engine.contactForce, engine.springRadius, engine.contactMetric, engine.previous, engine.carried, engine.pairForce,
-      engine.blockHistory, engine.lostPartner, engine.toWake, engine.pushed, engine.change, engine.loadPath.start,
-      engine.loadPath.pairs, engine.loadPath.blocks, engine.loadPath.parent, engine.loadPath.open, engine.loadPath.groups,
-      engine.loadPath.beneath, engine.loadPath.known, engine.loadPath.supports, engine.newContactCount, engine.restless,
-      engine.parent, engine.joined, engine.touched, engine.rest, engine.report, engine.frameStart, engine.frameStartClock,
-      engine.frameStartPoints, engine.frameStartPose, engine.pairKept, engine.chunkCounters, engine.chunkTimes,
-      engine.islandCounters, engine.islandTimes, engine.islandOutcome);
+      engine.blockHistory, engine.lostPartner, engine.toWake, engine.wakeRoots, engine.pushed, engine.change,
+      engine.loadPath.start, engine.loadPath.pairs, engine.loadPath.blocks, engine.loadPath.parent, engine.loadPath.open,
+      engine.loadPath.groups, engine.loadPath.beneath, engine.loadPath.known, engine.loadPath.supports, engine.newContactCount,
+      engine.restless, engine.parent, engine.joined, engine.touched, engine.rest, engine.report, engine.frameStart,
+      engine.frameStartClock, engine.frameStartPoints, engine.frameStartPose, engine.pairKept, engine.chunkCounters,
+      engine.chunkTimes, engine.islandCounters, engine.islandTimes, engine.islandOutcome);
   use.working += sumOf(engine.sweep.order, engine.sweep.place, engine.sweep.columns, engine.sweep.awake, engine.sweep.renewed,
                        engine.sweep.ascending, engine.sweep.outOfOrder);
   for (const MotionState& stage : engine.stage) use.working += bytesOf(stage);

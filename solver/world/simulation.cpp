@@ -24,12 +24,13 @@ struct Snapshot {
   std::vector<double> restTime_s;
   Counters counters;
   StageTimes stageTimes;
+  WakeCounts wakes;
   Engine engine;
 };
 
 std::shared_ptr<const Snapshot> takeSnapshot(const Simulation& s) {
-  return std::make_shared<const Snapshot>(
-      Snapshot{s.state, s.tether, s.time_s, s.frame, s.substeps, s.asleep, s.restTime_s, s.counters, s.stageTimes, *s.engine});
+  return std::make_shared<const Snapshot>(Snapshot{s.state, s.tether, s.time_s, s.frame, s.substeps, s.asleep, s.restTime_s,
+                                                   s.counters, s.stageTimes, s.wakes, *s.engine});
 }
 
 void restoreSnapshot(Simulation& s, const Snapshot& snapshot) {
@@ -42,6 +43,7 @@ void restoreSnapshot(Simulation& s, const Snapshot& snapshot) {
   s.restTime_s = snapshot.restTime_s;
   s.counters = snapshot.counters;
   s.stageTimes = snapshot.stageTimes;
+  s.wakes = snapshot.wakes;
   *s.engine = snapshot.engine;
 }
 

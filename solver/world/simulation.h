@@ -5,6 +5,7 @@
 #include "core/state.h"
 #include "solver/law/tether.h"
 #include "solver/law/tolerances.h"
+#include "solver/world/wake_reason.h"
 
 #include <cstdint>
 #include <memory>
@@ -39,6 +40,7 @@ struct Simulation {
   std::vector<double> restTime_s;     ///< how long a block has been at rest, s, [blocks]; kept with sleep off as well
   Counters counters;
   StageTimes stageTimes;
+  WakeCounts wakes{};  ///< blocks woken, by reason
   std::unique_ptr<Engine> engine;
 };
 

@@ -33,6 +33,12 @@ Json energyJson(const Energy& energy) {
   return {{"kinetic", energy.kinetic}, {"gravity", energy.gravity}, {"springs", energy.springs}, {"contacts", energy.contacts}};
 }
 
+Json wakesJson(const WakeCounts& wakes) {
+  Json json;
+  for (std::size_t i = 0; i < kWakeReasons; ++i) json[std::string(kWakeReasonNames[i])] = wakes[i];
+  return json;
+}
+
 Json countersJson(const Counters& counters) {
   return {{"replayed_frames", counters.replayedFrames},
           {"block_pairs", counters.blockPairs},
@@ -126,9 +132,19 @@ Json reportJson(const Simulation& simulation, const RunResult& result, int threa
   report["asleep_blocks"] = result.asleepBlocks;
   report["awake_blocks"] = result.awakeBlocks;
   report["counters"] = countersJson(result.counters);
+  report["wakes"] = wakesJson(result.wakes);
   if (!simulation.scene.moves.empty()) report["moves"] = movesJson(simulation, result);
   report["state_hash"] = fmt::format("{:016x}", result.stateHash);
   return report;
+}
+
+// "force 1, load_change 4"; empty where no block has woken.
+std::string wakesInWords(const WakeCounts& wakes) {
+  std::string words;
+  for (std::size_t i = 0; i < kWakeReasons; ++i) {
+    if (wakes[i] != 0) words += fmt::format("{}{} {}", words.empty() ? "" : ", ", kWakeReasonNames[i], wakes[i]);
+  }
+  return words;
 }
 
 void printResult(const Simulation& simulation, const RunResult& result, int threads) {
@@ -148,6 +164,8 @@ void printResult(const Simulation& simulation, const RunResult& result, int thre
   }
   row("at rest", result.restTime_s ? fmt::format("from {:.2f} s on", *result.restTime_s) : "no");
   row("asleep", fmt::format("{} of {} blocks", result.asleepBlocks, result.asleepBlocks + result.awakeBlocks));
+  const std::string woken = wakesInWords(result.wakes);
+  if (!woken.empty()) row("woken", woken);
   row("penetration, settled", millimetres(result.maxPenetration_m, "not settled"));
   row("penetration, whole run", result.deepest.depth > 0.0
                                     ? fmt::format("{}, {} at {:.3f} s", millimetres(result.deepest.depth, ""),

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <ctime>
 #include <gtest/gtest.h>
+#include <numeric>
 
 namespace springtower {
 namespace {
@@ -214,6 +215,46 @@ TEST(Sleep, ABlockThatHitsSleepersMovesThemAsAwake) {
   EXPECT_GT(expected.moves[1].moved_m, 3e-4) << "the blow has to be felt";
   EXPECT_NEAR(result.moves[1].moved_m, expected.moves[1].moved_m, 0.02 * expected.moves[1].moved_m);
   EXPECT_EQ(asleepBlocks(asleep), 9U) << "and they sleep again";
+}
+
+// A tower of three rows that sleeps.
+Simulation sleepingTower() {
+  Simulation simulation(towerScene(3));
+  while (!allAsleep(simulation) && simulation.time_s < 10.0) stepFrame(simulation);
+  return simulation;
+}
+
+std::uint64_t wokenBy(const Simulation& simulation, WakeReason reason) {
+  return simulation.wakes[static_cast<std::size_t>(reason)];
+}
+
+TEST(Sleep, EveryWakeHasAReason) {
+  Simulation forced = sleepingTower();
+  ASSERT_TRUE(allAsleep(forced));
+  EXPECT_EQ(forced.wakes, WakeCounts{}) << "nothing has woken yet";
+  forced.scene.forces.push_back({4, -1, Vec3(0.01, 0.0, 0.0), forced.time_s, forced.time_s + 0.1});
+  stepFrame(forced);
+  EXPECT_EQ(wokenBy(forced, WakeReason::force), 1U);
+
+  Simulation kicked = sleepingTower();
+  kick(kicked, 4, Vec3(0.001, 0.0, 0.0));
+  EXPECT_EQ(wokenBy(kicked, WakeReason::kick), 1U);
+  kick(kicked, 4, Vec3(0.001, 0.0, 0.0));
+  EXPECT_EQ(wokenBy(kicked, WakeReason::kick), 1U) << "it was awake already";
+
+  Simulation tilted = sleepingTower();
+  tilted.scene.gravity.tilt_deg = 1.0;
+  stepFrame(tilted);
+  EXPECT_EQ(wokenBy(tilted, WakeReason::gravity), 9U);
+  EXPECT_EQ(std::accumulate(tilted.wakes.begin(), tilted.wakes.end(), std::uint64_t{0}), 9U);
+}
+
+TEST(Sleep, WakesAreCountedAgainFromASnapshot) {
+  Simulation simulation = sleepingTower();
+  const auto before = takeSnapshot(simulation);
+  kick(simulation, 4, Vec3(0.001, 0.0, 0.0));
+  restoreSnapshot(simulation, *before);
+  EXPECT_EQ(simulation.wakes, WakeCounts{});
 }
 
 // The report's test: a block is disabled when its particles have moved little in one frame.

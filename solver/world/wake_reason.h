@@ -1,0 +1,33 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+namespace springtower {
+
+/// Why a sleeping block wakes. Every rule of solver/sleep has one.
+enum class WakeReason : std::uint8_t {
+  gravity,         ///< gravity has changed since the last block fell asleep
+  force,           ///< a user's force acts on it
+  hand,            ///< a hand holds it
+  kick,            ///< it is given a velocity
+  impact,          ///< an awake block is about to hit it, or slides on it fast; or what it touches is hit
+  loadChange,      ///< its other contacts cannot bear what awake neighbours do otherwise, or a contact has come or gone
+  lostNeighbour,   ///< an awake neighbour has gone out of reach
+  failedSupport,   ///< it belongs to a group of sleepers whose supports cannot bear what is done to the group
+  unbalanced,      ///< neighbours fall asleep on other forces than those it slept on
+  reportedImpact,  ///< method `report`: an impulse acts on it
+};
+inline constexpr std::size_t kWakeReasons = 10;
+
+/// As reports name them.
+inline constexpr std::array<std::string_view, kWakeReasons> kWakeReasonNames = {
+    "gravity",     "force",          "hand",           "kick",       "impact",
+    "load_change", "lost_neighbour", "failed_support", "unbalanced", "reported_impact"};
+
+/// How many blocks have woken for each reason.
+using WakeCounts = std::array<std::uint64_t, kWakeReasons>;
+
+}  // namespace springtower
