@@ -1,7 +1,7 @@
 // Runs a set of continuous collision queries with known answers: judges every answer and times every query.
 #include "core/error.h"
+#include "core/limits.h"
 #include "core/output_file.h"
-#include "core/scene/limits.h"
 #include "narrowphase/exact/query_set.h"
 
 #include <CLI/CLI.hpp>

@@ -1,7 +1,7 @@
 #include "core/output_file.h"
 
 #include "core/error.h"
-#include "core/scene/limits.h"
+#include "core/limits.h"
 
 #include <cerrno>
 #include <cstdio>

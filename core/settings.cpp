@@ -1,7 +1,7 @@
 #include "core/settings.h"
 
 #include "core/error.h"
-#include "core/scene/limits.h"
+#include "core/limits.h"
 
 #include <array>
 #include <cstddef>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/scene/limits.h"
+#include "core/limits.h"
 #include "core/settings.h"
 
 #include <cstdint>

@@ -1,7 +1,7 @@
 #include "apps/common/output_file.h"
 
 #include "core/error.h"
-#include "core/scene/limits.h"
+#include "core/limits.h"
 
 #include <filesystem>
 #include <fmt/format.h>

@@ -5,7 +5,7 @@
 #include "apps/common/poses.h"
 #include "apps/viewer/window.h"
 #include "core/error.h"
-#include "core/scene/limits.h"
+#include "core/limits.h"
 #include "core/version.h"
 
 #include <CLI/CLI.hpp>

@@ -2,7 +2,7 @@
 
 #include "apps/common/output_file.h"
 #include "core/error.h"
-#include "core/scene/limits.h"
+#include "core/limits.h"
 
 #include <cairo.h>
 #include <cerrno>

@@ -2,7 +2,7 @@
 
 #include "broadphase/islands.h"
 #include "core/error.h"
-#include "core/scene/limits.h"
+#include "core/limits.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "apps/viewer/panels.h"
 
-#include "core/scene/limits.h"
+#include "core/limits.h"
 
 #include <algorithm>
 #include <charconv>

@@ -1,7 +1,7 @@
 #include "apps/viewer/recording.h"
 
 #include "core/error.h"
-#include "core/scene/limits.h"
+#include "core/limits.h"
 #include "core/version.h"
 
 #include <charconv>

@@ -1,8 +1,8 @@
 #include "core/scene/scene.h"
 
 #include "core/error.h"
+#include "core/limits.h"
 #include "core/random.h"
-#include "core/scene/limits.h"
 
 #include <algorithm>
 #include <array>

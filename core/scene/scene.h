@@ -143,7 +143,7 @@ double toleranceOf(const Scene& scene);
 /// and all numbers are within limits. Throws InputError naming `source`, the move, what was found and what is allowed.
 void checkMoves(const Scene& scene, std::string_view source);
 
-/// Checks what every scene must obey: values within the limits of core/scene/limits.h and `settingTable`, unit orientations,
+/// Checks what every scene must obey: values within the limits of core/limits.h and `settingTable`, unit orientations,
 /// forces on blocks that exist, moves that can be made (checkMoves), no block inside another or in the floor by more than a
 /// millionth of the least dimension of the blocks concerned (touching is fine); in a plane: blocks whose centres and gravity lie
 /// in y = 0, with an axis along y, that neither move nor are pushed out of it. The scenes above have been checked; check again

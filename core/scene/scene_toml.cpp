@@ -1,5 +1,5 @@
 #include "core/error.h"
-#include "core/scene/limits.h"
+#include "core/limits.h"
 #include "core/scene/scene.h"
 #include "core/scene/toml_keys.h"
 #include "core/scene/toml_moves.h"

@@ -1,7 +1,7 @@
 #include "core/scene/toml_keys.h"
 
 #include "core/error.h"
-#include "core/scene/limits.h"
+#include "core/limits.h"
 
 #include <algorithm>
 #include <cstddef>

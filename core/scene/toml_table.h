@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/error.h"
-#include "core/scene/limits.h"
+#include "core/limits.h"
 #include "core/vector.h"
 
 #include <algorithm>

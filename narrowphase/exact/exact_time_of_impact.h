@@ -1,6 +1,6 @@
 #pragma once
 
-#include "narrowphase/moving_point.h"
+#include "narrowphase/exact/moving_point.h"
 
 namespace springtower {
 

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "narrowphase/exact/moving_point.h"
 #include "narrowphase/exact/time_of_impact.h"
-#include "narrowphase/moving_point.h"
 
 #include <array>
 #include <string>

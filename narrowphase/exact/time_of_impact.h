@@ -1,7 +1,7 @@
 #pragma once
 
 #include "narrowphase/exact/cubic.h"
-#include "narrowphase/moving_point.h"
+#include "narrowphase/exact/moving_point.h"
 
 namespace springtower {
 

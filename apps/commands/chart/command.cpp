@@ -10,7 +10,7 @@
 #include "apps/common/output_file.h"
 #include "apps/common/progress.h"
 #include "core/error.h"
-#include "core/scene/limits.h"
+#include "core/limits.h"
 #include "core/scene/scene.h"
 
 #include <CLI/CLI.hpp>

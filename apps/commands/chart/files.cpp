@@ -3,7 +3,7 @@
 #include "apps/common/options.h"
 #include "apps/common/output_file.h"
 #include "core/error.h"
-#include "core/scene/limits.h"
+#include "core/limits.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "apps/commands/profile/charts.h"
 
-#include "apps/plot/report_figures.h"
+#include "apps/commands/profile/report_figures.h"
 
 #include <algorithm>
 #include <fmt/format.h>

@@ -3,13 +3,13 @@
 #include "apps/commands/profile/charts.h"
 #include "apps/commands/profile/files.h"
 #include "apps/commands/profile/measure.h"
+#include "apps/commands/profile/report_figures.h"
 #include "apps/commands/profile/scene.h"
 #include "apps/common/options.h"
 #include "apps/common/output_file.h"
 #include "apps/common/progress.h"
-#include "apps/plot/report_figures.h"
 #include "core/error.h"
-#include "core/scene/limits.h"
+#include "core/limits.h"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>

@@ -2,7 +2,7 @@
 
 #include "apps/commands/run/moves_report.h"
 #include "apps/common/json_values.h"
-#include "core/scene/limits.h"
+#include "core/limits.h"
 #include "core/version.h"
 
 #include <fmt/format.h>

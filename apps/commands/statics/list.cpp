@@ -4,7 +4,7 @@
 #include "apps/commands/verdict/json.h"
 #include "apps/commands/verdict/verdict.h"
 #include "core/error.h"
-#include "core/scene/limits.h"
+#include "core/limits.h"
 
 #include <algorithm>
 #include <cmath>

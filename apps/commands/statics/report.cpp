@@ -1,7 +1,7 @@
 #include "apps/commands/statics/report.h"
 
 #include "apps/common/json_values.h"
-#include "core/scene/limits.h"
+#include "core/limits.h"
 #include "core/version.h"
 
 #include <cmath>

@@ -1,7 +1,7 @@
 #include "apps/commands/verdict/json.h"
 
 #include "core/error.h"
-#include "core/scene/limits.h"
+#include "core/limits.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

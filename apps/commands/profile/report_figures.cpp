@@ -1,4 +1,4 @@
-#include "apps/plot/report_figures.h"
+#include "apps/commands/profile/report_figures.h"
 
 #include <algorithm>
 #include <fmt/format.h>

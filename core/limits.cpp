@@ -1,4 +1,4 @@
-#include "core/scene/limits.h"
+#include "core/limits.h"
 
 #include "core/error.h"
 
