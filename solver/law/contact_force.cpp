@@ -46,6 +46,64 @@ SPRINGTOWER_INLINE bool any(const LaneMask& mask) {
   return (mask[0] | mask[1] | mask[2] | mask[3]) != 0;
 }
 
+// How four points stand in the normal direction.
+struct PointState {
+  LaneMask touching;
+  LaneMask known;   // those that touched before
+  Lanes closing;    // m/s
+  Lanes stiffness;  // N/m
+};
+
+// The tangential part of the law, for points that push with p.normalForce and close at `closing`: carries the stretch along,
+// keeps it tangential, and bounds it by the cone.
+SPRINGTOWER_INLINE void frictionLaw(const LawStep& s, const PointState& state, const Lanes* relative, const Lanes* carried,
+                                    const double* normal, PointLanes& p) {
+  const Lanes zero = {0.0, 0.0, 0.0, 0.0};
+  const Lanes one = zero + 1.0;
+  const ContactLaw& law = s.law;
+  const LaneMask touching = state.touching;
+  const Lanes push = p.normalForce;
+  const Lanes carriedNormal = carried[0] * normal[0] + carried[1] * normal[1] + carried[2] * normal[2];
+  Lanes stretch[3];
+  Lanes slip[3];
+  for (int a = 0; a < 3; ++a) {
+    stretch[a] = p.stretch[a] + (carried[a] - carriedNormal * normal[a]) * s.step.advance_s;
+    slip[a] = relative[a] + state.closing * normal[a];
+  }
+  const Lanes outOfPlane = stretch[0] * normal[0] + stretch[1] * normal[1] + stretch[2] * normal[2];
+  const Lanes tangential = state.stiffness * law.tangentialRatio;
+  Lanes friction[3];
+  for (int a = 0; a < 3; ++a) {
+    stretch[a] -= outOfPlane * normal[a];
+    friction[a] = -tangential * (stretch[a] + law.dampingTime_s * slip[a]);
+  }
+  const Lanes squared = friction[0] * friction[0] + friction[1] * friction[1] + friction[2] * friction[2];
+  const Lanes coefficient = p.sliding > zero ? zero + law.kineticFriction : zero + law.staticFriction;
+  const Lanes sticking = coefficient * push;
+  const LaneMask slides = squared > sticking * sticking;
+  if (!any(slides)) {
+    p.sliding = zero;
+    for (int a = 0; a < 3; ++a) {
+      p.stretch[a] = touching ? stretch[a] : zero;
+      p.force[a] = push * normal[a] + friction[a];
+    }
+    return;
+  }
+  Lanes size;
+  squareRoot(squared, size);
+  const Lanes keep = slides ? law.kineticFriction * push / size : one;
+  p.sliding = slides & touching ? (keep > kMinShare ? keep : zero + kMinShare) : zero;
+  // What slips frees a little of the offset; friction's own loss pays for the work.
+  Lanes stretchSize;
+  squareRoot(stretch[0] * stretch[0] + stretch[1] * stretch[1] + stretch[2] * stretch[2], stretchSize);
+  const Lanes freed = p.offset - law.offsetPerSlip * (1.0 - keep) * stretchSize;
+  p.offset = state.known ? (freed > zero ? freed : zero) : p.offset;
+  for (int a = 0; a < 3; ++a) {
+    p.stretch[a] = touching ? stretch[a] * keep : zero;
+    p.force[a] = push * normal[a] + friction[a] * keep;
+  }
+}
+
 // The contact law on four points. `relative` is the velocity of upper against lower, `carried` the one that moved them since the
 // memory was last brought up to date; `inUse` is 1 for lanes that hold a point.
 SPRINGTOWER_INLINE void pointLaw(const LawStep& s, const Lanes& depth, const Lanes* relative, const Lanes* carried,
@@ -90,47 +148,7 @@ SPRINGTOWER_INLINE void pointLaw(const LawStep& s, const Lanes& depth, const Lan
   }
   p.live = touching ? (push > zero ? one : zero + kUnpressed) : zero;
   p.normalForce = push;
-
-  // Friction: carry the stretch along, keep it tangential, and bound it by the cone.
-  const Lanes carriedNormal = carried[0] * normal[0] + carried[1] * normal[1] + carried[2] * normal[2];
-  Lanes stretch[3];
-  Lanes slip[3];
-  for (int a = 0; a < 3; ++a) {
-    stretch[a] = p.stretch[a] + (carried[a] - carriedNormal * normal[a]) * s.step.advance_s;
-    slip[a] = relative[a] + closing * normal[a];
-  }
-  const Lanes outOfPlane = stretch[0] * normal[0] + stretch[1] * normal[1] + stretch[2] * normal[2];
-  const Lanes tangential = stiffness * law.tangentialRatio;
-  Lanes friction[3];
-  for (int a = 0; a < 3; ++a) {
-    stretch[a] -= outOfPlane * normal[a];
-    friction[a] = -tangential * (stretch[a] + law.dampingTime_s * slip[a]);
-  }
-  const Lanes squared = friction[0] * friction[0] + friction[1] * friction[1] + friction[2] * friction[2];
-  const Lanes coefficient = p.sliding > zero ? zero + law.kineticFriction : zero + law.staticFriction;
-  const Lanes sticking = coefficient * push;
-  const LaneMask slides = squared > sticking * sticking;
-  if (!any(slides)) {
-    p.sliding = zero;
-    for (int a = 0; a < 3; ++a) {
-      p.stretch[a] = touching ? stretch[a] : zero;
-      p.force[a] = push * normal[a] + friction[a];
-    }
-    return;
-  }
-  Lanes size;
-  squareRoot(squared, size);
-  const Lanes keep = slides ? law.kineticFriction * push / size : one;
-  p.sliding = slides & touching ? (keep > kMinShare ? keep : zero + kMinShare) : zero;
-  // What slips frees a little of the offset; friction's own loss pays for the work.
-  Lanes stretchSize;
-  squareRoot(stretch[0] * stretch[0] + stretch[1] * stretch[1] + stretch[2] * stretch[2], stretchSize);
-  const Lanes freed = p.offset - law.offsetPerSlip * (1.0 - keep) * stretchSize;
-  p.offset = known ? (freed > zero ? freed : zero) : p.offset;
-  for (int a = 0; a < 3; ++a) {
-    p.stretch[a] = touching ? stretch[a] * keep : zero;
-    p.force[a] = push * normal[a] + friction[a] * keep;
-  }
+  frictionLaw(s, {touching, known, closing, stiffness}, relative, carried, normal, p);
 }
 
 // Sums of three lane vectors at once: [sum a, sum b, sum c, 0].
@@ -156,25 +174,89 @@ SPRINGTOWER_INLINE void place(const Lanes& total, double sign, const FaceAxes& f
   force.side[face.v][k] = sign * total[2];
 }
 
+// A face of a block: where it lies, how it moves, and what carried it.
+struct MovingFace {
+  FaceField place;
+  FaceField motion;
+  FaceField carried;
+};
+
+template <bool SameMotion>
+SPRINGTOWER_INLINE void movingFaceOf(const ContactSide& side, const FaceAxes& axes, MovingFace& face) {
+  faceOf(side.frame->place, axes, face.place);
+  faceOf(*side.motion, axes, face.motion);
+  if (!SameMotion) faceOf(*side.carried, axes, face.carried);
+}
+
+// What lies under a face: the floor, or the face of another block.
+struct FaceBelow {
+  MovingFace face;
+  double normal[3] = {0.0, 0.0, 1.0};
+  double dualU[3];
+  double dualV[3];
+};
+
+// Four points between two faces, at `u` and `v` of the upper one.
+struct FacePoints {
+  Lanes u, v;
+  Lanes lowerU, lowerV;
+  Lanes depth;
+  Lanes point[3];     // m, on the upper face
+  Lanes relative[3];  // m/s, of upper against lower
+  Lanes carried[3];   // m/s
+};
+
+template <bool Floor, bool SameMotion>
+SPRINGTOWER_INLINE void placePoints(const MovingFace& upper, const FaceBelow& lower, FacePoints& p) {
+  const Lanes zero = {0.0, 0.0, 0.0, 0.0};
+  const double* normal = lower.normal;
+  at(upper.place, p.u, p.v, p.point);
+  at(upper.motion, p.u, p.v, p.relative);
+  if (!SameMotion) at(upper.carried, p.u, p.v, p.carried);
+  p.depth = -p.point[2];
+  p.lowerU = zero;
+  p.lowerV = zero;
+  if (Floor) return;
+  Lanes arm[3];
+  for (int k = 0; k < 3; ++k) arm[k] = p.point[k] - lower.face.place.centre[k];
+  p.depth = -(arm[0] * normal[0] + arm[1] * normal[1] + arm[2] * normal[2]);
+  p.lowerU = arm[0] * lower.dualU[0] + arm[1] * lower.dualU[1] + arm[2] * lower.dualU[2];
+  p.lowerV = arm[0] * lower.dualV[0] + arm[1] * lower.dualV[1] + arm[2] * lower.dualV[2];
+  Lanes below[3];
+  at(lower.face.motion, p.lowerU, p.lowerV, below);
+  for (int k = 0; k < 3; ++k) p.relative[k] -= below[k];
+  if (SameMotion) return;
+  at(lower.face.carried, p.lowerU, p.lowerV, below);
+  for (int k = 0; k < 3; ++k) p.carried[k] -= below[k];
+}
+
+void reportFace(const FacePoints& p, const PointLanes& points, const double* normal, std::size_t first, std::size_t count,
+                PointForces& report) {
+  for (std::size_t i = 0; i < 4 && first + i < count; ++i) {
+    const std::size_t to = first + i;
+    report.depth[to] = p.depth[i];
+    report.normal[to] = points.normalForce[i];
+    report.direction = Vec3(normal[0], normal[1], normal[2]);
+    report.place[to] = Vec3(p.point[0][i], p.point[1][i], p.point[2][i]);
+    report.lowerPlace[to] = report.place[to] + p.depth[i] * report.direction;
+    for (std::size_t k = 0; k < 3; ++k) report.friction[to][k] = points.force[k][i] - points.normalForce[i] * normal[k];
+  }
+}
+
 template <bool Floor, bool SameMotion>
 SPRINGTOWER_INLINE void faceForces(const Manifold& m, const ContactSide& upper, const ContactSide& lower, const LawStep& law,
                                    PointMemory* keep, PairForce& result, PointForces* report) {
   const FaceAxes& upperFace = kFaceAxes[static_cast<std::size_t>(m.incidentFace)];
   const FaceAxes& lowerFace = kFaceAxes[static_cast<std::size_t>(m.referenceFace)];
-  FaceField placeUpper, motionUpper, carriedUpper, placeLower, motionLower, carriedLower;
-  faceOf(upper.frame->place, upperFace, placeUpper);
-  faceOf(*upper.motion, upperFace, motionUpper);
-  if (!SameMotion) faceOf(*upper.carried, upperFace, carriedUpper);
-  double normal[3] = {0.0, 0.0, 1.0};
-  double dualU[3], dualV[3];
+  MovingFace above;
+  FaceBelow below;
+  movingFaceOf<SameMotion>(upper, upperFace, above);
   if (!Floor) {
-    faceOf(lower.frame->place, lowerFace, placeLower);
-    faceOf(*lower.motion, lowerFace, motionLower);
-    if (!SameMotion) faceOf(*lower.carried, lowerFace, carriedLower);
+    movingFaceOf<SameMotion>(lower, lowerFace, below.face);
     for (std::size_t k = 0; k < 3; ++k) {
-      normal[k] = 2.0 * lowerFace.side * lower.frame->normal[lowerFace.across][k];
-      dualU[k] = lower.frame->dual[lowerFace.u][k];
-      dualV[k] = lower.frame->dual[lowerFace.v][k];
+      below.normal[k] = 2.0 * lowerFace.side * lower.frame->normal[lowerFace.across][k];
+      below.dualU[k] = lower.frame->dual[lowerFace.u][k];
+      below.dualV[k] = lower.frame->dual[lowerFace.v][k];
     }
   }
 
@@ -183,59 +265,28 @@ SPRINGTOWER_INLINE void faceForces(const Manifold& m, const ContactSide& upper, 
   Lanes onLower[3] = {zero, zero, zero};
   const auto count = static_cast<std::size_t>(m.count);
   for (std::size_t first = 0; first < count; first += 4) {
-    Lanes u, v;
-    load(m.u.data() + first, u);
-    load(m.v.data() + first, v);
+    FacePoints p;
+    load(m.u.data() + first, p.u);
+    load(m.v.data() + first, p.v);
     const double left = static_cast<double>(count - first);
     const Lanes inUse = Lanes{0.0, 1.0, 2.0, 3.0} < left ? zero + 1.0 : zero;
-
-    Lanes point[3], relative[3], carried[3];
-    at(placeUpper, u, v, point);
-    at(motionUpper, u, v, relative);
-    if (!SameMotion) at(carriedUpper, u, v, carried);
-    Lanes depth = -point[2];
-    Lanes lowerU = zero;
-    Lanes lowerV = zero;
-    if (!Floor) {
-      Lanes arm[3];
-      for (int k = 0; k < 3; ++k) arm[k] = point[k] - placeLower.centre[k];
-      depth = -(arm[0] * normal[0] + arm[1] * normal[1] + arm[2] * normal[2]);
-      lowerU = arm[0] * dualU[0] + arm[1] * dualU[1] + arm[2] * dualU[2];
-      lowerV = arm[0] * dualV[0] + arm[1] * dualV[1] + arm[2] * dualV[2];
-      Lanes below[3];
-      at(motionLower, lowerU, lowerV, below);
-      for (int k = 0; k < 3; ++k) relative[k] -= below[k];
-      if (!SameMotion) {
-        at(carriedLower, lowerU, lowerV, below);
-        for (int k = 0; k < 3; ++k) carried[k] -= below[k];
-      }
-    }
+    placePoints<Floor, SameMotion>(above, below, p);
 
     PointLanes points;
     loadPoints(m, first, points);
-    pointLaw(law, depth, relative, SameMotion ? relative : carried, normal, inUse, points);
+    pointLaw(law, p.depth, p.relative, SameMotion ? p.relative : p.carried, below.normal, inUse, points);
     if (keep != nullptr) storePoints(points, first, *keep);
     for (int k = 0; k < 3; ++k) {
       const Lanes& f = points.force[k];
       Lanes total;
-      sums(f, f * u, f * v, total);
+      sums(f, f * p.u, f * p.v, total);
       onUpper[k] += total;
       if (!Floor) {
-        sums(f, f * lowerU, f * lowerV, total);
+        sums(f, f * p.lowerU, f * p.lowerV, total);
         onLower[k] += total;
       }
     }
-    if (report != nullptr) {
-      for (std::size_t i = 0; i < 4 && first + i < count; ++i) {
-        const std::size_t to = first + i;
-        report->depth[to] = depth[i];
-        report->normal[to] = points.normalForce[i];
-        report->direction = Vec3(normal[0], normal[1], normal[2]);
-        report->place[to] = Vec3(point[0][i], point[1][i], point[2][i]);
-        report->lowerPlace[to] = report->place[to] + depth[i] * report->direction;
-        for (std::size_t k = 0; k < 3; ++k) report->friction[to][k] = points.force[k][i] - points.normalForce[i] * normal[k];
-      }
-    }
+    if (report != nullptr) reportFace(p, points, below.normal, first, count, *report);
   }
   for (std::size_t k = 0; k < 3; ++k) {
     place(onUpper[k], 1.0, upperFace, k, result.upper);
