@@ -28,23 +28,52 @@ const Folder kFolders[] = {
     {"tests", {"core", "broadphase", "narrowphase", "solver", "apps", "tests"}},
 };
 
-// The rooms of solver/, from the ground up: each may know those before it. docs/adr/0001-folders.md says why in this order.
-constexpr std::string_view kSolverFolders[] = {"block",    "algebra",  "law",     "world", "contact",
-                                               "explicit", "implicit", "rigid",   "sleep", "reference",
-                                               "frame",    "metrics",  "statics", "hand",  "runner"};
-constexpr std::string_view kSolver = "solver/";
+// The rooms of the top-level folders that have some, from the ground up: each may know those before it in its own folder.
+// docs/adr/0001-folders.md says why in this order.
+constexpr std::string_view kRooms[] = {"core",
+                                       "core/scene",
+                                       "narrowphase/exact",
+                                       "narrowphase",
+                                       "solver/block",
+                                       "solver/algebra",
+                                       "solver/law",
+                                       "solver/world",
+                                       "solver/contact",
+                                       "solver/explicit",
+                                       "solver/implicit",
+                                       "solver/rigid",
+                                       "solver/sleep",
+                                       "solver/reference",
+                                       "solver/frame",
+                                       "solver/metrics",
+                                       "solver/statics",
+                                       "solver/hand",
+                                       "solver/runner",
+                                       "apps/common",
+                                       "apps/plot",
+                                       "apps/picture",
+                                       "apps/commands/run",
+                                       "apps/commands/verdict",
+                                       "apps/commands/statics",
+                                       "apps/commands/profile",
+                                       "apps/commands/chart",
+                                       "apps/commands/validate",
+                                       "apps/cli",
+                                       "apps/viewer"};
 
-// The sub-folder of solver/ that a path lies in; empty where it lies in none.
-std::string_view solverFolder(std::string_view path) {
-  if (!path.starts_with(kSolver)) return {};
-  path.remove_prefix(kSolver.size());
-  const size_t end = path.find('/');
-  return end == std::string_view::npos ? std::string_view{} : path.substr(0, end);
+std::string_view topOf(std::string_view path) {
+  return path.substr(0, path.find('/'));
 }
 
-// Where in the order; the number of folders where it is none of them.
-std::ptrdiff_t solverLevel(std::string_view folder) {
-  return std::find(std::begin(kSolverFolders), std::end(kSolverFolders), folder) - std::begin(kSolverFolders);
+// Where in the order the room stands that a file lies in, itself or deeper: the number of rooms where it is none of them.
+std::ptrdiff_t levelOf(std::string_view folder) {
+  while (true) {
+    const auto* found = std::find(std::begin(kRooms), std::end(kRooms), folder);
+    const size_t end = folder.rfind('/');
+    if (found != std::end(kRooms) || end == std::string_view::npos) return found - std::begin(kRooms);
+    folder = folder.substr(0, end);
+    if (folder == topOf(folder)) return std::ssize(kRooms);  // a new room beside those that have a place
+  }
 }
 
 const Folder* findFolder(std::string_view path) {
@@ -75,16 +104,21 @@ Include parseInclude(std::string_view line) {
   return {line.substr(0, line.find(quoted ? '"' : '>')), quoted};
 }
 
-// Empty when one room of solver/ may know the other, else why not.
-std::string complaintInSolver(std::string_view path, std::string_view target) {
-  const std::string_view from = solverFolder(path);
-  const std::string_view to = solverFolder(target);
-  if (from.empty() || to.empty()) return "";
+// Empty when one room of a folder may know the other, else why not. A folder without rooms has no order; nor have files that lie
+// beside its rooms, unless they are one themselves.
+std::string complaintInFolder(std::string_view path, std::string_view target) {
+  const std::string_view top = topOf(path);
+  const bool hasRooms =
+      std::any_of(std::begin(kRooms), std::end(kRooms), [&](std::string_view room) { return topOf(room) == top; });
+  if (!hasRooms || topOf(target) != top) return "";
+  const std::string_view from = path.substr(0, path.rfind('/'));
+  const std::string_view to = target.substr(0, target.rfind('/'));
   for (const std::string_view folder : {from, to}) {
-    if (solverLevel(folder) == std::ssize(kSolverFolders)) return "solver/" + std::string(folder) + " has no place in the order";
+    if (levelOf(folder) < std::ssize(kRooms)) continue;
+    return folder == top ? "" : std::string(folder) + " has no place in the order";
   }
-  if (solverLevel(to) <= solverLevel(from)) return "";
-  return "solver/" + std::string(from) + " must not know solver/" + std::string(to);
+  if (levelOf(to) <= levelOf(from)) return "";
+  return std::string(from) + " must not know " + std::string(to);
 }
 
 // Empty when the include is allowed in a file of `folder`, else why not.
@@ -95,41 +129,53 @@ std::string complaint(std::string_view path, const Folder& folder, const Include
   }
   if (!include.quoted) return "needs quotes: it is a file of this project";
   const auto& allowed = folder.mayInclude;
-  if (std::find(allowed.begin(), allowed.end(), target->name) != allowed.end()) return complaintInSolver(path, include.target);
+  if (std::find(allowed.begin(), allowed.end(), target->name) != allowed.end()) return complaintInFolder(path, include.target);
   return std::string(folder.name) + " must not know " + std::string(target->name);
 }
 
-// Functions as clang-format lays them out: they begin in a line at the margin that ends in "{" and is no namespace, type or
-// table, and end with a "}" at the margin. Members defined in their type stand two spaces in, and are told by their brackets.
+// Functions as clang-format lays them out: their heads begin in a line at the margin, or, of members defined in their type, two
+// spaces in; they may go on in lines farther in, end in "{", and are of no namespace, type or table. A "}" at the same margin
+// ends them.
 class FunctionLengths {
  public:
   // Looks at the next line. Returns the length of the function that it ends, in lines, 0 where it ends none.
   int next(std::string_view line) {
     ++line_;
-    if (begin_ == 0) {
-      if (beginsFunction(line)) begin_ = line_;
-      margin_ = line.substr(0, line.find_first_not_of(' '));
-      return 0;
+    const size_t first = line.find_first_not_of(' ');
+    if (begin_ != 0) {
+      if (first != margin_ || line.substr(first) != "}") return 0;
+      return line_ - std::exchange(begin_, 0) + 1;
     }
-    if (!line.starts_with(margin_) || line.substr(margin_.size()) != "}") return 0;
-    return line_ - std::exchange(begin_, 0) + 1;
+    if (first == 0 || first == 2) {
+      head_ = line_;
+      margin_ = first;
+      isFunction_ = mayBeginFunction(line.substr(first));
+    }
+    if (first != std::string_view::npos && isFunction_ && endsHead(line)) begin_ = head_;
+    return 0;
   }
 
  private:
-  static bool beginsFunction(std::string_view line) {
-    const size_t first = line.find_first_not_of(' ');
-    if (first == std::string_view::npos || (first != 0 && first != 2) || !line.ends_with('{')) return false;
-    line.remove_prefix(first);
+  static bool mayBeginFunction(std::string_view line) {
     for (const std::string_view other :
-         {"namespace", "struct", "class", "enum", "union", "extern", "if", "for", "while", "switch", "else"}) {
+         {"namespace", "struct", "class", "enum", "union", "extern", "if", "for", "while", "switch", "else", "//"}) {
       if (line.starts_with(other)) return false;
     }
-    return line.ends_with(") {") || line.ends_with("const {") || line.ends_with("noexcept {") || line.ends_with(") override {");
+    return true;
+  }
+
+  static bool endsHead(std::string_view line) {
+    for (const std::string_view end : {") {", "const {", "noexcept {", "override {"}) {
+      if (line.ends_with(end)) return true;
+    }
+    return false;
   }
 
   int line_ = 0;
+  int head_ = 0;
   int begin_ = 0;
-  std::string margin_;
+  size_t margin_ = 0;
+  bool isFunction_ = false;
 };
 
 }  // namespace

@@ -16,7 +16,7 @@ inline constexpr int kMaxFlatFiles = 12;
 
 /// What a source file breaks, one line of text each, with the path and the line number; empty when it keeps every rule:
 /// an include names its file from the repository root and reaches only the folders below its own and its own (see kFolders in the
-/// source); within solver/ it reaches only the file's own sub-folder and those before it (kSolverFolders); a header starts with
+/// source); within a folder that has rooms it reaches only the file's own room and those before it (kRooms); a header starts with
 /// `#pragma once`; no file is longer than kMaxLines and no function longer than kMaxFunctionLines.
 /// `path` is relative to the repository root and starts with the folder whose rules apply; `text` is the content of the file.
 std::vector<std::string> brokenRules(std::string_view path, std::string_view text);

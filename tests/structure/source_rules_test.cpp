@@ -47,6 +47,19 @@ TEST(SourceRules, ARoomOfTheSolverKnowsThoseBeforeIt) {
   EXPECT_THAT(brokenRules("apps/viewer/main.cpp", "#include \"solver/implicit/system.h\"\n"), IsEmpty());
 }
 
+TEST(SourceRules, TheOtherFoldersHaveAnOrderToo) {
+  EXPECT_THAT(brokenRules("core/scene/scene.h", "#pragma once\n#include \"core/settings.h\"\n"), IsEmpty());
+  EXPECT_THAT(brokenRules("core/settings.cpp", "#include \"core/scene/scene.h\"\n"),
+              ElementsAre(HasSubstr("core must not know core/scene")));
+  EXPECT_THAT(brokenRules("narrowphase/exact/cubic.cpp", "#include \"narrowphase/manifold.h\"\n"),
+              ElementsAre(HasSubstr("narrowphase/exact must not know narrowphase")));
+  EXPECT_THAT(brokenRules("apps/plot/axis.cpp", "#include \"apps/commands/profile/profile.h\"\n"),
+              ElementsAre(HasSubstr("apps/plot must not know apps/commands/profile")));
+  EXPECT_THAT(brokenRules("apps/commands/validate/sleep.cpp", "#include \"apps/commands/run/report.h\"\n"), IsEmpty());
+  EXPECT_THAT(brokenRules("apps/viewer/ui/panels.cpp", "#include \"apps/viewer/state.h\"\n"), IsEmpty());
+  EXPECT_THAT(brokenRules("apps/commands/attic/old.cpp", "#include \"apps/plot/plot.h\"\n"), ElementsAre(HasSubstr("no place")));
+}
+
 TEST(SourceRules, FunctionsAreShort) {
   const auto function = [](int lines, const std::string& margin) {
     std::string text = margin + "int f(int x) {\n";
@@ -58,6 +71,12 @@ TEST(SourceRules, FunctionsAreShort) {
               ElementsAre("core/state.cpp:61: ends a function of 61 lines, more than 60"));
   EXPECT_THAT(brokenRules("core/state.cpp", "struct S {\n" + function(kMaxFunctionLines + 1, "  ") + "};\n"),
               ElementsAre(HasSubstr("61 lines")));
+  // A head may take more than a line, and a template or a macro stand before it.
+  std::string head =
+      "template <bool Floor>\nSPRINGTOWER_INLINE void f(const Manifold& manifold,\n                          int x) {\n";
+  for (int line = 4; line < kMaxFunctionLines + 1; ++line) head += "  ++x;\n";
+  EXPECT_THAT(brokenRules("core/state.cpp", head + "}\n"), IsEmpty());
+  EXPECT_THAT(brokenRules("core/state.cpp", head + "  ++x;\n}\n"), ElementsAre(HasSubstr("61 lines")));
 }
 
 TEST(SourceRules, NameTheFileTheLineAndTheReason) {
