@@ -39,7 +39,8 @@ void tune(Session& session, const Tuning& tuning) {
   simulation.scene.staticFriction = tuning.friction;
   simulation.scene.kineticFriction = tuning.friction;
   simulation.scene.settings.sleep = tuning.sleep;
-  for (std::size_t b = 0; b < simulation.asleep.size(); ++b) wake(simulation, b);
+  // Friction is another force from now on.
+  for (std::size_t b = 0; b < simulation.asleep.size(); ++b) wake(simulation, b, WakeReason::force);
   session.tuning = tuning;
 }
 

@@ -293,7 +293,7 @@ TEST(ReportDisabling, TheFrameIsAsIfTheBlockHadBeenEnabled) {
   const std::uint64_t hash = stateHash(simulation);
   const std::uint64_t replayed = simulation.counters.replayedFrames;
   restoreSnapshot(simulation, *snapshot);
-  wake(simulation, 0);
+  wake(simulation, 0, WakeReason::kick);
   stepFrame(simulation);
   EXPECT_LT(simulation.counters.replayedFrames, replayed);
   EXPECT_EQ(stateHash(simulation), hash);
