@@ -6,7 +6,7 @@
 namespace springtower {
 namespace {
 
-constexpr int kSnapshotFrame = 20;
+constexpr int kSnapshotFrame = 30;  // rigid steps carry the fall by then
 constexpr int kFramesGoneOn = 20;
 
 Scene oneBlockAt(double height_m, const Eigen::Quaterniond& turn) {
@@ -37,7 +37,7 @@ Scene heap(int blocks) {
 Scene collapse(int rows) {
   Scene scene = awake(towerScene(rows));
   scene.settings.tolerance_m = 1e-5;
-  scene.gravity.tilt_deg = 20.0;
+  scene.gravity.tilt_deg = 14.5;
   return scene;
 }
 
@@ -111,10 +111,10 @@ std::vector<PinnedScene> pinnedFalls() {
       {"DropOnCorner", 90, [=] { return oneBlockAt(0.1, onCorner); }},
       {"DroppedBlock", 90, [] { return sceneOfFile("dropped_block"); }},
       {"HeapOf8", 120, [] { return heap(8); }},
-      {"CollapseAndBack", 180, [] { return collapse(8); }},
+      {"CollapseAndBack", 180, [] { return collapse(18); }},
       {"RowsThatLand", 60, rowsThatLand},
       {"RowsApart", 60, rowsApart},
-      {"RestoredFall", 80, [] { return collapse(6); }, backToASnapshot},
+      {"RestoredFall", 80, [] { return collapse(18); }, backToASnapshot},
       {"SpinWithoutGravity", 120, spinWithoutGravity},
       {"BlocksThatFly", 40, blocksThatFly},
       {"ThrownPair", 60, [] { return sceneOfFile("two_thrown_blocks"); }},
