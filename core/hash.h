@@ -6,8 +6,8 @@
 
 namespace springtower {
 
-/// A 64-bit hash that values are mixed into one after the other (FNV-1a; Fowler, Noll and Vo 1991). It tells states and patterns
-/// apart that differ by chance; it is no defence against somebody who wants two to look alike.
+/// A 64-bit hash that values are mixed into one after the other (FNV-1a; Fowler, Noll and Vo 1991). Two different states have
+/// the same hash by chance once in 2^64; it is not cryptographic.
 class Hash {
  public:
   /// Mixes in a whole word at once. Quicker than byte by byte, and another hash.

@@ -39,8 +39,7 @@ void tune(Session& session, const Tuning& tuning) {
   simulation.scene.staticFriction = tuning.friction;
   simulation.scene.kineticFriction = tuning.friction;
   simulation.scene.settings.sleep = tuning.sleep;
-  // Friction is another force from now on.
-  for (std::size_t b = 0; b < simulation.asleep.size(); ++b) wake(simulation, b, WakeReason::force);
+  for (std::size_t b = 0; b < simulation.asleep.size(); ++b) wake(simulation, b, WakeReason::settings);
   session.tuning = tuning;
 }
 

@@ -274,7 +274,12 @@ bool findPattern(std::span<const std::int32_t> order, std::span<const BlockPair>
 bool analyse(std::span<const std::int32_t> order, std::span<const BlockPair> edges, std::size_t mostProducts,
              BlockCholesky& matrix) {
   if (!findPattern(order, edges, mostProducts, matrix)) return false;
-  const std::size_t count = order.size();
+  listUpdates(matrix);
+  return true;
+}
+
+void listUpdates(BlockCholesky& matrix) {
+  const std::size_t count = matrix.node.size();
   matrix.target.clear();
   matrix.targetStart.clear();
   for (std::size_t j = 0; j < count; ++j) {
@@ -289,7 +294,6 @@ bool analyse(std::span<const std::int32_t> order, std::span<const BlockPair> edg
   matrix.diagonal.resize(kNodeMatrix * count);
   matrix.lower.resize(kNodeMatrix * matrix.row.size());
   matrix.work.resize(kNodeSize * count);
-  return true;
 }
 
 bool holds(const BlockCholesky& matrix, std::span<const BlockPair> edges) {

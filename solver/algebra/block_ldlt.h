@@ -42,6 +42,10 @@ struct BlockCholesky {
 bool findPattern(std::span<const std::int32_t> order, std::span<const BlockPair> edges, std::size_t mostProducts,
                  BlockCholesky& matrix);
 
+/// Lists what each elimination updates and sizes the matrix, for the pattern that `findPattern` found; the second part of
+/// `analyse`.
+void listUpdates(BlockCholesky& matrix);
+
 /// Lays out the matrix for nodes in this order of elimination (a permutation: order[k] is the k-th node) that are coupled by
 /// `edges`, and all blocks that fill in. Returns false, and lays out nothing, where factorising would take more than
 /// `mostProducts` products of 12 x 12 blocks.

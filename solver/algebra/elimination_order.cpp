@@ -1,8 +1,10 @@
 #include "solver/algebra/elimination_order.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 namespace springtower {
 
@@ -67,7 +69,7 @@ Cut bestCut(std::span<const std::int32_t> sorted, DissectionSpace& space) {
     const auto reach = static_cast<std::size_t>(std::max<std::int32_t>(space.reach[i], 0));
     if (reach <= i) continue;
     ++space.change[i + 1];
-    --space.change[reach + 1 <= count ? reach + 1 : count];
+    --space.change[reach + 1];
   }
   const auto size = static_cast<double>(count);
   Cut best;
@@ -94,7 +96,7 @@ void dissect(std::span<std::int32_t> nodes, std::span<const Vec3> centre, Dissec
     const Cut cut = bestCut(space.sorted, space);
     if (!(cut.cost < best.cost)) continue;
     best = cut;
-    space.best = space.sorted;
+    std::swap(space.best, space.sorted);
   }
   for (std::size_t i = 0; i < space.best.size(); ++i)
     space.place[static_cast<std::size_t>(space.best[i])] = static_cast<std::int32_t>(i);

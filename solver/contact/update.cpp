@@ -69,11 +69,11 @@ std::int32_t addPaths(IslandStep& step, bool& inside) {
     const auto [path, deformed] = blockTravel(step.simulation.state.position, step.engine.previous, b);
     const double most = kMaxTravelPerStep * step.simulation.model.dimensions[b].minCoeff();
     if (!(deformed < static_cast<double>(kCorners) * most * most)) return block;
-    BlockHistory& clock = step.engine.blockHistory[b];
-    clock.travel += path;
+    BlockHistory& history = step.engine.blockHistory[b];
+    history.travel += path;
     step.engine.path[b] = path;
     if (path > step.engine.foreseenPath[b]) step.activeListSteps = 0;
-    if (clock.travel - step.engine.travelAtSweep[b] > step.engine.reach[b]) inside = inside && isInSweptBox(step, b);
+    if (history.travel - step.engine.travelAtSweep[b] > step.engine.reach[b]) inside = inside && isInSweptBox(step, b);
   }
   return -1;
 }

@@ -22,20 +22,20 @@ constexpr double kFallenSpeed = 0.05;
 constexpr std::size_t kFewest = 3;
 // Steps of a frame, at least; and farthest that a corner may go in one, in block heights.
 constexpr int kFallSteps = 20;
-constexpr double kMaxDisplacementPerStep = 0.06;
+constexpr double kMaxFallDisplacement = 0.06;
 constexpr int kMaxFallSteps = 6000;
 
 // How an island moves on the whole.
 struct Motion {
   double mass_kg = 0.0;
-  double momentOfSpeed = 0.0;  // kg m2/s2: the blocks' masses by their squared speeds
+  double twiceKinetic_j = 0.0;  // of the blocks' centres
   double height_m = 0.0;
   double fallTime_s = 0.0;  // sqrt(h / g)
 
   // Whether the root of the mean squared speed, by mass, is above this one, in sqrt(g h).
   [[nodiscard]] bool isFasterThan(double speed) const {
     const double least = speed * height_m / fallTime_s;
-    return momentOfSpeed > mass_kg * least * least;
+    return twiceKinetic_j > mass_kg * least * least;
   }
 };
 
@@ -47,7 +47,7 @@ Motion motionOf(const IslandStep& step) {
   for (const std::int32_t block : step.blocks) {
     const auto b = static_cast<std::size_t>(block);
     motion.mass_kg += simulation.model.mass[b];
-    motion.momentOfSpeed += simulation.model.mass[b] * centre(simulation.state.velocity, b).squaredNorm();
+    motion.twiceKinetic_j += simulation.model.mass[b] * centre(simulation.state.velocity, b).squaredNorm();
   }
   return motion;
 }
@@ -127,7 +127,7 @@ IslandMode nextMode(ModeChange when, const IslandFacts& facts) {
 
 void setMode(IslandStep& step, IslandMode mode) {
   const bool falling = mode == IslandMode::rigid;
-  std::vector<BlockHistory>& clock = step.engine.blockHistory;
+  std::vector<BlockHistory>& history = step.engine.blockHistory;
   const auto forEachManifold = [&](bool rigid, const auto& change) {
     for (const std::int32_t at : step.pairs) {
       Manifold& manifold = step.engine.pairs[static_cast<std::size_t>(at)].manifold;
@@ -137,15 +137,15 @@ void setMode(IslandStep& step, IslandMode mode) {
     }
   };
   const bool all = std::all_of(step.blocks.begin(), step.blocks.end(),
-                               [&](std::int32_t block) { return clock[static_cast<std::size_t>(block)].falls; });
+                               [&](std::int32_t block) { return history[static_cast<std::size_t>(block)].falls; });
   if (falling && all) {
     forEachManifold(false, penaltyToImpulse);  // of blocks that slept while a neighbour went back to springs
     return;
   }
   forEachManifold(true, impulseToPenalty);
-  for (const std::int32_t block : step.blocks) clock[static_cast<std::size_t>(block)].falls = falling;
+  for (const std::int32_t block : step.blocks) history[static_cast<std::size_t>(block)].falls = falling;
   if (!falling) return;
-  for (const std::int32_t block : step.blocks) clock[static_cast<std::size_t>(block)].hasFallen = true;
+  for (const std::int32_t block : step.blocks) history[static_cast<std::size_t>(block)].hasFallen = true;
   step.gravity = step.simulation.scene.gravity.at(step.simulation.time_s);
   synchronise(step);
   forEachManifold(false, penaltyToImpulse);
@@ -156,15 +156,15 @@ IslandOutcome runFall(IslandStep& step, double begin_s) {
   double fastest = 0.0;
   for (const std::int32_t block : step.blocks)
     fastest = std::max(fastest, fastestCorner(simulation.state.velocity, static_cast<std::size_t>(block), Vec3::Zero()));
-  const double steps = fastest * simulation.scene.settings.frame_s / (kMaxDisplacementPerStep * simulation.lengths.blockHeight_m);
+  const double steps = fastest * simulation.scene.settings.frame_s / (kMaxFallDisplacement * simulation.lengths.blockHeight_m);
   const IslandOutcome outcome =
       runRigidSteps(step, std::clamp(static_cast<int>(std::ceil(steps)), kFallSteps, kMaxFallSteps), begin_s);
   for (const std::int32_t block : step.blocks) {
-    BlockHistory& clock = step.engine.blockHistory[static_cast<std::size_t>(block)];
-    clock.lastExplicitStep_s = 0.0;
-    clock.lastImplicitStep_s = 0.0;
-    clock.explicitLast = true;
-    clock.explicitFrames = std::max(0, clock.explicitFrames - 1);
+    BlockHistory& history = step.engine.blockHistory[static_cast<std::size_t>(block)];
+    history.lastExplicitStep_s = 0.0;
+    history.lastImplicitStep_s = 0.0;
+    history.explicitLast = true;
+    history.explicitFrames = std::max(0, history.explicitFrames - 1);
   }
   step.engine.newtonSystems[static_cast<std::size_t>(step.blocks.front())].forcesKnown = false;
   return outcome;

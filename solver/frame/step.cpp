@@ -231,10 +231,10 @@ IslandOutcome runIsland(IslandStep& step) {
     if (!outcome.inside) break;
   }
   for (const std::int32_t block : step.blocks) {
-    BlockHistory& clock = step.engine.blockHistory[static_cast<std::size_t>(block)];
-    clock.lastExplicitStep_s = last;
-    clock.explicitLast = true;
-    clock.lastImplicitStep_s = 0.0;
+    BlockHistory& history = step.engine.blockHistory[static_cast<std::size_t>(block)];
+    history.lastExplicitStep_s = last;
+    history.explicitLast = true;
+    history.lastImplicitStep_s = 0.0;
   }
   outcome.substeps += implicitSteps;
   return outcome;

@@ -17,7 +17,7 @@ constexpr std::size_t kMaxDirections = 30;
 // Half of what new factors cost may go into directions, and a product of a factorisation costs four times what a block of the
 // factors costs in a solution (measured: 3 to 4 from 200 to 1800 blocks).
 constexpr std::size_t kDirectionsPerProduct = 2;
-// What may be left over of the forces asked for: the next iteration looks at them anew.
+// Relative tolerance of the inner solve: the next Newton iteration sees what is left over.
 constexpr double kLeftOver = 0.002;
 
 // Low-rank structure: the tangent correction acts on few blocks, and right preconditioning makes the residual zero elsewhere, so

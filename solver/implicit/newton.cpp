@@ -26,6 +26,7 @@ constexpr int kMaxMeetings = 4;
 // Residual force at which a step is taken, in weights of the block; in metres it is this share of the compression under its own
 // weight. Displacements are no measure: a sliding block hardly moves and is still wrong by a tenth of its friction.
 constexpr double kResidual = 1e-5;
+constexpr double kTolerance = 1.0;  // of residuals, which are in units of kResidual
 // Tolerance of the inner GMRES solve, in units of kResidual. It bounds the 2-norm over all blocks, Newton's test the largest
 // block. Smaller: wasted inner solves. Larger: more Newton iterations.
 constexpr double kSolved = 2.0;
@@ -178,10 +179,10 @@ void accept(IslandStep& step, NewtonSystem& island) {
     copyPoints(engine.trial[static_cast<std::size_t>(at)], manifold.count, manifold);
   }
   for (const std::int32_t block : step.blocks) {
-    BlockHistory& clock = engine.blockHistory[static_cast<std::size_t>(block)];
-    clock.lastImplicitStep_s = step.drift_s;
-    clock.lastExplicitStep_s = 0.0;
-    clock.explicitLast = false;
+    BlockHistory& history = engine.blockHistory[static_cast<std::size_t>(block)];
+    history.lastImplicitStep_s = step.drift_s;
+    history.lastExplicitStep_s = 0.0;
+    history.explicitLast = false;
   }
   ++step.counters.implicitSteps;
 }
@@ -201,10 +202,10 @@ void goBack(IslandStep& step) {
 void reject(IslandStep& step) {
   goBack(step);
   for (const std::int32_t block : step.blocks) {
-    BlockHistory& clock = step.engine.blockHistory[static_cast<std::size_t>(block)];
-    clock.lastImplicitStep_s = 0.0;
-    clock.lastExplicitStep_s = 0.0;
-    clock.explicitLast = false;
+    BlockHistory& history = step.engine.blockHistory[static_cast<std::size_t>(block)];
+    history.lastImplicitStep_s = 0.0;
+    history.lastExplicitStep_s = 0.0;
+    history.explicitLast = false;
   }
   ++step.counters.handedOver;
 }
@@ -299,7 +300,7 @@ bool isCarried(const IslandStep& step, double effective_s) {
 
 // Leaves the blocks where they are. Returns the residual there: in a wide island at rest the rounding of stiff contact forces is
 // nearly as large as the tolerance, and no solution would reduce it.
-double stay(IslandStep& step, NewtonSystem& island, double effective_s, StageClock& clock) {
+double evaluateInPlace(IslandStep& step, NewtonSystem& island, double effective_s, StageClock& clock) {
   for (const std::int32_t block : step.blocks) updateVelocities(step, static_cast<std::size_t>(block), effective_s);
   island.trialIsAhead = true;
   return evaluateResidual(step, island, effective_s, clock);
@@ -315,10 +316,10 @@ bool solveStep(IslandStep& step, double effective_s, bool carried, const NewtonO
   if (island.step_s != effective_s || tetherStiffness(step, effective_s) != island.tether) island.factorised = false;
   double residual = island.exceedsFill || carried ? 0.0 : findResidual(step, island, effective_s);
   if (!island.exceedsFill && (carried || residual > kPredicted)) residual = beginPredicted(step, island, effective_s, how, clock);
-  const double enough = std::clamp(how.enough * residual, 1.0, kMaxLeft);
+  const double enough = std::clamp(how.enough * residual, kTolerance, kMaxLeft);
   const bool wide = step.blocks.size() > kNarrowBlocks && !island.exceedsFill;
-  if (wide && !island.trialIsAhead) residual = stay(step, island, effective_s, clock);
-  bool converged = wide && residual <= kPredicted;
+  if (wide && !island.trialIsAhead) residual = evaluateInPlace(step, island, effective_s, clock);
+  bool converged = wide && residual <= kTolerance;
   int most = island.exceedsFill || converged ? 0 : kMaxIterations;
   bool slow = false;
   for (int iteration = 0; iteration < most; ++iteration) {

@@ -77,9 +77,9 @@ int implicitSteps(const IslandStep& step, bool forced, bool known, bool heap) {
   if (settings.method == Method::implicitEuler) return calm ? 1 : kImplicitSteps;
   std::int32_t present = 1;
   for (const std::int32_t block : step.blocks) {
-    const BlockHistory& clock = step.engine.blockHistory[static_cast<std::size_t>(block)];
-    present = std::max(present, clock.implicitSteps);
-    known = known && clock.lastImplicitStep_s > 0.0;
+    const BlockHistory& history = step.engine.blockHistory[static_cast<std::size_t>(block)];
+    present = std::max(present, history.implicitSteps);
+    known = known && history.lastImplicitStep_s > 0.0;
   }
   int least = forced ? kForcedSteps : 1;
   if (!calm && touchesSleeping(step)) least = kImplicitSteps;
@@ -189,9 +189,9 @@ IslandOutcome runImplicitSteps(IslandStep& step, bool heap, double& reached_s) {
     fits = implicitStepsFit(step, frame_s / steps);
   }
   for (const std::int32_t block : step.blocks) {
-    BlockHistory& clock = engine.blockHistory[static_cast<std::size_t>(block)];
-    clock.explicitFrames = std::max(0, clock.explicitFrames - 1);
-    clock.forced = forced;
+    BlockHistory& history = engine.blockHistory[static_cast<std::size_t>(block)];
+    history.explicitFrames = std::max(0, history.explicitFrames - 1);
+    history.forced = forced;
   }
   // Where nothing has come or gone since, the forces are those that the last frame ended with.
   const bool known = island.forcesKnown && !engine.topologyChanged && !wasForced && !forced;

@@ -50,8 +50,8 @@ void updateFrequencyEstimate(IslandStep& step, double effective_s) {
   const double fastest = fourthPower(kFastestTurn / frame_s);
   for (const std::int32_t block : step.blocks) {
     const auto b = static_cast<std::size_t>(block);
-    BlockHistory& clock = engine.blockHistory[b];
-    if (!(clock.lastImplicitStep_s > 0.0)) continue;
+    BlockHistory& past = engine.blockHistory[b];
+    if (!(past.lastImplicitStep_s > 0.0)) continue;
     double jerk[kCorners] = {};
     double speed[kCorners] = {};
     for (std::size_t a = 0; a < 3; ++a) {
@@ -69,9 +69,9 @@ void updateFrequencyEstimate(IslandStep& step, double effective_s) {
       }
     }
     const double mass = step.simulation.model.mass[b];
-    clock.motion += share * (mass * std::accumulate(speed, speed + kCorners, 0.0) - clock.motion);
+    past.motion += share * (mass * std::accumulate(speed, speed + kCorners, 0.0) - past.motion);
     const double jerkNow = mass * rate * rate * std::accumulate(jerk, jerk + kCorners, 0.0);
-    clock.jerk += share * (std::min(jerkNow, fastest * clock.motion) - clock.jerk);
+    past.jerk += share * (std::min(jerkNow, fastest * past.motion) - past.jerk);
   }
 }
 

@@ -209,19 +209,25 @@ void findEdges(const IslandStep& step, NewtonSystem& island) {
   }
 }
 
-// From the bottom up, or by dissection where less fills in.
-void chooseOrder(NewtonSystem& island) {
+// Finds the order of elimination and the pattern of the factors: from the bottom up, or by dissection where less fills in.
+// Returns false where either would take too many products.
+bool findOrder(NewtonSystem& island) {
+  const auto fits = [&](std::size_t mostProducts) {
+    return findPattern(island.order.nodes, island.edges, mostProducts, island.matrix);
+  };
   orderBottomUp(island.order);
-  if (island.order.centre.size() <= kNarrowBlocks) return;
-  const bool fits = findPattern(island.order.nodes, island.edges, kMaxFillProducts, island.matrix);
-  const std::size_t products = fits ? island.matrix.products : kMaxFillProducts + 1;
+  const bool bandFits = fits(kMaxFillProducts);
+  if (island.order.centre.size() <= kNarrowBlocks) return bandFits;
+  const std::size_t products = bandFits ? island.matrix.products : kMaxFillProducts;
   orderByDissection(island.edges, island.order);
-  if (!findPattern(island.order.nodes, island.edges, products - 1, island.matrix)) orderBottomUp(island.order);
+  if (fits(products)) return true;
+  orderBottomUp(island.order);
+  return bandFits && fits(kMaxFillProducts);
 }
 
 // Lays out the matrix for island.edges; false where it would take too many products. A wide island keeps its order of elimination
 // while its blocks are the same, and all of the layout where the edges are among those that it has room for: contacts come
-// and go far more often than what is best to be eliminated first changes. `members` is a hash of the blocks.
+// and go far more often than the best order changes. `members` is a hash of the blocks.
 bool layOutMatrix(const IslandStep& step, NewtonSystem& island, std::uint64_t members) {
   BlockCholesky& matrix = island.matrix;
   const bool known = island.members == members && step.blocks.size() > kNarrowBlocks;
@@ -233,8 +239,8 @@ bool layOutMatrix(const IslandStep& step, NewtonSystem& island, std::uint64_t me
   island.order.centre.clear();
   for (const std::int32_t block : step.blocks)
     island.order.centre.push_back(centre(step.simulation.state.position, static_cast<std::size_t>(block)));
-  chooseOrder(island);
-  if (!analyse(island.order.nodes, island.edges, kMaxFillProducts, matrix)) return false;
+  if (!findOrder(island)) return false;
+  listUpdates(matrix);
   island.members = members;
   island.orderProducts = matrix.products;
   return true;

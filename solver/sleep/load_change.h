@@ -14,7 +14,7 @@ namespace springtower {
 void recordSleepLoads(Simulation& simulation, std::span<const std::uint8_t> staysAwake);
 
 /// Fills engine.toWake with the sleeping blocks that have lost or gained a contact, or whose other contacts cannot bear what
-/// awake neighbours do to them now; and those that give way together (solver/sleep/support_check). Returns whether there are any
+/// awake neighbours do to them now; and groups whose supports fail (solver/sleep/support_check). Returns whether there are any
 /// of the latter: what awake neighbours did in this frame was done to blocks that should have moved.
 bool findWakeCandidates(Simulation& simulation);
 

@@ -118,9 +118,9 @@ void fallAsleep(Simulation& simulation, std::size_t b) {
   Engine& engine = *simulation.engine;
   simulation.asleep[b] = 1;
   engine.loadPath.known.clear();
-  BlockHistory& clock = engine.blockHistory[b];
-  clock.falls = clock.hasFallen = false;
-  clock.explicitFrames = 0;
+  BlockHistory& history = engine.blockHistory[b];
+  history.falls = history.hasFallen = false;
+  history.explicitFrames = 0;
   --engine.awakeCount;
   for (std::size_t a = 0; a < 3; ++a) std::fill_n(simulation.state.velocity.values(a, b), kCorners, 0.0);
   engine.frames[b] = blockFrame(simulation.state.position, b);

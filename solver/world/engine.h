@@ -108,7 +108,7 @@ struct SupportCheckScratch {
   std::vector<std::int32_t> open;    ///< pairs across the level
   std::vector<std::int32_t> groups;  ///< that are pushed, ascending
   std::vector<SupportPair> beneath;  ///< of these groups, ascending
-  std::vector<CheckedLoad> known;    ///< of all pushed blocks, in their order; none where some gave way
+  std::vector<CheckedLoad> known;    ///< of all pushed blocks, in their order; none where some supports failed
   std::vector<SupportPoint> supports;
 };
 

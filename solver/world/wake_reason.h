@@ -11,20 +11,21 @@ namespace springtower {
 enum class WakeReason : std::uint8_t {
   gravity,         ///< gravity has changed since the last block fell asleep
   force,           ///< a user's force acts on it
+  settings,        ///< friction or the rule of sleep has been changed between frames
   hand,            ///< a hand holds it
   kick,            ///< it is given a velocity
   impact,          ///< an awake block is about to hit it, or slides on it fast; or what it touches is hit
-  loadChange,      ///< its other contacts cannot bear what awake neighbours do otherwise, or a contact has come or gone
+  loadChange,      ///< awake neighbours have changed its load by more than its other contacts support, or a contact came or went
   lostNeighbour,   ///< an awake neighbour has gone out of reach
-  failedSupport,   ///< it belongs to a group of sleepers whose supports cannot bear what is done to the group
+  failedSupport,   ///< it belongs to a group of sleepers whose supports fail under the changed load
   unbalanced,      ///< neighbours fall asleep on other forces than those it slept on
   reportedImpact,  ///< method `report`: an impulse acts on it
 };
-inline constexpr std::size_t kWakeReasons = 10;
+inline constexpr std::size_t kWakeReasons = static_cast<std::size_t>(WakeReason::reportedImpact) + 1;
 
 /// As reports name them.
 inline constexpr std::array<std::string_view, kWakeReasons> kWakeReasonNames = {
-    "gravity",     "force",          "hand",           "kick",       "impact",
+    "gravity",     "force",          "settings",       "hand",       "kick",           "impact",
     "load_change", "lost_neighbour", "failed_support", "unbalanced", "reported_impact"};
 
 /// How many blocks have woken for each reason.

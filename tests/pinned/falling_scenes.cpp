@@ -33,7 +33,7 @@ Scene heap(int blocks) {
   return scene;
 }
 
-// A tower goes over, by rigid steps where it falls, and what has landed is handed back to implicit ones.
+// A tower topples: rigid steps carry the fall, implicit ones what has landed.
 Scene collapse(int rows) {
   Scene scene = awake(towerScene(rows));
   scene.settings.tolerance_m = 1e-5;

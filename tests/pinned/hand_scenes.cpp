@@ -91,7 +91,7 @@ std::vector<PinnedScene> pinnedHands() {
       {"TakeAndLayDown", 400, takeAndLayDown, scriptedHand},
       {"TakeAndDrop", 400, takeAndDrop, scriptedHand},
       {"TakeTheLastSupport", 300, takeTheLastSupport, scriptedHand},
-      {"ReportMoves", 4000, [] { return sceneOfFile("moves"); }, scriptedHand},
+      {"ReportMoves", 1900, [] { return sceneOfFile("moves"); }, scriptedHand},
   };
 }
 

@@ -23,7 +23,7 @@ struct RingingBlock {
     step.gravity = simulation.scene.gravity.at(0.0);
   }
 
-  BlockHistory& clock() { return simulation.engine->blockHistory[0]; }
+  BlockHistory& history() { return simulation.engine->blockHistory[0]; }
 
   // A step that ends at time `end_s` of a swing of angular frequency `omega` along x.
   void swing(double omega, double end_s) {
@@ -56,7 +56,7 @@ struct RingingBlock {
             0.1 + effective_s * (speed + change / 3.0) + effective_s * effective_s * step.gravity[static_cast<Eigen::Index>(a)];
       }
     }
-    clock().lastImplicitStep_s = h;
+    history().lastImplicitStep_s = h;
     updateFrequencyEstimate(step, effective_s);
   }
 
@@ -81,7 +81,7 @@ TEST(Ringing, IsNotedWithItsFrequency) {
     for (int i = 0; i < 240; ++i) {
       block.swing(omega, (i + 1) * block.step.drift_s);
       if (i < 120) continue;
-      EXPECT_NEAR(std::sqrt(std::sqrt(block.clock().jerk / block.clock().motion)), omega, 0.05 * omega) << "step " << i;
+      EXPECT_NEAR(std::sqrt(std::sqrt(block.history().jerk / block.history().motion)), omega, 0.05 * omega) << "step " << i;
     }
   }
 }
@@ -91,8 +91,8 @@ TEST(Ringing, StepsFollowItsFrequency) {
   RingingBlock block;
   const double frame_s = block.simulation.scene.settings.frame_s;
   const auto stepsAt = [&](double turn, int present) {
-    block.clock().motion = 1.0;
-    block.clock().jerk = std::pow(turn / frame_s, 4.0);
+    block.history().motion = 1.0;
+    block.history().jerk = std::pow(turn / frame_s, 4.0);
     return stepsForFrequency(block.step, present);
   };
   EXPECT_EQ(stepsAt(0.1, 1), 1);
@@ -121,8 +121,8 @@ TEST(Ringing, OfWhatIsCalmIsNotFollowed) {
   const double frame_s = block.simulation.scene.settings.frame_s;
   const double calm = quiescentSpeed(block.simulation);
   const auto stepsAt = [&](double speed) {
-    block.clock().motion = block.simulation.model.mass[0] * static_cast<double>(kCorners) * speed * speed;
-    block.clock().jerk = std::pow(2.0 / frame_s, 4.0) * block.clock().motion;
+    block.history().motion = block.simulation.model.mass[0] * static_cast<double>(kCorners) * speed * speed;
+    block.history().jerk = std::pow(2.0 / frame_s, 4.0) * block.history().motion;
     return stepsForFrequency(block.step, 1);
   };
   EXPECT_EQ(stepsAt(10.0 * calm), 8);

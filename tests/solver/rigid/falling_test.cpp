@@ -16,8 +16,8 @@ namespace springtower {
 namespace {
 
 bool anyFalls(const Simulation& simulation) {
-  const std::vector<BlockHistory>& clock = simulation.engine->blockHistory;
-  return std::any_of(clock.begin(), clock.end(), [](const BlockHistory& block) { return block.falls; });
+  const std::vector<BlockHistory>& history = simulation.engine->blockHistory;
+  return std::any_of(history.begin(), history.end(), [](const BlockHistory& block) { return block.falls; });
 }
 
 class FineCollapseTest : public ::testing::TestWithParam<double> {};
