@@ -80,17 +80,17 @@ void contacts(benchmark::State& run) {
   };
   double points = 0.0;
   double pairs = 0.0;
-  for (const NearPair& pair : engine.pairs) {
-    if (pair.manifold.touch == PairPhase::separated) continue;
-    points += pair.manifold.count;
-    pairs += 1.0;
+  for (std::size_t at = 0; at < engine.pairs.size(); ++at) {
+    points += contactOf(engine, at).count;
+    pairs += engine.pairs.touches(at) ? 1.0 : 0.0;
   }
   PairForce force;
   for (auto iteration : run) {
-    for (NearPair& pair : engine.pairs) {
-      if (pair.manifold.touch == PairPhase::separated) continue;
-      manifoldForces(pair.manifold, side(pair.manifold.upper), side(pair.manifold.lower), law, {}, kBlockMass_kg, &pair.manifold,
-                     force);
+    for (std::size_t at = 0; at < engine.pairs.size(); ++at) {
+      if (!engine.pairs.touches(at)) continue;
+      const ContactView contact = contactOf(engine, at);
+      const PointRows kept = engine.contacts.points(engine.pairs.contact[at]);
+      manifoldForces(contact, side(contact.upper), side(contact.lower), law, {}, kBlockMass_kg, &kept, force);
       benchmark::DoNotOptimize(force);
     }
   }
@@ -161,21 +161,22 @@ void restJudgement(benchmark::State& run) {
 }
 
 // The touching pairs of two blocks of a tower.
-std::vector<const NearPair*> facePairs(const Simulation& s) {
-  std::vector<const NearPair*> pairs;
-  for (const NearPair& pair : s.engine->pairs) {
-    if (pair.manifold.touch == PairPhase::face && pair.b >= 0) pairs.push_back(&pair);
+std::vector<ManifoldShape> facePairs(const Simulation& s) {
+  std::vector<ManifoldShape> pairs;
+  for (std::size_t at = 0; at < s.engine->pairs.size(); ++at) {
+    const ContactView contact = contactOf(*s.engine, at);
+    if (contact.phase == PairPhase::face && contact.lower >= 0) pairs.push_back(contact);
   }
   return pairs;
 }
 
 void separation(benchmark::State& run) {
   const Simulation s = startedTowers(1, 60);
-  const std::vector<const NearPair*> pairs = facePairs(s);
+  const std::vector<ManifoldShape> pairs = facePairs(s);
   const auto corners = [&](std::int32_t block) { return cornersOf(s.state.position, static_cast<std::size_t>(block)); };
   for (auto iteration : run) {
-    for (const NearPair* pair : pairs) {
-      benchmark::DoNotOptimize(findSeparation(corners(pair->a), corners(pair->b)));
+    for (const ManifoldShape& pair : pairs) {
+      benchmark::DoNotOptimize(findSeparation(corners(pair.upper), corners(pair.lower)));
     }
   }
   rate(run, static_cast<double>(pairs.size()), 0.0, static_cast<double>(pairs.size()) * 2.0 * kCornerBytes);
@@ -183,12 +184,11 @@ void separation(benchmark::State& run) {
 
 void manifoldBuild(benchmark::State& run) {
   const Simulation s = startedTowers(1, 60);
-  const std::vector<const NearPair*> pairs = facePairs(s);
+  const std::vector<ManifoldShape> pairs = facePairs(s);
   const auto corners = [&](std::int32_t block) { return cornersOf(s.state.position, static_cast<std::size_t>(block)); };
   constexpr ManifoldLimits kLimits{1e-4, 1e-3};
   for (auto iteration : run) {
-    for (const NearPair* pair : pairs) {
-      const Manifold& old = pair->manifold;
+    for (const ManifoldShape& old : pairs) {
       Manifold fresh;
       buildFaceManifold(corners(old.upper), corners(old.lower), old.incidentFace, old.referenceFace, kLimits, fresh);
       benchmark::DoNotOptimize(fresh);

@@ -81,16 +81,26 @@ std::size_t dropStraight(double radius, const Lengths& lengths, std::size_t coun
 
 constexpr std::array<std::array<double, 2>, 4> kCornerPlaces = {{{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}}};
 
-void start(Manifold& manifold, PairPhase touch, int incidentFace, int referenceFace) {
+void start(Manifold& manifold, PairPhase phase, int incidentFace, int referenceFace) {
   const std::int32_t upper = manifold.upper;
   const std::int32_t lower = manifold.lower;
   manifold = Manifold{};
   manifold.upper = upper;
   manifold.lower = lower;
-  manifold.touch = touch;
+  manifold.phase = phase;
   manifold.incidentFace = static_cast<std::int8_t>(incidentFace);
   manifold.referenceFace = static_cast<std::int8_t>(referenceFace);
-  manifold.scale.fill(1.0);
+  for (PointRow& row : manifold.points) row.penalty.stiffening.fill(1.0);
+}
+
+// One point, whatever it stores: only the vector turns round where the blocks have changed roles.
+void carryPoint(const PenaltyRow& from, std::size_t lane, double side, PenaltyRow& to, std::size_t toLane) {
+  for (std::size_t a = 0; a < 3; ++a) to.displacement[a][toLane] = side * from.displacement[a][lane];
+  to.maxwellDepth[toLane] = from.maxwellDepth[lane];
+  to.restDepth[toLane] = from.restDepth[lane];
+  to.stiffening[toLane] = from.stiffening[lane];
+  to.touching[toLane] = from.touching[lane];
+  to.slipRatio[toLane] = from.slipRatio[lane];
 }
 
 }  // namespace
@@ -122,9 +132,9 @@ int incidentFaceOf(const CornerView& block, const Vec3& normal) {
   return best;
 }
 
-Vec3 pointOnIncidentFace(const Manifold& manifold, const CornerView& upper, std::size_t point) {
+Vec3 pointOnIncidentFace(const ContactView& manifold, const CornerView& upper, std::size_t point) {
   const FaceFrame face = faceFrame(upper, manifold.incidentFace);
-  return face.centre + manifold.u[point] * face.sideU + manifold.v[point] * face.sideV;
+  return face.centre + manifold.u(point) * face.sideU + manifold.v(point) * face.sideV;
 }
 
 void buildFaceManifold(const CornerView& upper, const CornerView& lower, int incidentFace, int referenceFace,
@@ -159,8 +169,8 @@ void buildFaceManifold(const CornerView& upper, const CornerView& lower, int inc
   }
   kept = dropStraight(kStraight * limits.mergeRadius, lengths, kept, other);
   for (std::size_t i = 0; i < kept; ++i) {
-    manifold.u[i] = other[i].u;
-    manifold.v[i] = other[i].v;
+    manifold.place[rowOf(i)].u[laneOf(i)] = other[i].u;
+    manifold.place[rowOf(i)].v[laneOf(i)] = other[i].v;
   }
   manifold.count = static_cast<std::int32_t>(kept);
 }
@@ -171,15 +181,15 @@ void buildFloorManifold(const CornerView& upper, const ManifoldLimits& limits, M
   std::size_t kept = 0;
   for (std::size_t i = 0; i < 4; ++i) {
     if (upper.z[kFaceCorners[static_cast<std::size_t>(face)][i]] > limits.reach) continue;
-    manifold.u[kept] = kCornerPlaces[i][0];
-    manifold.v[kept] = kCornerPlaces[i][1];
+    manifold.place[0].u[kept] = kCornerPlaces[i][0];
+    manifold.place[0].v[kept] = kCornerPlaces[i][1];
     ++kept;
   }
   manifold.count = static_cast<std::int32_t>(kept);
 }
 
-void carryMemory(const Manifold& old, const CornerView& oldUpper, Manifold& fresh, const CornerView& freshUpper, double radius) {
-  if (old.touch != PairPhase::face || fresh.touch != PairPhase::face) return;
+void carryMemory(const ContactView& old, const CornerView& oldUpper, Manifold& fresh, const CornerView& freshUpper, double radius) {
+  if (old.phase != PairPhase::face || fresh.phase != PairPhase::face) return;
   std::array<Vec3, kManifoldPoints> place;
   const auto oldCount = static_cast<std::size_t>(old.count);
   for (std::size_t j = 0; j < oldCount; ++j) place[j] = pointOnIncidentFace(old, oldUpper, j);
@@ -198,14 +208,7 @@ void carryMemory(const Manifold& old, const CornerView& oldUpper, Manifold& fres
     }
     if (best == kManifoldPoints) continue;
     taken[best] = true;
-    fresh.stretchX[i] = side * old.stretchX[best];
-    fresh.stretchY[i] = side * old.stretchY[best];
-    fresh.stretchZ[i] = side * old.stretchZ[best];
-    fresh.relaxed[i] = old.relaxed[best];
-    fresh.offset[i] = old.offset[best];
-    fresh.scale[i] = old.scale[best];
-    fresh.live[i] = old.live[best];
-    fresh.sliding[i] = old.sliding[best];
+    carryPoint(old.penalty(best), laneOf(best), side, fresh.points[rowOf(i)].penalty, laneOf(i));
   }
 }
 

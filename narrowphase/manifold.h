@@ -10,46 +10,147 @@
 namespace springtower {
 
 inline constexpr std::size_t kManifoldPoints = 8;  // two rectangles overlap in a polygon of at most eight corners
+inline constexpr std::size_t kRowPoints = 4;       // points that fill one SIMD register
+inline constexpr std::size_t kManifoldRows = kManifoldPoints / kRowPoints;
 
 /// What a pair of blocks (or a block and the floor) is to one another.
 enum class PairPhase : std::uint8_t { separated, face, edge };
 
-/// `live` of a point that touches without a normal force: it overlaps, but damping cancels the spring while the blocks separate.
+/// What the points of a contact store, by the steps that move its blocks.
+enum class PointKind : std::uint8_t { penalty, impulse, anchor };
+
+/// `touching` of a point that touches without a normal force: it overlaps, but damping cancels the spring while the blocks
+/// separate.
 inline constexpr double kUnpressed = 0.5;
 
-/// What the points of a manifold remember from step to step, structure of arrays, so that four points fill one SIMD register.
-struct PointMemory {
-  alignas(32) std::array<double, kManifoldPoints> stretchX{};  ///< friction anchor: elastic tangential displacement of upper, m
-  alignas(32) std::array<double, kManifoldPoints> stretchY{};
-  alignas(32) std::array<double, kManifoldPoints> stretchZ{};
-  alignas(32) std::array<double, kManifoldPoints> relaxed{};  ///< Maxwell branch: relaxed part of the elastic depth, m; its force
-                                                              ///< is k_v (elastic - relaxed)
-  alignas(32) std::array<double, kManifoldPoints> offset{};   ///< depth of zero force, m
-  alignas(32) std::array<double, kManifoldPoints> scale{};    ///< its stiffness over the resting one, >= 1 after an impact
-  alignas(32) std::array<double, kManifoldPoints> live{};     ///< 1 where it pushes, kUnpressed where it only touches, else 0 (a
-                                                              ///< double, to serve as a lane)
-  alignas(32) std::array<double, kManifoldPoints> sliding{};  ///< 0 where it sticks; else the share of friction left by the cone
+using FourValues = std::array<double, kRowPoints>;
+using FourVectors = std::array<FourValues, 3>;  // [axis][point], world axes
+
+/// Four points as springs and dashpots (explicit and implicit steps).
+struct PenaltyRow {
+  FourVectors displacement;  ///< m, elastic tangential displacement of upper from the friction anchor
+  FourValues maxwellDepth;   ///< m, relaxed part of the elastic depth in the Maxwell branch; its force is k_v (elastic - relaxed)
+  FourValues restDepth;      ///< m, depth of zero force
+  FourValues stiffening;     ///< stiffness over the resting one, >= 1 after an impact
+  FourValues touching;       ///< 1 where it pushes, kUnpressed where it only touches, else 0 (a double, to serve as a lane)
+  FourValues slipRatio;      ///< 0 where it sticks; else the share of friction left by the cone
 };
 
-/// The contact manifold of a pair: where `upper` rests on `lower` (names only: up is along the normal), and the memory of each
-/// point. A face manifold holds points of upper's incident face against the plane of lower's reference face (or the floor); its
-/// points are corners of the overlap of the two faces: corners of one block over the other's face, and crossings of their edges.
-/// An edge manifold is one point where two edges cross.
-struct Manifold : PointMemory {
-  alignas(32) std::array<double, kManifoldPoints> u{};  ///< place on the incident face along its first side, -1/2..1/2
-  alignas(32) std::array<double, kManifoldPoints> v{};  ///< and along its second side
+/// Four points as impulses (methods rigid-pgs and rigid-lcp, and what falls).
+struct ImpulseRow {
+  FourVectors friction;      ///< N, mean over the step, on upper
+  FourValues normalForce;    ///< N, mean over the step
+  FourValues restDepth;      ///< m, overlap that is left as it is
+  FourValues stiffening;     ///< 1, for the springs that follow
+  FourValues untouched;      ///< 0: no springs hold energy
+  FourValues slipping;       ///< 1 where friction is at its bound, else 0
+};
+
+/// Four points as position constraints (method xpbd).
+struct AnchorRow {
+  FourVectors displacement;  ///< m, tangential, since the point took hold
+  FourValues normalForce;    ///< N, mean over the step
+  FourValues firstFriction;  ///< N, on upper along the first tangent
+  FourValues secondFriction; ///< N, along the second
+  FourValues untouched;      ///< 0: no springs hold energy
+  FourValues slipping;       ///< 1 where friction is at its bound, else 0
+};
+
+/// Four points of a contact. Which of the three it is says `kind` of its manifold; as all members have one layout, any may be
+/// read (copies, hashes) whichever was written.
+union alignas(32) PointRow {
+  PenaltyRow penalty{};
+  ImpulseRow impulse;
+  AnchorRow anchor;
+};
+using PointRows = std::array<PointRow*, kManifoldRows>;
+using ConstPointRows = std::array<const PointRow*, kManifoldRows>;
+
+/// Where four points lie on the incident face.
+struct alignas(32) PlaceRow {
+  FourValues u{};  ///< along its first side, -1/2..1/2
+  FourValues v{};  ///< along its second side
+};
+
+/// Which features of which blocks touch: `upper` rests on `lower` (names only: up is along the normal). A face manifold holds
+/// points of upper's incident face against the plane of lower's reference face (or the floor); its points are corners of the
+/// overlap of the two faces: corners of one block over the other's face, and crossings of their edges. An edge manifold is one
+/// point where two edges cross.
+struct ManifoldShape {
   std::int32_t upper = -1;
   std::int32_t lower = -1;  ///< -1: the floor
   std::int32_t count = 0;
   std::int8_t incidentFace = 0;   ///< of upper; for an edge manifold its edge
   std::int8_t referenceFace = 0;  ///< of lower; for an edge manifold its edge
-  PairPhase touch = PairPhase::separated;
-  bool rigid = false;  ///< whether rigid steps move its blocks: `relaxed` and `stretch` are forces then (N, friction on upper)
+  PairPhase phase = PairPhase::separated;
+  PointKind kind = PointKind::penalty;
 };
 
-/// Whether any point of a manifold touches.
-inline bool anyPointTouches(const Manifold& manifold) {
-  return std::any_of(manifold.live.begin(), manifold.live.begin() + manifold.count, [](double live) { return live != 0.0; });
+/// Rows that hold this many points.
+constexpr std::size_t rowsFor(std::int32_t count) {
+  return (static_cast<std::size_t>(count) + kRowPoints - 1) / kRowPoints;
+}
+
+/// Row and lane of a point.
+constexpr std::size_t rowOf(std::size_t point) { return point / kRowPoints; }
+constexpr std::size_t laneOf(std::size_t point) { return point % kRowPoints; }
+
+/// A contact manifold by value: its features, the places of its points and what they store.
+struct Manifold : ManifoldShape {
+  std::array<PlaceRow, kManifoldRows> place;
+  std::array<PointRow, kManifoldRows> points;
+};
+
+/// A contact manifold where it lies, to be read. Rows past those of its points may be null.
+struct ContactView : ManifoldShape {
+  std::array<const PlaceRow*, kManifoldRows> place{};
+  ConstPointRows points{};
+
+  ContactView() = default;
+  ContactView(const Manifold& m)  // NOLINT(google-explicit-constructor): a manifold by value is one way to hold a contact
+      : ManifoldShape(m), place{m.place.data(), m.place.data() + 1}, points{m.points.data(), m.points.data() + 1} {}
+  [[nodiscard]] double u(std::size_t point) const { return place[rowOf(point)]->u[laneOf(point)]; }
+  [[nodiscard]] double v(std::size_t point) const { return place[rowOf(point)]->v[laneOf(point)]; }
+  [[nodiscard]] const PenaltyRow& penalty(std::size_t point) const { return points[rowOf(point)]->penalty; }
+  [[nodiscard]] const ImpulseRow& impulse(std::size_t point) const { return points[rowOf(point)]->impulse; }
+  [[nodiscard]] const AnchorRow& anchor(std::size_t point) const { return points[rowOf(point)]->anchor; }
+};
+
+/// A copy by value.
+inline Manifold copyOf(const ContactView& contact) {
+  Manifold manifold;
+  static_cast<ManifoldShape&>(manifold) = contact;
+  for (std::size_t r = 0; r < rowsFor(contact.count); ++r) {
+    manifold.place[r] = *contact.place[r];
+    manifold.points[r] = *contact.points[r];
+  }
+  return manifold;
+}
+
+/// The vector of a point in a row of four.
+inline Vec3 vectorAt(const FourVectors& values, std::size_t point) {
+  return {values[0][laneOf(point)], values[1][laneOf(point)], values[2][laneOf(point)]};
+}
+inline void setVectorAt(FourVectors& values, std::size_t point, const Vec3& value) {
+  for (std::size_t a = 0; a < 3; ++a) values[a][laneOf(point)] = value[static_cast<Eigen::Index>(a)];
+}
+
+/// How a penalty point touches: 1, kUnpressed or 0; 0 of impulses and anchors.
+inline double touchingAt(const ContactView& manifold, std::size_t point) {
+  return manifold.penalty(point).touching[laneOf(point)];
+}
+
+/// Whether friction of a point is at its bound, whatever the point stores.
+inline bool slipsAt(const ContactView& manifold, std::size_t point) {
+  return manifold.penalty(point).slipRatio[laneOf(point)] != 0.0;
+}
+
+/// Whether any point of a manifold touches; none of impulses or anchors does.
+inline bool anyPointTouches(const ContactView& manifold) {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(manifold.count); ++i) {
+    if (touchingAt(manifold, i) != 0.0) return true;
+  }
+  return false;
 }
 
 /// A face's frame: its centre, its two mean sides and its unit outward normal, from its four corners.
@@ -79,11 +180,12 @@ void buildFaceManifold(const CornerView& upper, const CornerView& lower, int inc
 /// The four corners of a block's lowest face against the floor z = 0; those higher than limits.reach are left out.
 void buildFloorManifold(const CornerView& upper, const ManifoldLimits& limits, Manifold& manifold);
 
-/// Hands the memory of an old manifold to the points of a new one of the same pair: each new point takes that of the nearest old
-/// point within `radius` (m, in space). Roles may have swapped. The corners are those of the blocks a manifold names as upper.
-void carryMemory(const Manifold& old, const CornerView& oldUpper, Manifold& fresh, const CornerView& freshUpper, double radius);
+/// Hands what the points of an old manifold store to those of a new one of the same pair: each new point takes that of the
+/// nearest old point within `radius` (m, in space). Roles may have swapped. The corners are those of the blocks a manifold names
+/// as upper.
+void carryMemory(const ContactView& old, const CornerView& oldUpper, Manifold& fresh, const CornerView& freshUpper, double radius);
 
 /// Place of a manifold's point in space, m: on the incident face (face manifolds only).
-Vec3 pointOnIncidentFace(const Manifold& manifold, const CornerView& upper, std::size_t point);
+Vec3 pointOnIncidentFace(const ContactView& manifold, const CornerView& upper, std::size_t point);
 
 }  // namespace springtower

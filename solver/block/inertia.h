@@ -25,7 +25,7 @@ constexpr double affineCornerInverseMass(Inertia inertia) {
 }
 
 /// Mass that two blocks have towards each other, kg; that of the upper one on the floor.
-inline double reducedMass(const BlockModel& model, const Manifold& manifold) {
+inline double reducedMass(const BlockModel& model, const ManifoldShape& manifold) {
   const double upper = model.mass[static_cast<std::size_t>(manifold.upper)];
   if (manifold.lower < 0) return upper;
   const double lower = model.mass[static_cast<std::size_t>(manifold.lower)];

@@ -17,7 +17,7 @@ constexpr double kMaxClosing = 0.5;
 constexpr double kMaxOverlap = 0.5;
 
 // Gap of a pair along a direction from b to a, m; to the floor along its normal.
-double gapOf(const NearPair& pair, const Vec3& direction, const ParticleArray& position) {
+double gapOf(const BlockPair& pair, const Vec3& direction, const ParticleArray& position) {
   const CornerView a = cornersOf(position, static_cast<std::size_t>(pair.a));
   if (pair.b >= 0) return gapAlong(direction, a, cornersOf(position, static_cast<std::size_t>(pair.b)));
   return *std::min_element(a.z, a.z + kCorners);
@@ -29,7 +29,9 @@ struct Closing {
   double speed;
 };
 
-Closing closingOf(const Simulation& simulation, const NearPair& pair) {
+Closing closingOf(const Simulation& simulation, std::size_t at) {
+  const BlockPair& pair = simulation.engine->pairs.key[at];
+  const Vec3 axis = simulation.engine->pairs.axisOf(at);
   const auto a = static_cast<std::size_t>(pair.a);
   const ParticleArray& x = simulation.state.position;
   const ParticleArray& v = simulation.state.velocity;
@@ -37,9 +39,9 @@ Closing closingOf(const Simulation& simulation, const NearPair& pair) {
   double leastSoon = 1e300;
   const double soon = simulation.scene.settings.frame_s;
   for (std::size_t c = 0; c < kCorners; ++c) {
-    const double along = pair.separatingAxis.dot(x.at(a, c));
+    const double along = axis.dot(x.at(a, c));
     least = std::min(least, along);
-    leastSoon = std::min(leastSoon, along + soon * pair.separatingAxis.dot(v.at(a, c)));
+    leastSoon = std::min(leastSoon, along + soon * axis.dot(v.at(a, c)));
   }
   double most = 0.0;
   double mostSoon = 0.0;
@@ -47,9 +49,9 @@ Closing closingOf(const Simulation& simulation, const NearPair& pair) {
     const auto b = static_cast<std::size_t>(pair.b);
     most = mostSoon = -1e300;
     for (std::size_t c = 0; c < kCorners; ++c) {
-      const double along = pair.separatingAxis.dot(x.at(b, c));
+      const double along = axis.dot(x.at(b, c));
       most = std::max(most, along);
-      mostSoon = std::max(mostSoon, along + soon * pair.separatingAxis.dot(v.at(b, c)));
+      mostSoon = std::max(mostSoon, along + soon * axis.dot(v.at(b, c)));
     }
   }
   const double gap = least - most;
@@ -59,7 +61,7 @@ Closing closingOf(const Simulation& simulation, const NearPair& pair) {
 
 // The same by what separates the blocks best, now and when their corners have moved on for a frame: a direction that stands still
 // closes as blocks turn that lie side by side and go over together.
-Closing closingOfShapes(const Simulation& simulation, const NearPair& pair) {
+Closing closingOfShapes(const Simulation& simulation, const BlockPair& pair) {
   const auto a = static_cast<std::size_t>(pair.a);
   const auto b = static_cast<std::size_t>(pair.b);
   const ParticleArray& x = simulation.state.position;
@@ -95,7 +97,7 @@ double wayOf(const IslandStep& step, std::int32_t block) {
 
 // How far a pair may close in the step in which it meets, m: at a quarter of the speed that contacts as stiff as at rest stop
 // within the depth aimed at in an impact.
-double bearableClosing(const IslandStep& step, const NearPair& pair) {
+double bearableClosing(const IslandStep& step, const BlockPair& pair) {
   const auto& mass = step.simulation.model.mass;
   const double massA = mass[static_cast<std::size_t>(pair.a)];
   const double massB = pair.b < 0 ? 0.0 : mass[static_cast<std::size_t>(pair.b)];
@@ -111,11 +113,12 @@ struct Meeting {
   double closed = 0.0;
 };
 
-Meeting meetingOf(const IslandStep& step, const NearPair& pair, double way) {
+Meeting meetingOf(const IslandStep& step, std::size_t at, double way) {
   const Engine& engine = step.engine;
-  if (travelOf(engine, pair) - pair.travelAtCheck + way < pair.clearance) return {};
+  const BlockPair& pair = engine.pairs.key[at];
+  if (travelOf(engine, at) - engine.pairs.travelAtCheck[at] + way < engine.pairs.clearance[at]) return {};
   const ParticleArray& now = step.simulation.state.position;
-  Vec3 direction = pair.b >= 0 ? pair.separatingAxis : Vec3::UnitZ();
+  Vec3 direction = pair.b >= 0 ? engine.pairs.axisOf(at) : Vec3(Vec3::UnitZ());
   if (gapOf(pair, direction, now) > 0.0) return {};
   if (pair.b >= 0) {  // another direction may separate them still
     direction = findSeparation(cornersOf(engine.previous, static_cast<std::size_t>(pair.a)),
@@ -127,7 +130,7 @@ Meeting meetingOf(const IslandStep& step, const NearPair& pair, double way) {
 }
 
 // Depth of every point of a manifold with the blocks where these positions have them, m.
-std::array<double, kManifoldPoints> depthsAt(const IslandStep& step, const Manifold& manifold, const ParticleArray& position) {
+std::array<double, kManifoldPoints> depthsAt(const IslandStep& step, const ContactView& manifold, const ParticleArray& position) {
   const AffineField still{};
   const BlockFrame upper = blockFrame(position, static_cast<std::size_t>(manifold.upper));
   const BlockFrame lower = manifold.lower < 0 ? upper : blockFrame(position, static_cast<std::size_t>(manifold.lower));
@@ -136,14 +139,16 @@ std::array<double, kManifoldPoints> depthsAt(const IslandStep& step, const Manif
 
 // Whether a touching pair has met anew in the step just found: points that push only since closed at speed, or the blocks overlap
 // otherwise than their points know by more than `most`. `way`: how far they went together, m.
-bool metAnew(const IslandStep& step, const NearPair& pair, const PointMemory& trial, double way, double most) {
-  const Manifold& manifold = pair.manifold;
+bool metAnew(const IslandStep& step, std::size_t at, double way, double most) {
+  const BlockPair& pair = step.engine.pairs.key[at];
+  const ContactView manifold = contactOf(step.engine, at);
+  const ContactView trial = trialOf(step.engine, at, manifold);
   const auto count = static_cast<std::size_t>(manifold.count);
   bool begins = false;
   bool touches = false;
   for (std::size_t i = 0; i < count; ++i) {
-    touches = touches || trial.live[i] != 0.0;
-    begins = begins || (trial.live[i] != 0.0 && manifold.live[i] == 0.0);
+    touches = touches || touchingAt(trial, i) != 0.0;
+    begins = begins || (touchingAt(trial, i) != 0.0 && touchingAt(manifold, i) == 0.0);
   }
   const bool late = pair.b >= 0 && (!touches || way > refreshTravel(step.simulation));
   if (!begins && !late) return false;
@@ -153,7 +158,7 @@ bool metAnew(const IslandStep& step, const NearPair& pair, const PointMemory& tr
     const std::array<double, kManifoldPoints> before = depthsAt(step, manifold, step.engine.previous);
     const double bearable = bearableClosing(step, pair);
     for (std::size_t i = 0; i < count; ++i) {
-      if (trial.live[i] != 0.0 && manifold.live[i] == 0.0 && depth[i] - before[i] > bearable) return true;
+      if (touchingAt(trial, i) != 0.0 && touchingAt(manifold, i) == 0.0 && depth[i] - before[i] > bearable) return true;
     }
   }
   if (!late) return false;
@@ -176,7 +181,7 @@ Vec3 velocityAt(const BlockFrame& frame, const AffineField& motion, const Vec3& 
 // How fast the points of a manifold open or close, the slowest of them, m/s; of those that pushed last, where any did. What is
 // open and opens further has parted, as where the end of a block that is drawn out leaves its support; but what explicit steps
 // brought here rebounds.
-double slowestRate(const IslandStep& step, const Manifold& manifold) {
+double slowestRate(const IslandStep& step, const ContactView& manifold) {
   const MotionState& state = step.simulation.state;
   const auto u = static_cast<std::size_t>(manifold.upper);
   const auto l = static_cast<std::size_t>(std::max(manifold.lower, 0));
@@ -192,7 +197,7 @@ double slowestRate(const IslandStep& step, const Manifold& manifold) {
       step.engine.blockHistory[u].explicitLast || (manifold.lower >= 0 && step.engine.blockHistory[l].explicitLast);
   double slowest = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < static_cast<std::size_t>(manifold.count); ++i) {
-    if (any && manifold.live[i] == 0.0) continue;
+    if (any && touchingAt(manifold, i) == 0.0) continue;
     const Vec3 apart = velocityAt(upper, upperMotion, points.place[i]) - velocityAt(lower, lowerMotion, points.lowerPlace[i]);
     const double opening = points.direction.dot(apart);
     const bool parted = !rebounds && points.depth[i] <= 0.0 && opening > 0.0;
@@ -219,11 +224,12 @@ bool bounces(const IslandStep& step, double step_s) {
   double fastest = 0.0;
   for (const std::int32_t block : step.blocks) fastest = std::max(fastest, speedOf(step, block));
   if (2.0 * fastest <= most) return false;
-  return std::any_of(step.pairs.begin(), step.pairs.end(), [&](std::int32_t at) {
-    const NearPair& pair = step.engine.pairs[static_cast<std::size_t>(at)];
-    if (pair.manifold.touch == PairPhase::separated) return false;
-    if (speedOf(step, pair.a) + speedOf(step, pair.b) <= most) return false;
-    return slowestRate(step, pair.manifold) > most;
+  return std::any_of(step.pairs.begin(), step.pairs.end(), [&](std::int32_t pair) {
+    const auto at = static_cast<std::size_t>(pair);
+    if (!step.engine.pairs.touches(at)) return false;
+    const BlockPair& key = step.engine.pairs.key[at];
+    if (speedOf(step, key.a) + speedOf(step, key.b) <= most) return false;
+    return slowestRate(step, contactOf(step.engine, at)) > most;
   });
 }
 
@@ -234,10 +240,11 @@ bool meetsSoon(const IslandStep& step, double step_s) {
     const double reach = frame_s * (std::max(0.0, closing.speed) + 0.5 * frame_s * simulation.scene.gravity.magnitude);
     return closing.gap < reach && closing.speed * step_s > kMaxClosing * simulation.tolerance_m;
   };
-  return std::any_of(step.pairs.begin(), step.pairs.end(), [&](std::int32_t at) {
-    const NearPair& pair = step.engine.pairs[static_cast<std::size_t>(at)];
-    if (pair.manifold.touch != PairPhase::separated) return false;
-    return soon(closingOf(simulation, pair)) && (pair.b < 0 || soon(closingOfShapes(simulation, pair)));
+  return std::any_of(step.pairs.begin(), step.pairs.end(), [&](std::int32_t pair) {
+    const auto at = static_cast<std::size_t>(pair);
+    if (step.engine.pairs.touches(at)) return false;
+    const BlockPair& key = step.engine.pairs.key[at];
+    return soon(closingOf(simulation, at)) && (key.b < 0 || soon(closingOfShapes(simulation, key)));
   });
 }
 
@@ -247,25 +254,27 @@ FirstContact meetingsIn(IslandStep& step) {
   for (const std::int32_t block : step.blocks) longest = std::max(longest, wayOf(step, block));
   if (2.0 * longest <= most) return FirstContact::none;
   FirstContact found = FirstContact::none;
-  for (const std::int32_t at : step.pairs) {
-    NearPair& pair = step.engine.pairs[static_cast<std::size_t>(at)];
-    const double way = wayOf(step, pair.a) + wayOf(step, pair.b);
+  PairTable& pairs = step.engine.pairs;
+  for (const std::int32_t pair : step.pairs) {
+    const auto at = static_cast<std::size_t>(pair);
+    const BlockPair& key = pairs.key[at];
+    const double way = wayOf(step, key.a) + wayOf(step, key.b);
     if (way <= most) continue;
-    if (pair.manifold.touch != PairPhase::separated) {
-      if (metAnew(step, pair, step.engine.trial[static_cast<std::size_t>(at)], way, most)) return FirstContact::impact;
+    if (pairs.touches(at)) {
+      if (metAnew(step, at, way, most)) return FirstContact::impact;
       continue;
     }
-    const Meeting meeting = meetingOf(step, pair, way);
+    const Meeting meeting = meetingOf(step, at, way);
     if (meeting.overlap <= 0.0) continue;
-    if (meeting.closed > bearableClosing(step, pair)) return FirstContact::impact;
+    if (meeting.closed > bearableClosing(step, key)) return FirstContact::impact;
     if (meeting.overlap <= most) continue;
-    savePair(step.engine, static_cast<std::size_t>(at));
-    pair.travelAtCheck = travelOf(step.engine, pair);
-    updateSeparated(step, pair, step.counters, step.times);
-    if (pair.manifold.touch == PairPhase::separated) {
-      pair.clearance = 0.0;  // of where this step ends, which may be solved again
-    } else {
+    savePair(step.engine, at);
+    pairs.travelAtCheck[at] = travelOf(step.engine, at);
+    updateSeparated(step, at, step.counters, step.times);
+    if (pairs.touches(at)) {
       found = FirstContact::added;
+    } else {
+      pairs.clearance[at] = 0.0;  // of where this step ends, which may be solved again
     }
   }
   return found;

@@ -22,7 +22,7 @@ enum class FirstContact { none, added, impact };
 
 /// Looks for meetings in the implicit step just found. What the step began with does not tell: a hand may turn its block round
 /// within one. Blocks that overlap are given their manifolds; the step is then to be solved again with them, from its start.
-/// Precondition: engine.trial is the contact memory at the step's end.
+/// Precondition: the trial points are those of the step's end.
 FirstContact meetingsIn(IslandStep& step);
 
 }  // namespace springtower

@@ -30,7 +30,7 @@ double edgeSlackOf(const Simulation& simulation) {
 
 // The overlap of the faces along the normal of one of them: b's if `referenceIsB`, else a's.
 void faceManifold(const Separation& separation, const CornerView& a, const CornerView& b, const ManifoldLimits& limits,
-                  const NearPair& pair, bool referenceIsB, Manifold& fresh) {
+                  const BlockPair& pair, bool referenceIsB, Manifold& fresh) {
   const CornerView& incidentBlock = referenceIsB ? a : b;
   const Vec3 towardsIncident = referenceIsB ? separation.normalFaceB : Vec3(-separation.normalFaceA);
   fresh.upper = referenceIsB ? pair.a : pair.b;
@@ -45,7 +45,7 @@ struct Deepest {
   int count = 0;
 };
 
-Deepest deepestPoints(const Manifold& manifold, const CornerView& upper, const CornerView& lower, double slack) {
+Deepest deepestPoints(const ContactView& manifold, const CornerView& upper, const CornerView& lower, double slack) {
   const FaceFrame face = faceFrame(lower, manifold.referenceFace);
   std::array<double, kManifoldPoints> depth{};
   const auto end = depth.begin() + manifold.count;
@@ -58,15 +58,15 @@ Deepest deepestPoints(const Manifold& manifold, const CornerView& upper, const C
   return deepest;
 }
 
-void edgeManifold(const Separation& separation, const NearPair& pair, Manifold& fresh) {
+void edgeManifold(const Separation& separation, const BlockPair& pair, Manifold& fresh) {
   fresh = Manifold{};
   fresh.upper = pair.a;
   fresh.lower = pair.b;
-  fresh.touch = PairPhase::edge;
+  fresh.phase = PairPhase::edge;
   fresh.incidentFace = static_cast<std::int8_t>(separation.edgeOfA);
   fresh.referenceFace = static_cast<std::int8_t>(separation.edgeOfB);
   fresh.count = 1;
-  fresh.scale.fill(1.0);
+  for (PointRow& row : fresh.points) row.penalty.stiffening.fill(1.0);
 }
 
 // Whether faces touch although edges separate better: at more than a point, which lies as deep as the edges do. A crossing that
@@ -87,9 +87,9 @@ bool sharesOutline(const Separation& separation, double face, const CornerView& 
 // clearly better. Faces are preferred to edges that separate better where they touch as well. Where they share nothing the next
 // best direction is taken.
 void chooseManifold(const Separation& separation, const CornerView& a, const CornerView& b, const ManifoldLimits& limits,
-                    double slack, double edgeSlack, const NearPair& pair, Manifold& fresh) {
-  const bool wasA = pair.manifold.touch == PairPhase::face && pair.manifold.lower == pair.a;
-  const bool wasB = pair.manifold.touch == PairPhase::face && pair.manifold.lower == pair.b;
+                    double slack, double edgeSlack, const BlockPair& pair, const ContactView& old, Manifold& fresh) {
+  const bool wasA = old.phase == PairPhase::face && old.lower == pair.a;
+  const bool wasB = old.phase == PairPhase::face && old.lower == pair.b;
   const bool referenceIsB = separation.faceB + (wasB ? slack : 0.0) >= separation.faceA + (wasA ? slack : 0.0);
   const double face = referenceIsB ? separation.faceB : separation.faceA;
   const bool crossed = separation.edge > face + slack;
@@ -103,10 +103,18 @@ void chooseManifold(const Separation& separation, const CornerView& a, const Cor
   if (fresh.count == 0 && std::isfinite(separation.edge)) edgeManifold(separation, pair, fresh);
 }
 
-void part(NearPair& pair, const Vec3& witness, double margin) {
-  pair.manifold = Manifold{};
-  pair.separatingAxis = witness;
-  pair.clearance = margin;
+// The contact stays the pair's until the frame ends: it may be run again, or the blocks meet again.
+void part(PairTable& pairs, std::size_t at, const Vec3& witness, double margin) {
+  pairs.phase[at] = PairPhase::separated;
+  pairs.setAxis(at, witness);
+  pairs.clearance[at] = margin;
+}
+
+void storeContact(Engine& engine, std::size_t at, const Manifold& manifold) {
+  std::int32_t& contact = engine.pairs.contact[at];
+  if (contact < 0) contact = engine.contacts.take();
+  engine.pairs.phase[at] = manifold.phase;
+  engine.contacts.store(contact, engine.pairs[at], manifold);
 }
 
 // How far a block's corners are from its affine part, m. The separating axes of two blocks are exact for those parts, from which
@@ -136,34 +144,37 @@ double lowestCorner(const CornerView& block) {
   return *std::min_element(block.z, block.z + kCorners);
 }
 
-void updateSeparatedFloor(IslandStep& step, NearPair& pair, Counters& counters) {
-  const auto block = static_cast<std::size_t>(pair.a);
+void updateSeparatedFloor(IslandStep& step, std::size_t at, Counters& counters) {
+  PairTable& pairs = step.engine.pairs;
+  const auto block = static_cast<std::size_t>(pairs.key[at].a);
   const CornerView now = cornersOf(step.simulation.state.position, block);
   const double gap = lowestCorner(now);
   if (gap > touchingGap(step.simulation)) {
-    pair.clearance = gap;
+    pairs.clearance[at] = gap;
     return;
   }
   // Against a plane the cubic is linear: a corner that was above it and is not any more has met it in between.
   ++counters.cubicTests;
-  pair.clearance = 0.0;
+  pairs.clearance[at] = 0.0;
   if (!step.simulation.scene.settings.continuousTests) return;
   ++counters.cubicHits;
   const double before = lowestCorner(cornersOf(step.engine.previous, block));
   if (step.simulation.frame > 0 && before < -step.simulation.lengths.contactError_m) ++counters.contactsBornPenetrating;
   ++counters.contactsBorn;
-  pair.manifold.upper = pair.a;
-  pair.manifold.lower = -1;
-  buildFloorManifold(now, limitsOf(step.simulation), pair.manifold);
-  pair.manifold.rigid = step.rigid;
+  Manifold fresh;
+  fresh.upper = pairs.key[at].a;
+  buildFloorManifold(now, limitsOf(step.simulation), fresh);
+  fresh.kind = step.pointKind;
+  storeContact(step.engine, at, fresh);
 }
 
 // Whether the face nearest to a direction separates the blocks all through a step, turning with one of them; renews the margin.
-bool turnsApart(const Vec3& normal, const MovingBlock& a, const MovingBlock& b, double touching, NearPair& pair) {
+bool turnsApart(const Vec3& normal, const MovingBlock& a, const MovingBlock& b, double touching, PairTable& pairs,
+                std::size_t at) {
   const TurningGap turning = gapAlongTurningFace(normal, a, b);
   if (!(turning.least > touching)) return false;
-  pair.separatingAxis = turning.normalAtEnd;
-  pair.clearance = std::max(0.0, gapAlong(pair.separatingAxis, a.end, b.end));
+  pairs.setAxis(at, turning.normalAtEnd);
+  pairs.clearance[at] = std::max(0.0, gapAlong(turning.normalAtEnd, a.end, b.end));
   return true;
 }
 
@@ -183,9 +194,11 @@ RefreshTravel refreshTravelOfImplicitSteps(const Simulation& simulation) {
   return {travel_m, kSlidingRefreshTravel * simulation.lengths.blockHeight_m, travel_m};
 }
 
-void updateSeparated(IslandStep& step, NearPair& pair, Counters& counters, StageTimes& times) {
+void updateSeparated(IslandStep& step, std::size_t at, Counters& counters, StageTimes& times) {
+  PairTable& pairs = step.engine.pairs;
+  const BlockPair pair = pairs.key[at];
   if (pair.b < 0) {
-    updateSeparatedFloor(step, pair, counters);
+    updateSeparatedFloor(step, at, counters);
     return;
   }
   const auto a = static_cast<std::size_t>(pair.a);
@@ -195,20 +208,21 @@ void updateSeparated(IslandStep& step, NearPair& pair, Counters& counters, Stage
 
   // The margin is the gap at the step's end: along a fixed direction no pair of points can close it with less travel.
   const double touching = touchingGap(step.simulation);
-  const double gap = gapAlong(pair.separatingAxis, movingA.end, movingB.end);
-  if (gap > touching && gapAlong(pair.separatingAxis, movingA.start, movingB.start) > touching) {
-    pair.clearance = gap;
+  const Vec3 axis = pairs.axisOf(at);
+  const double gap = gapAlong(axis, movingA.end, movingB.end);
+  if (gap > touching && gapAlong(axis, movingA.start, movingB.start) > touching) {
+    pairs.clearance[at] = gap;
     return;
   }
-  if (turnsApart(pair.separatingAxis, movingA, movingB, touching, pair)) return;
+  if (turnsApart(axis, movingA, movingB, touching, pairs, at)) return;
   const Separation before = findSeparation(movingA.start, movingB.start);
   const Vec3& witness = before.bestNormal();
   const double newGap = gapAlong(witness, movingA.end, movingB.end);
-  pair.clearance = std::max(0.0, newGap);
-  pair.separatingAxis = witness;
+  pairs.clearance[at] = std::max(0.0, newGap);
+  pairs.setAxis(at, witness);
   if (before.best() > touching && newGap > touching) return;
   const Vec3& face = before.faceA > before.faceB ? before.normalFaceA : before.normalFaceB;
-  if (turnsApart(face, movingA, movingB, touching, pair)) return;
+  if (turnsApart(face, movingA, movingB, touching, pairs, at)) return;
   // Features that nothing has moved need not share a point where blocks touch: rounding may have put them inside by a bit.
   const bool laidTogether = step.simulation.frame == 0 && before.best() <= touching;
   bool meet = false;
@@ -218,29 +232,34 @@ void updateSeparated(IslandStep& step, NearPair& pair, Counters& counters, Stage
     clock.lap(Stage::cubicTests);
   }
   if (!meet) {
-    pair.clearance = 0.0;
+    pairs.clearance[at] = 0.0;
     return;
   }
   const double unsure =
       step.simulation.lengths.contactError_m + 2.0 * (warp(step.engine.previous, a) + warp(step.engine.previous, b));
   if (step.simulation.frame > 0 && before.best() < -unsure) ++counters.contactsBornPenetrating;
   Manifold fresh;
-  chooseManifold(before, movingA.end, movingB.end, limitsOf(step.simulation), 0.0, edgeSlackOf(step.simulation), pair, fresh);
-  pair.clearance = 0.0;
+  chooseManifold(before, movingA.end, movingB.end, limitsOf(step.simulation), 0.0, edgeSlackOf(step.simulation), pair, {}, fresh);
+  pairs.clearance[at] = 0.0;
   if (fresh.count == 0) return;
   ++counters.contactsBorn;
-  fresh.rigid = step.rigid;
-  pair.manifold = fresh;
+  fresh.kind = step.pointKind;
+  storeContact(step.engine, at, fresh);
 }
 
-double marginNow(const Simulation& simulation, const NearPair& pair) {
+double marginNow(const Simulation& simulation, std::size_t at) {
+  const PairTable& pairs = simulation.engine->pairs;
+  const BlockPair& pair = pairs.key[at];
   const CornerView a = cornersOf(simulation.state.position, static_cast<std::size_t>(pair.a));
   if (pair.b < 0) return std::max(0.0, lowestCorner(a));
-  return std::max(0.0, gapAlong(pair.separatingAxis, a, cornersOf(simulation.state.position, static_cast<std::size_t>(pair.b))));
+  return std::max(0.0, gapAlong(pairs.axisOf(at), a, cornersOf(simulation.state.position, static_cast<std::size_t>(pair.b))));
 }
 
-void refreshManifold(IslandStep& step, NearPair& pair, Counters& counters) {
+void refreshManifold(IslandStep& step, std::size_t at, Counters& counters) {
   const Simulation& simulation = step.simulation;
+  PairTable& pairs = step.engine.pairs;
+  const BlockPair pair = pairs.key[at];
+  const ContactView old = contactOf(step.engine, at);
   const ParticleArray& position = simulation.state.position;
   const ManifoldLimits limits = limitsOf(simulation);
   const double partingGap = simulation.lengths.partingGap_m;
@@ -250,8 +269,8 @@ void refreshManifold(IslandStep& step, NearPair& pair, Counters& counters) {
   if (pair.b < 0) {
     const CornerView block = cornersOf(position, static_cast<std::size_t>(pair.a));
     const double gap = lowestCorner(block);
-    if (gap > partingGap && !anyPointTouches(pair.manifold)) {
-      part(pair, Vec3::UnitZ(), gap);
+    if (gap > partingGap && !anyPointTouches(old)) {
+      part(pairs, at, Vec3::UnitZ(), gap);
       return;
     }
     fresh.upper = pair.a;
@@ -260,20 +279,20 @@ void refreshManifold(IslandStep& step, NearPair& pair, Counters& counters) {
     const CornerView a = cornersOf(position, static_cast<std::size_t>(pair.a));
     const CornerView b = cornersOf(position, static_cast<std::size_t>(pair.b));
     const Separation separation = findSeparation(a, b);
-    if (separation.best() > partingGap && !anyPointTouches(pair.manifold)) {
-      part(pair, separation.bestNormal(), separation.best());
+    if (separation.best() > partingGap && !anyPointTouches(old)) {
+      part(pairs, at, separation.bestNormal(), separation.best());
       return;
     }
     chooseManifold(separation, a, b, limits, kReferenceSlack * simulation.lengths.blockHeight_m, edgeSlackOf(simulation), pair,
-                   fresh);
+                   old, fresh);
     if (fresh.count == 0) {
-      part(pair, separation.bestNormal(), std::max(0.0, separation.best()));
+      part(pairs, at, separation.bestNormal(), std::max(0.0, separation.best()));
       return;
     }
   }
-  fresh.rigid = pair.manifold.rigid;
-  keepContactMemory(pair.manifold, position, step.law, radius, fresh);
-  pair.manifold = fresh;
+  fresh.kind = old.kind;
+  keepContactMemory(old, position, step.law, radius, fresh);
+  storeContact(step.engine, at, fresh);
 }
 
 }  // namespace springtower

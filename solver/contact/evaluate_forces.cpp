@@ -42,41 +42,50 @@ struct Evaluation {
   Memory memory;
 };
 
-void evaluatePair(IslandStep& step, const Evaluation& evaluation, std::size_t at, PairForce& force) {
-  Manifold& manifold = step.engine.pairs[at].manifold;
-  PointMemory* keep = nullptr;
-  if (evaluation.memory == Memory::advance) keep = &manifold;
-  if (evaluation.memory == Memory::trial) keep = &step.engine.trial[at];
+SPRINGTOWER_INLINE void evaluatePair(IslandStep& step, const Evaluation& evaluation, const ContactPool::Editable& contact,
+                                     PairForce& force) {
+  const ContactView& manifold = contact.view;
+  const PointRows* keep = nullptr;
+  if (evaluation.memory == Memory::advance) keep = &contact.points;
+  if (evaluation.memory == Memory::trial) keep = &contact.trial;
   const ContactSide upper = sideOf(step.engine, manifold.upper, evaluation.sameMotion);
   const ContactSide lower = sideOf(step.engine, manifold.lower, evaluation.sameMotion);
   manifoldForces(manifold, upper, lower, step.law, evaluation.contactStep, reducedMass(step.simulation.model, manifold), keep,
                  force);
 }
 
-void contactsInOrder(IslandStep& step, const Evaluation& evaluation) {
+// Returns how many points have been evaluated.
+std::uint64_t contactsInOrder(IslandStep& step, const Evaluation& evaluation) {
   Engine& engine = step.engine;
   const std::vector<std::uint8_t>& asleep = step.simulation.asleep;
   for (const std::int32_t block : step.blocks) engine.contactForce[static_cast<std::size_t>(block)] = AffineField{};
-  for (const std::int32_t at : step.activePairs) {
-    const Manifold& manifold = engine.pairs[static_cast<std::size_t>(at)].manifold;
-    if (manifold.touch == PairPhase::separated) continue;
+  std::uint64_t points = 0;
+  for (const std::int32_t pair : step.activePairs) {
+    const auto at = static_cast<std::size_t>(pair);
+    if (!engine.pairs.touches(at)) continue;
+    const ContactPool::Editable contact = engine.contacts.edit(engine.pairs.contact[at], engine.pairs[at]);
+    const ContactView& manifold = contact.view;
     PairForce force;
-    evaluatePair(step, evaluation, static_cast<std::size_t>(at), force);
+    evaluatePair(step, evaluation, contact, force);
+    points += static_cast<std::uint64_t>(manifold.count);
     const auto upper = static_cast<std::size_t>(manifold.upper);
     if (asleep[upper] == 0) addForce(force.upper, engine.contactForce[upper]);
     if (manifold.lower < 0) continue;
     const auto lower = static_cast<std::size_t>(manifold.lower);
     if (asleep[lower] == 0) addForce(force.lower, engine.contactForce[lower]);
   }
+  return points;
 }
 
 // The same sums in the same order: first all pairs, then each block gathers its own.
-void contactsInParallel(IslandStep& step, const Evaluation& evaluation) {
+std::uint64_t contactsInParallel(IslandStep& step, const Evaluation& evaluation) {
   Engine& engine = step.engine;
   tbb::parallel_for(Range(0, step.activePairs.size(), kPairGrain), [&](const Range& range) {
     for (std::size_t i = range.begin(); i < range.end(); ++i) {
       const auto at = static_cast<std::size_t>(step.activePairs[i]);
-      if (engine.pairs[at].manifold.touch != PairPhase::separated) evaluatePair(step, evaluation, at, engine.pairForce[at]);
+      if (!engine.pairs.touches(at)) continue;
+      const std::int32_t contact = engine.pairs.contact[at];
+      evaluatePair(step, evaluation, engine.contacts.edit(contact, engine.pairs[at]), engine.contacts.pairForce(contact));
     }
   });
   tbb::parallel_for(Range(0, step.blocks.size(), kBlockGrain), [&](const Range& range) {
@@ -86,13 +95,20 @@ void contactsInParallel(IslandStep& step, const Evaluation& evaluation) {
       AffineField sum{};
       for (std::int32_t k = engine.blockPairStart[b]; k < engine.blockPairStart[b + 1]; ++k) {
         const auto at = static_cast<std::size_t>(engine.blockPairs[static_cast<std::size_t>(k)]);
-        const Manifold& manifold = engine.pairs[at].manifold;
-        if (manifold.touch == PairPhase::separated) continue;
-        addForce(manifold.upper == block ? engine.pairForce[at].upper : engine.pairForce[at].lower, sum);
+        if (!engine.pairs.touches(at)) continue;
+        const PairForce& force = engine.contacts.pairForce(engine.pairs.contact[at]);
+        const bool isUpper = shapeOf(engine, at).upper == block;
+        addForce(isUpper ? force.upper : force.lower, sum);
       }
       engine.contactForce[b] = sum;
     }
   });
+  std::uint64_t points = 0;
+  for (const std::int32_t pair : step.activePairs) {
+    const auto at = static_cast<std::size_t>(pair);
+    if (engine.pairs.touches(at)) points += static_cast<std::uint64_t>(shapeOf(engine, at).count);
+  }
+  return points;
 }
 
 void addUserForces(IslandStep& step) {
@@ -117,13 +133,6 @@ void addTether(IslandStep& step, const MotionState& state, double time_s) {
   for (std::size_t c = 0; c < kCorners; ++c) step.engine.force.add(index(tether.block), c, corner[c]);
 }
 
-std::uint64_t pointsOf(const IslandStep& step) {
-  std::uint64_t points = 0;
-  for (const std::int32_t at : step.activePairs)
-    points += static_cast<std::uint64_t>(step.engine.pairs[static_cast<std::size_t>(at)].manifold.count);
-  return points;
-}
-
 }  // namespace
 
 void evaluateForces(IslandStep& step, const MotionState& state, const ParticleArray& carried, double advance_s, Memory memory) {
@@ -132,18 +141,14 @@ void evaluateForces(IslandStep& step, const MotionState& state, const ParticleAr
   const bool parallel = step.blocks.size() >= kParallelBlocks;
   const bool sameMotion = &carried == &state.velocity;
   const double kick_s = sameMotion && memory == Memory::advance ? step.kick_s : 0.0;
-  const Evaluation evaluation{{advance_s, step.scaleMost, memory == Memory::trial ? 0.0 : 1.0, kick_s}, sameMotion, memory};
+  const Evaluation evaluation{{advance_s, step.maxStiffening, memory == Memory::trial ? 0.0 : 1.0, kick_s}, sameMotion, memory};
   using Blocks = std::span<const std::int32_t>;
   overBlocks(step, parallel, [&](Blocks blocks) {
     computeFrames(state.position, blocks, engine.frames);
     computeMotions(state.velocity, blocks, engine.motion);
     if (!evaluation.sameMotion) computeMotions(carried, blocks, engine.carriedMotion);
   });
-  if (parallel) {
-    contactsInParallel(step, evaluation);
-  } else {
-    contactsInOrder(step, evaluation);
-  }
+  step.counters.contactEvaluations += parallel ? contactsInParallel(step, evaluation) : contactsInOrder(step, evaluation);
   clock.lap(Stage::contacts);
   overBlocks(step, parallel,
              [&](Blocks blocks) { springForces(step.simulation.model, state, blocks, engine.contactForce, engine.force); });
@@ -152,7 +157,6 @@ void evaluateForces(IslandStep& step, const MotionState& state, const ParticleAr
   addTether(step, state, step.time_s + (memory == Memory::trial ? advance_s : 0.0));
   clock.lap(Stage::springs);
   step.counters.springEvaluations += kSprings * step.blocks.size();
-  step.counters.contactEvaluations += pointsOf(step);
 }
 
 bool isPushed(const IslandStep& step) {

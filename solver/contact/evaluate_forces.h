@@ -4,7 +4,7 @@
 
 namespace springtower {
 
-/// What becomes of the contact memory that a force evaluation has brought up to date: dropped, kept, or put into engine.trial,
+/// What becomes of the contact memory that a force evaluation has brought up to date: dropped, kept, or put into the trial points,
 /// where an implicit step keeps it until it is accepted.
 enum class Memory { drop, advance, trial };
 

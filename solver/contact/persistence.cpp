@@ -8,7 +8,7 @@ namespace springtower {
 namespace {
 
 // Depth of every point of a manifold at the blocks' present places, m.
-std::array<double, kManifoldPoints> depthsOf(const Manifold& manifold, const BlockFrame& a, const BlockFrame& b, bool upperIsA,
+std::array<double, kManifoldPoints> depthsOf(const ContactView& manifold, const BlockFrame& a, const BlockFrame& b, bool upperIsA,
                                              const ContactLaw& law) {
   const AffineField still{};
   const ContactSide upper{upperIsA ? &a : &b, &still, &still};
@@ -16,14 +16,16 @@ std::array<double, kManifoldPoints> depthsOf(const Manifold& manifold, const Blo
   return pointForces(manifold, upper, lower, law).depth;
 }
 
-double elasticOf(const Manifold& manifold, std::size_t point, double depth) {
-  return manifold.live[point] != 0.0 ? std::max(0.0, depth - manifold.offset[point]) : 0.0;
+double elasticOf(const ContactView& manifold, std::size_t point, double depth) {
+  const PenaltyRow& row = manifold.penalty(point);
+  return row.touching[laneOf(point)] != 0.0 ? std::max(0.0, depth - row.restDepth[laneOf(point)]) : 0.0;
 }
 
 // Normal energy of one point over half its resting stiffness, m2.
-double energyOf(const Manifold& manifold, std::size_t point, double elastic, const ContactLaw& law) {
-  const double lag = std::max(0.0, elastic - manifold.relaxed[point]);
-  return manifold.scale[point] * (elastic * elastic + law.relaxingRatio * lag * lag);
+double energyOf(const ContactView& manifold, std::size_t point, double elastic, const ContactLaw& law) {
+  const PenaltyRow& row = manifold.penalty(point);
+  const double lag = std::max(0.0, elastic - row.maxwellDepth[laneOf(point)]);
+  return row.stiffening[laneOf(point)] * (elastic * elastic + law.maxwellRatio * lag * lag);
 }
 
 // Lets points that are new and already below the surface start at one common depth, so that together they store `budget`.
@@ -32,13 +34,13 @@ void shareAmongNew(const std::array<double, kManifoldPoints>& depth, double scal
   std::array<double, kManifoldPoints> found{};
   std::size_t count = 0;
   for (std::size_t i = 0; i < static_cast<std::size_t>(fresh.count); ++i) {
-    if (fresh.live[i] != 0.0 || depth[i] <= 0.0) continue;
+    if (fresh.points[rowOf(i)].penalty.touching[laneOf(i)] != 0.0 || depth[i] <= 0.0) continue;
     std::size_t at = count++;  // deepest first
     for (; at > 0 && found[at - 1] < depth[i]; --at) found[at] = found[at - 1];
     found[at] = depth[i];
   }
   if (count == 0) return;
-  const double target = budget / (scale * (1.0 + law.relaxingRatio));  // sum of (depth - surface)^2 over those below it
+  const double target = budget / (scale * (1.0 + law.maxwellRatio));  // sum of (depth - surface)^2 over those below it
   double surface = 0.0;
   double sum = 0.0;
   double squares = 0.0;
@@ -53,28 +55,29 @@ void shareAmongNew(const std::array<double, kManifoldPoints>& depth, double scal
   }
   surface = std::max(0.0, surface);
   for (std::size_t i = 0; i < static_cast<std::size_t>(fresh.count); ++i) {
-    if (fresh.live[i] != 0.0 || depth[i] <= 0.0) continue;
-    fresh.live[i] = 1.0;
-    fresh.offset[i] = std::min(surface, depth[i]);
-    fresh.scale[i] = scale;
+    PenaltyRow& row = fresh.points[rowOf(i)].penalty;
+    if (row.touching[laneOf(i)] != 0.0 || depth[i] <= 0.0) continue;
+    row.touching[laneOf(i)] = 1.0;
+    row.restDepth[laneOf(i)] = std::min(surface, depth[i]);
+    row.stiffening[laneOf(i)] = scale;
   }
 }
 
-void keepEdge(const Manifold& old, Manifold& fresh) {
+void keepEdge(const ContactView& old, Manifold& fresh) {
   const std::int8_t incident = fresh.incidentFace;
   const std::int8_t reference = fresh.referenceFace;
-  fresh = old;
+  fresh = copyOf(old);
   fresh.incidentFace = incident;
   fresh.referenceFace = reference;
 }
 
 }  // namespace
 
-void keepContactMemory(const Manifold& old, const ParticleArray& position, const ContactLaw& law, double radius,
+void keepContactMemory(const ContactView& old, const ParticleArray& position, const ContactLaw& law, double radius,
                        Manifold& fresh) {
   const auto oldUpper = static_cast<std::size_t>(old.upper);
   const auto freshUpper = static_cast<std::size_t>(fresh.upper);
-  if (old.touch == PairPhase::edge && fresh.touch == PairPhase::edge) {
+  if (old.phase == PairPhase::edge && fresh.phase == PairPhase::edge) {
     keepEdge(old, fresh);
     if (fresh.incidentFace == old.incidentFace && fresh.referenceFace == old.referenceFace) return;
   } else {
@@ -91,7 +94,7 @@ void keepContactMemory(const Manifold& old, const ParticleArray& position, const
   double scale = 1.0;
   for (std::size_t i = 0; i < static_cast<std::size_t>(old.count); ++i) {
     stored += energyOf(old, i, elasticOf(old, i, depthBefore[i]), law);
-    if (old.live[i] != 0.0) scale = std::max(scale, old.scale[i]);
+    if (old.penalty(i).touching[laneOf(i)] != 0.0) scale = std::max(scale, old.penalty(i).stiffening[laneOf(i)]);
   }
   double kept = 0.0;
   for (std::size_t i = 0; i < static_cast<std::size_t>(fresh.count); ++i)
@@ -104,8 +107,9 @@ void keepContactMemory(const Manifold& old, const ParticleArray& position, const
   for (std::size_t i = 0; i < static_cast<std::size_t>(fresh.count); ++i) {
     const double elastic = elasticOf(fresh, i, depth[i]);
     if (elastic <= 0.0) continue;
-    fresh.offset[i] = depth[i] - share * elastic;
-    fresh.relaxed[i] *= share;
+    PenaltyRow& row = fresh.points[rowOf(i)].penalty;
+    row.restDepth[laneOf(i)] = depth[i] - share * elastic;
+    row.maxwellDepth[laneOf(i)] *= share;
   }
 }
 

@@ -20,13 +20,13 @@ bool isLeapfrog(Method method) {
   return method == Method::semiImplicitEuler || isImplicit(method);
 }
 
-// A manifold as it stands at the positions now: frames of its blocks, and its memory brought up to date on a copy.
+// A manifold as it stands at the positions now: frames of its blocks, and its points brought up to date on a copy.
 struct ManifoldNow {
   Manifold manifold;
   PointForces points;
   PairForce force;
 
-  ManifoldNow(const Simulation& simulation, const Manifold& stored) : manifold(stored) {
+  ManifoldNow(const Simulation& simulation, const ContactView& stored) : manifold(copyOf(stored)) {
     const auto upper = static_cast<std::size_t>(stored.upper);
     const auto lower = static_cast<std::size_t>(std::max(stored.lower, 0));
     const ParticleArray& carried = carriedVelocities(simulation);
@@ -38,38 +38,42 @@ struct ManifoldNow {
     const ContactLaw law = contactLaw(simulation);
     const double behind = simulation.engine->blockHistory[upper].lastExplicitStep_s;
     const double kick = isLeapfrog(simulation.scene.settings.method) ? behind : 0.0;
-    manifoldForces(manifold, up, low, law, {behind, 1.0, 1.0, kick}, reducedMass(simulation.model, stored), &manifold, force);
+    const PointRows rows{manifold.points.data(), manifold.points.data() + 1};
+    manifoldForces(manifold, up, low, law, {behind, 1.0, 1.0, kick}, reducedMass(simulation.model, stored), &rows, force);
     points = pointForces(manifold, up, low, law);
-    if (stored.rigid) {
-      manifold = stored;
-      readForces(stored, simulation.scene.settings.method, points);
+    if (stored.kind != PointKind::penalty) {
+      manifold = copyOf(stored);
+      readForces(stored, points);
     }
   }
 };
 
 // Stored in a manifold's springs, branches and anchors, J.
 double energyOf(const Simulation& simulation, const ManifoldNow& now, const ContactLaw& law) {
-  const Manifold& m = now.manifold;
+  const ContactView m = now.manifold;
   const double stiffness = m.lower < 0 ? law.floorStiffness_n_m : law.stiffness_n_m;
   double energy = 0.0;
   for (std::size_t i = 0; i < static_cast<std::size_t>(m.count); ++i) {
-    const double elastic = now.points.depth[i] - m.offset[i];
-    if (m.rigid) {
+    const std::size_t lane = laneOf(i);
+    const PenaltyRow& row = m.penalty(i);
+    const double elastic = now.points.depth[i] - row.restDepth[lane];
+    if (m.kind != PointKind::penalty) {
       const double pressed = std::clamp(elastic, 0.0, pressedDepth(simulation, m, i));
       energy += 0.5 * stiffness * pressed * pressed;
       continue;
     }
-    if (m.live[i] == 0.0 || elastic <= 0.0) continue;
-    const double lag = elastic - m.relaxed[i];
-    const double stretch = Vec3(m.stretchX[i], m.stretchY[i], m.stretchZ[i]).squaredNorm();
-    energy += 0.5 * stiffness * m.scale[i] * (elastic * elastic + law.relaxingRatio * lag * lag + law.tangentialRatio * stretch);
+    if (row.touching[lane] == 0.0 || elastic <= 0.0) continue;
+    const double lag = elastic - row.maxwellDepth[lane];
+    const double across = vectorAt(row.displacement, i).squaredNorm();
+    energy += 0.5 * stiffness * row.stiffening[lane] *
+              (elastic * elastic + law.maxwellRatio * lag * lag + law.tangentialRatio * across);
   }
   return energy;
 }
 
 // Appends what the points of a manifold that push do.
-void addContactForces(const Simulation& simulation, const Manifold& m, std::vector<ContactForce>& forces) {
-  if (m.touch == PairPhase::separated) return;
+void addContactForces(const Simulation& simulation, const ContactView& m, std::vector<ContactForce>& forces) {
+  if (m.phase == PairPhase::separated) return;
   const ManifoldNow now(simulation, m);
   const PointForces& points = now.points;
   for (std::size_t i = 0; i < static_cast<std::size_t>(m.count); ++i) {
@@ -77,7 +81,7 @@ void addContactForces(const Simulation& simulation, const Manifold& m, std::vect
     forces.push_back({static_cast<BlockId>(m.upper), static_cast<BlockId>(m.lower), points.place[i], points.lowerPlace[i],
                       points.direction, points.normal[i],
                       Vec3(points.friction[i][0], points.friction[i][1], points.friction[i][2]), points.depth[i],
-                      now.manifold.sliding[i] != 0.0});
+                      slipsAt(now.manifold, i)});
   }
 }
 
@@ -88,26 +92,26 @@ ContactLaw contactLaw(const Simulation& simulation) {
   ContactLaw law;
   law.stiffness_n_m = simulation.contactStiffness_n_m;
   law.floorStiffness_n_m = simulation.floorStiffness_n_m;
-  law.relaxingRatio = settings.viscoelasticRatio;
-  law.relaxingTime_s = settings.viscoelasticTime * simulation.lengths.fallTime_s;
+  law.maxwellRatio = settings.viscoelasticRatio;
+  law.maxwellTime_s = settings.viscoelasticTime * simulation.lengths.fallTime_s;
   law.dampingTime_s = simulation.dampingTime_s;
-  law.scaleTime_s = kStiffeningTime * simulation.lengths.fallTime_s;
+  law.stiffeningTime_s = kStiffeningTime * simulation.lengths.fallTime_s;
   law.tangentialRatio = settings.tangentialRatio;
   law.staticFriction = simulation.scene.staticFriction;
   law.kineticFriction = simulation.scene.kineticFriction;
   law.impactPenetration_m = impactDepth_m(settings, simulation.tolerance_m, simulation.lengths.blockHeight_m);
-  law.offsetPerSlip = 0.1 * simulation.scene.kineticFriction;
+  law.restDepthPerSlip = 0.1 * simulation.scene.kineticFriction;
   return law;
 }
 
-PointForces forcesNow(const Simulation& simulation, const Manifold& manifold) {
-  if (manifold.touch == PairPhase::separated) return {};
+PointForces forcesNow(const Simulation& simulation, const ContactView& manifold) {
+  if (manifold.phase == PairPhase::separated) return {};
   return ManifoldNow(simulation, manifold).points;
 }
 
-ContactWrench contactWrenchOnUpper(const Simulation& simulation, const Manifold& manifold) {
+ContactWrench contactWrenchOnUpper(const Simulation& simulation, const ContactView& manifold) {
   ContactWrench push;
-  if (manifold.touch == PairPhase::separated) return push;
+  if (manifold.phase == PairPhase::separated) return push;
   const PointForces points = forcesNow(simulation, manifold);
   push.direction = points.direction;
   for (std::size_t i = 0; i < static_cast<std::size_t>(manifold.count); ++i) {
@@ -121,15 +125,18 @@ ContactWrench contactWrenchOnUpper(const Simulation& simulation, const Manifold&
 
 std::vector<ContactForce> contactForces(const Simulation& simulation) {
   std::vector<ContactForce> forces;
-  for (const NearPair& pair : simulation.engine->pairs) addContactForces(simulation, pair.manifold, forces);
+  const Engine& engine = *simulation.engine;
+  for (std::size_t at = 0; at < engine.pairs.size(); ++at) addContactForces(simulation, contactOf(engine, at), forces);
   return forces;
 }
 
 std::vector<ContactForce> contactForcesOn(const Simulation& simulation, BlockId block) {
   const auto on = static_cast<std::int32_t>(block);
   std::vector<ContactForce> forces;
-  for (const NearPair& pair : simulation.engine->pairs) {
-    if (pair.manifold.upper == on || pair.manifold.lower == on) addContactForces(simulation, pair.manifold, forces);
+  const Engine& engine = *simulation.engine;
+  for (std::size_t at = 0; at < engine.pairs.size(); ++at) {
+    const ContactView contact = contactOf(engine, at);
+    if (contact.upper == on || contact.lower == on) addContactForces(simulation, contact, forces);
   }
   return forces;
 }
@@ -148,12 +155,13 @@ Energy energy(const Simulation& simulation) {
   std::vector<AffineField> contactForce(model.blockCount());
   std::vector<std::int32_t> all(model.blockCount());
   for (std::size_t b = 0; b < all.size(); ++b) all[b] = static_cast<std::int32_t>(b);
-  for (const NearPair& pair : simulation.engine->pairs) {
-    if (pair.manifold.touch == PairPhase::separated) continue;
-    const ManifoldNow now(simulation, pair.manifold);
+  for (std::size_t at = 0; at < simulation.engine->pairs.size(); ++at) {
+    const ContactView contact = contactOf(*simulation.engine, at);
+    if (contact.phase == PairPhase::separated) continue;
+    const ManifoldNow now(simulation, contact);
     energy.contacts += energyOf(simulation, now, law);
-    addForce(now.force.upper, contactForce[static_cast<std::size_t>(pair.manifold.upper)]);
-    if (pair.manifold.lower >= 0) addForce(now.force.lower, contactForce[static_cast<std::size_t>(pair.manifold.lower)]);
+    addForce(now.force.upper, contactForce[static_cast<std::size_t>(contact.upper)]);
+    if (contact.lower >= 0) addForce(now.force.lower, contactForce[static_cast<std::size_t>(contact.lower)]);
   }
   springForces(model, state, all, contactForce, force);
   const InverseMass inverse = inverseMass(settings.inertia);

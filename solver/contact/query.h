@@ -7,8 +7,8 @@ namespace springtower {
 /// The contact law of a scene as it stands.
 ContactLaw contactLaw(const Simulation& simulation);
 
-/// How a manifold's points push now: its memory brought up to date on a copy. Zeros where it is apart.
-PointForces forcesNow(const Simulation& simulation, const Manifold& manifold);
+/// How a manifold's points push now: its points brought up to date on a copy. Zeros where it is apart.
+PointForces forcesNow(const Simulation& simulation, const ContactView& manifold);
 
 /// What a manifold does to a block.
 struct ContactWrench {
@@ -18,6 +18,6 @@ struct ContactWrench {
 };
 
 /// Their sum on the upper block. All zero where the manifold is apart.
-ContactWrench contactWrenchOnUpper(const Simulation& simulation, const Manifold& manifold);
+ContactWrench contactWrenchOnUpper(const Simulation& simulation, const ContactView& manifold);
 
 }  // namespace springtower

@@ -20,7 +20,7 @@ std::int32_t bodyOf(const IslandStep& step, std::int32_t block) {
 }
 
 // The points of a manifold as they lie at engine.frames.
-PointForces pointsNow(const IslandStep& step, const Manifold& manifold) {
+PointForces pointsNow(const IslandStep& step, const ContactView& manifold) {
   static const AffineField still{};
   const auto side = [&](std::int32_t block) {
     return block < 0 ? ContactSide{} : ContactSide{&step.engine.frames[static_cast<std::size_t>(block)], &still, &still};
@@ -28,16 +28,21 @@ PointForces pointsNow(const IslandStep& step, const Manifold& manifold) {
   return pointForces(manifold, side(manifold.upper), side(manifold.lower), step.law);
 }
 
-void recall(const IslandStep& step, const Manifold& manifold, std::size_t i, RigidContact& contact) {
+// What the point did in the step before, to start from.
+void warmStart(const IslandStep& step, const ContactView& manifold, std::size_t i, RigidContact& contact) {
   const Scene& scene = step.simulation.scene;
-  const bool slid = manifold.sliding[i] != 0.0;
-  contact.coefficient = slid ? scene.kineticFriction : scene.staticFriction;
-  const Vec3 across(manifold.stretchX[i], manifold.stretchY[i], manifold.stretchZ[i]);
-  contact.impulse = {step.drift_s * manifold.relaxed[i], 0.0, 0.0};
-  contact.stretch = {across.dot(contact.direction[1]), across.dot(contact.direction[2])};
-  if (scene.settings.method == Method::xpbd) return;
-  contact.impulse[1] = step.drift_s * contact.stretch[0];
-  contact.impulse[2] = step.drift_s * contact.stretch[1];
+  contact.coefficient = slipsAt(manifold, i) ? scene.kineticFriction : scene.staticFriction;
+  if (manifold.kind == PointKind::anchor) {
+    const AnchorRow& row = manifold.anchor(i);
+    const Vec3 anchor = vectorAt(row.displacement, i);
+    contact.impulse = {step.drift_s * row.normalForce[laneOf(i)], 0.0, 0.0};
+    contact.anchor_m = {anchor.dot(contact.direction[1]), anchor.dot(contact.direction[2])};
+    return;
+  }
+  const ImpulseRow& row = manifold.impulse(i);
+  const Vec3 friction = vectorAt(row.friction, i);
+  contact.impulse = {step.drift_s * row.normalForce[laneOf(i)], step.drift_s * friction.dot(contact.direction[1]),
+                     step.drift_s * friction.dot(contact.direction[2])};
 }
 
 }  // namespace
@@ -45,8 +50,8 @@ void recall(const IslandStep& step, const Manifold& manifold, std::size_t i, Rig
 void gatherContacts(IslandStep& step, RigidIsland& island) {
   island.contacts.clear();
   for (const std::int32_t at : step.pairs) {
-    const Manifold& manifold = step.engine.pairs[static_cast<std::size_t>(at)].manifold;
-    if (manifold.touch == PairPhase::separated) continue;
+    const ContactView manifold = contactOf(step.engine, static_cast<std::size_t>(at));
+    if (manifold.phase == PairPhase::separated) continue;
     const PointForces points = pointsNow(step, manifold);
     RigidContact contact;
     contact.upper = bodyOf(step, manifold.upper);
@@ -62,41 +67,51 @@ void gatherContacts(IslandStep& step, RigidIsland& island) {
       if (contact.upper >= 0) contact.armUpper = middle - island.bodies[static_cast<std::size_t>(contact.upper)].place;
       if (contact.lower >= 0) contact.armLower = middle - island.bodies[static_cast<std::size_t>(contact.lower)].place;
       for (std::size_t k = 0; k < 3; ++k) contact.mass[k] = 1.0 / inverseEffectiveMass(island, contact, contact.direction[k]);
-      recall(step, manifold, i, contact);
+      warmStart(step, manifold, i, contact);
       island.contacts.push_back(contact);
     }
   }
 }
 
 void keepForces(IslandStep& step, const RigidIsland& island) {
-  const bool anchored = step.simulation.scene.settings.method == Method::xpbd;
   for (const RigidContact& contact : island.contacts) {
-    Manifold& manifold = step.engine.pairs[static_cast<std::size_t>(contact.pair)].manifold;
     const auto i = static_cast<std::size_t>(contact.point);
+    const std::size_t lane = laneOf(i);
+    const std::int32_t stored = step.engine.pairs.contact[static_cast<std::size_t>(contact.pair)];
+    PointRow& row = *step.engine.contacts.points(stored)[rowOf(i)];
     const std::array<double, 3> force = {contact.impulse[0] / step.drift_s, contact.impulse[1] / step.drift_s,
                                          contact.impulse[2] / step.drift_s};
-    const Vec3 across = anchored ? Vec3(contact.stretch[0] * contact.direction[1] + contact.stretch[1] * contact.direction[2])
-                                 : Vec3(force[1] * contact.direction[1] + force[2] * contact.direction[2]);
-    manifold.relaxed[i] = force[0];
-    manifold.stretchX[i] = across.x();
-    manifold.stretchY[i] = across.y();
-    manifold.stretchZ[i] = across.z();
-    manifold.sliding[i] = contact.sliding ? 1.0 : 0.0;
-    if (!anchored) continue;
-    manifold.offset[i] = force[1];
-    manifold.scale[i] = force[2];
+    const double slipping = contact.sliding ? 1.0 : 0.0;
+    if (step.pointKind == PointKind::anchor) {
+      setVectorAt(row.anchor.displacement, i,
+                  contact.anchor_m[0] * contact.direction[1] + contact.anchor_m[1] * contact.direction[2]);
+      row.anchor.normalForce[lane] = force[0];
+      row.anchor.firstFriction[lane] = force[1];
+      row.anchor.secondFriction[lane] = force[2];
+      row.anchor.slipping[lane] = slipping;
+    } else {
+      setVectorAt(row.impulse.friction, i, force[1] * contact.direction[1] + force[2] * contact.direction[2]);
+      row.impulse.normalForce[lane] = force[0];
+      row.impulse.slipping[lane] = slipping;
+    }
   }
 }
 
-void readForces(const Manifold& manifold, Method method, PointForces& points) {
+void readForces(const ContactView& manifold, PointForces& points) {
   std::array<Vec3, 3> direction = {points.direction};
   chooseTangents(direction);
   for (std::size_t i = 0; i < static_cast<std::size_t>(manifold.count); ++i) {
-    points.normal[i] = manifold.relaxed[i];
-    points.friction[i] = {manifold.stretchX[i], manifold.stretchY[i], manifold.stretchZ[i]};
-    if (method != Method::xpbd) continue;
-    const bool pushed = manifold.relaxed[i] > 0.0;
-    const Vec3 friction = manifold.offset[i] * direction[1] + manifold.scale[i] * direction[2];
+    const std::size_t lane = laneOf(i);
+    if (manifold.kind == PointKind::impulse) {
+      const ImpulseRow& row = manifold.impulse(i);
+      points.normal[i] = row.normalForce[lane];
+      points.friction[i] = {row.friction[0][lane], row.friction[1][lane], row.friction[2][lane]};
+      continue;
+    }
+    const AnchorRow& row = manifold.anchor(i);
+    points.normal[i] = row.normalForce[lane];
+    const bool pushed = row.normalForce[lane] > 0.0;
+    const Vec3 friction = row.firstFriction[lane] * direction[1] + row.secondFriction[lane] * direction[2];
     for (std::size_t k = 0; k < 3; ++k) points.friction[i][k] = pushed ? friction[static_cast<Eigen::Index>(k)] : 0.0;
   }
 }

@@ -9,10 +9,14 @@
 
 namespace springtower {
 
-// The manifolds of narrowphase/ as constraints between rigid blocks. Their memory is used otherwise than by the penalty methods,
-// but handed from manifold to manifold in the same way: `relaxed` is the normal force of a point (N), `stretch` its friction
-// force (N, world axes, on upper). The position-based method keeps the tangential displacement since a point took hold (m) in
-// `stretch` and the friction force along the two tangents (N) in `offset` and `scale`. `live` stays 0: no springs hold energy.
+// The manifolds of narrowphase/ as constraints between rigid blocks. Their points store impulses (ImpulseRow), or anchors
+// (AnchorRow) in the position-based method, and are handed from manifold to manifold as those of the penalty methods are.
+
+/// What the points of contacts store in the steps of a method.
+constexpr PointKind pointKindOf(Method method) {
+  if (method == Method::xpbd) return PointKind::anchor;
+  return isRigid(method) ? PointKind::impulse : PointKind::penalty;
+}
 
 /// Lists all points of an island's touching manifolds at the places of engine.frames, with arms, gaps, effective masses and the
 /// impulses of the step before.
@@ -22,15 +26,15 @@ void gatherContacts(IslandStep& step, RigidIsland& island);
 void keepForces(IslandStep& step, const RigidIsland& island);
 
 /// The forces that `keepForces` put into a manifold, for reports: normal and friction of each point.
-void readForces(const Manifold& manifold, Method method, PointForces& points);
+void readForces(const ContactView& manifold, PointForces& points);
 
 /// How deep the springs of a point would be pressed by the normal force that rigid steps remember, m: so deep they leave it where
 /// an island of another method falls, and what is pressed holds its energy. No deeper than the tolerance, as what stands; 0 of
 /// the rigid methods, which have no springs.
-inline double pressedDepth(const Simulation& simulation, const Manifold& manifold, std::size_t point) {
+inline double pressedDepth(const Simulation& simulation, const ContactView& manifold, std::size_t point) {
   if (isRigid(simulation.scene.settings.method)) return 0.0;
   const double stiffness = manifold.lower < 0 ? simulation.floorStiffness_n_m : simulation.contactStiffness_n_m;
-  return std::min(manifold.relaxed[point] / stiffness, simulation.tolerance_m);
+  return std::min(manifold.impulse(point).normalForce[laneOf(point)] / stiffness, simulation.tolerance_m);
 }
 
 /// Velocity of upper against lower at a contact, m/s.

@@ -97,20 +97,27 @@ bool addTravel(IslandStep& step) {
 
 namespace {
 
-bool slides(const Manifold& manifold) {
-  return std::any_of(manifold.sliding.begin(), manifold.sliding.begin() + manifold.count,
-                     [](double share) { return share != 0.0; });
+// The lanes of a row past its points are zeros.
+SPRINGTOWER_INLINE int nonZeros(const FourValues& values) {
+  return (values[0] != 0.0 ? 1 : 0) + (values[1] != 0.0 ? 1 : 0) + (values[2] != 0.0 ? 1 : 0) + (values[3] != 0.0 ? 1 : 0);
+}
+
+bool slides(const ContactView& manifold) {
+  for (std::size_t r = 0; r < rowsFor(manifold.count); ++r) {
+    if (nonZeros(manifold.points[r]->penalty.slipRatio) > 0) return true;
+  }
+  return false;
 }
 
 // Whether blocks touch at a corner or along a line only, where one rolls on the other.
-bool rolls(const Manifold& manifold) {
-  const auto live =
-      std::count_if(manifold.live.begin(), manifold.live.begin() + manifold.count, [](double point) { return point != 0.0; });
-  return live == 1 || live == 2;
+bool rolls(const ContactView& manifold) {
+  int touching = 0;
+  for (std::size_t r = 0; r < rowsFor(manifold.count); ++r) touching += nonZeros(manifold.points[r]->penalty.touching);
+  return touching == 1 || touching == 2;
 }
 
 // Path after which a pair's manifold is renewed, m.
-double renewalTravel(const Manifold& manifold, const RefreshTravel& travel) {
+double renewalTravel(const ContactView& manifold, const RefreshTravel& travel) {
   if (slides(manifold)) return travel.sliding_m;
   return rolls(manifold) ? travel.rolling_m : travel.resting_m;
 }
@@ -121,7 +128,7 @@ constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr double kStayed = 0.9;
 
 // How one block of a pair lies to the other: b's centre and sides along a's edges, or a's own where b is the floor, m.
-RelativePose poseOf(const IslandStep& step, const NearPair& pair) {
+RelativePose poseOf(const IslandStep& step, const BlockPair& pair) {
   const auto a = static_cast<std::size_t>(pair.a);
   const BlockFrame& frame = step.engine.frames[a];
   RelativePose pose;
@@ -162,13 +169,13 @@ double movedBetween(const RelativePose& before, const RelativePose& now) {
 
 // Whether the blocks of a pair lie to one another much as when their manifold was renewed: those that go over together travel
 // far.
-bool hasStayed(IslandStep& step, std::int32_t at, double travel, double most) {
-  NearPair& pair = step.engine.pairs[static_cast<std::size_t>(at)];
-  RelativePose& known = step.engine.pose[static_cast<std::size_t>(at)];
-  const RelativePose pose = poseOf(step, pair);
+bool hasStayed(IslandStep& step, std::size_t at, double travel, double most) {
+  PairTable& pairs = step.engine.pairs;
+  RelativePose& known = step.engine.contacts.pose(pairs.contact[at]);
+  const RelativePose pose = poseOf(step, pairs.key[at]);
   const double moved = movedBetween(known, pose);
   if (moved < kStayed * most) {
-    pair.travelAtCheck = travel - moved;
+    pairs.travelAtCheck[at] = travel - moved;
     return true;
   }
   known = pose;
@@ -176,28 +183,39 @@ bool hasStayed(IslandStep& step, std::int32_t at, double travel, double most) {
 }
 
 // A manifold that is made otherwise than by a renewal in rigid steps is renewed by the next of these that looks at it.
-void forgetPose(Engine& engine, std::int32_t at) {
-  if (static_cast<std::size_t>(at) < engine.pose.size()) engine.pose[static_cast<std::size_t>(at)] = RelativePose{};
+void forgetPose(Engine& engine, std::size_t at) {
+  if (engine.pairs.contact[at] >= 0) engine.contacts.pose(engine.pairs.contact[at]) = RelativePose{};
 }
 
-void updatePair(IslandStep& step, std::int32_t at, const RefreshTravel& renewal, Counters& counters, StageTimes& times) {
-  NearPair& pair = step.engine.pairs[static_cast<std::size_t>(at)];
-  const double travel = travelOf(step.engine, pair);
-  const double used = travel - pair.travelAtCheck;
-  if (pair.manifold.touch == PairPhase::separated) {
-    if (used < pair.clearance) return;
+// Whether a pair may have to be looked at: it has used up its margin, or all the path after which any manifold is renewed.
+SPRINGTOWER_INLINE bool isDue(const Engine& engine, std::size_t at, double leastRenewal) {
+  const double used = travelOf(engine, at) - engine.pairs.travelAtCheck[at];
+  return engine.pairs.touches(at) ? used > leastRenewal : !(used < engine.pairs.clearance[at]);
+}
+
+double leastRenewalOf(const RefreshTravel& renewal) {
+  return std::min({renewal.resting_m, renewal.sliding_m, renewal.rolling_m});
+}
+
+// Looks at a pair that is due.
+void updatePair(IslandStep& step, std::size_t at, const RefreshTravel& renewal, Counters& counters, StageTimes& times) {
+  PairTable& pairs = step.engine.pairs;
+  const double travel = travelOf(step.engine, at);
+  if (!pairs.touches(at)) {
     ++counters.marginsSpent;
-    savePair(step.engine, static_cast<std::size_t>(at));
-    pair.travelAtCheck = travel;
-    updateSeparated(step, pair, counters, times);
+    savePair(step.engine, at);
+    pairs.travelAtCheck[at] = travel;
+    updateSeparated(step, at, counters, times);
     forgetPose(step.engine, at);
-  } else if (const double most = renewalTravel(pair.manifold, renewal); used > most) {
-    savePair(step.engine, static_cast<std::size_t>(at));
-    if (step.rigid && hasStayed(step, at, travel, most)) return;
-    if (!step.rigid) forgetPose(step.engine, at);
-    pair.travelAtCheck = travel;
-    refreshManifold(step, pair, counters);
+    return;
   }
+  const double most = renewalTravel(contactOf(step.engine, at), renewal);
+  if (!(travel - pairs.travelAtCheck[at] > most)) return;
+  savePair(step.engine, at);
+  if (step.pointKind != PointKind::penalty && hasStayed(step, at, travel, most)) return;
+  if (step.pointKind == PointKind::penalty) forgetPose(step.engine, at);
+  pairs.travelAtCheck[at] = travel;
+  refreshManifold(step, at, counters);
 }
 
 // Lists the pairs that touch, and those that may use up their margin in the steps to come unless a block becomes faster than is
@@ -214,11 +232,12 @@ void listWatched(IslandStep& step) {
   };
   const std::size_t first = static_cast<std::size_t>(step.pairs.data() - engine.islandPairs.data());
   std::size_t count = 0;
-  for (const std::int32_t at : step.pairs) {
-    const NearPair& pair = engine.pairs[static_cast<std::size_t>(at)];
-    const double left = pair.clearance - (travelOf(engine, pair) - pair.travelAtCheck);
-    if (pair.manifold.touch == PairPhase::separated && left > kListedSteps * (pathOf(pair.a) + pathOf(pair.b))) continue;
-    engine.watchedPairs[first + count++] = at;
+  for (const std::int32_t pair : step.pairs) {
+    const auto at = static_cast<std::size_t>(pair);
+    const BlockPair& key = engine.pairs.key[at];
+    const double left = engine.pairs.clearance[at] - (travelOf(engine, at) - engine.pairs.travelAtCheck[at]);
+    if (!engine.pairs.touches(at) && left > kListedSteps * (pathOf(key.a) + pathOf(key.b))) continue;
+    engine.watchedPairs[first + count++] = pair;
   }
   step.activePairs = std::span<const std::int32_t>(engine.watchedPairs).subspan(first, count);
   step.activeListSteps = kListedSteps;
@@ -227,10 +246,10 @@ void listWatched(IslandStep& step) {
 }  // namespace
 
 void findTouching(IslandStep& step) {
-  for (const std::int32_t at : step.pairs) {
-    NearPair& pair = step.engine.pairs[static_cast<std::size_t>(at)];
-    savePair(step.engine, static_cast<std::size_t>(at));
-    if (pair.manifold.touch == PairPhase::separated) updateSeparated(step, pair, step.counters, step.times);
+  for (const std::int32_t pair : step.pairs) {
+    const auto at = static_cast<std::size_t>(pair);
+    savePair(step.engine, at);
+    if (!step.engine.pairs.touches(at)) updateSeparated(step, at, step.counters, step.times);
   }
 }
 
@@ -240,22 +259,23 @@ bool findContacts(IslandStep& step) {
 
 void recomputeClearances(IslandStep& step) {
   const bool listed = step.activeListSteps == kListedSteps;
-  for (const std::int32_t at : listed ? step.pairs : step.activePairs) {
-    NearPair& pair = step.engine.pairs[static_cast<std::size_t>(at)];
-    const double travel = travelOf(step.engine, pair);
-    if (pair.travelAtCheck <= travel) continue;
-    const bool apart = pair.manifold.touch == PairPhase::separated;
-    pair.travelAtCheck = apart ? travel : -kNever;
-    if (apart) pair.clearance = marginNow(step.simulation, pair);
+  PairTable& pairs = step.engine.pairs;
+  for (const std::int32_t pair : listed ? step.pairs : step.activePairs) {
+    const auto at = static_cast<std::size_t>(pair);
+    const double travel = travelOf(step.engine, at);
+    if (pairs.travelAtCheck[at] <= travel) continue;
+    pairs.travelAtCheck[at] = pairs.touches(at) ? -kNever : travel;
+    if (!pairs.touches(at)) pairs.clearance[at] = marginNow(step.simulation, at);
   }
   if (step.activeListSteps > 0) --step.activeListSteps;  // from where the step began it is farther to where the list was made for
 }
 
 void refreshContacts(IslandStep& step, const RefreshTravel& renewal) {
   StageClock clock(step.times);
-  for (const std::int32_t at : step.activePairs) {
-    if (step.engine.pairs[static_cast<std::size_t>(at)].manifold.touch != PairPhase::separated)
-      updatePair(step, at, renewal, step.counters, step.times);
+  const double least = leastRenewalOf(renewal);
+  for (const std::int32_t pair : step.activePairs) {
+    const auto at = static_cast<std::size_t>(pair);
+    if (step.engine.pairs.touches(at) && isDue(step.engine, at, least)) updatePair(step, at, renewal, step.counters, step.times);
   }
   clock.lap(Stage::candidates);
 }
@@ -269,8 +289,12 @@ bool updateContacts(IslandStep& step, const RefreshTravel& renewal) {
   const bool inside = addTravel(step);
   const bool list = step.usesActiveList && step.activeListSteps == 0;
   if (step.activeListSteps == 0) step.activePairs = step.pairs;
+  const double least = leastRenewalOf(renewal);
   if (step.blocks.size() < kParallelBlocks) {
-    for (const std::int32_t at : step.activePairs) updatePair(step, at, renewal, step.counters, step.times);
+    for (const std::int32_t pair : step.activePairs) {
+      const auto at = static_cast<std::size_t>(pair);
+      if (isDue(step.engine, at, least)) updatePair(step, at, renewal, step.counters, step.times);
+    }
     if (list) listWatched(step);
     clock.lap(Stage::candidates);
     candidates_s -= cubicTests_s - cubicBefore_s;  // they were timed inside
@@ -289,7 +313,8 @@ bool updateContacts(IslandStep& step, const RefreshTravel& renewal) {
     StageClock all(timed[chunk]);
     const std::size_t last = std::min(step.activePairs.size(), (chunk + 1) * kChunk);
     for (std::size_t i = chunk * kChunk; i < last; ++i) {
-      updatePair(step, step.activePairs[i], renewal, counted[chunk], timed[chunk]);
+      const auto at = static_cast<std::size_t>(step.activePairs[i]);
+      if (isDue(step.engine, at, least)) updatePair(step, at, renewal, counted[chunk], timed[chunk]);
     }
     all.lap(Stage::candidates);
   });

@@ -27,7 +27,7 @@ std::array<double, 3> edgeEnd(int edge) {
   return place;
 }
 
-void addManifold(Simulation& simulation, const Manifold& m) {
+void addManifold(Simulation& simulation, const ContactView& m) {
   Engine& engine = *simulation.engine;
   const Settings& settings = simulation.scene.settings;
   const auto upper = static_cast<std::size_t>(m.upper);
@@ -42,8 +42,8 @@ void addManifold(Simulation& simulation, const Manifold& m) {
     engine.contactMetric[block] += k * w * w.transpose();
   };
   for (std::size_t p = 0; p < static_cast<std::size_t>(m.count); ++p) {
-    const double k = stiffness * m.scale[p];
-    if (m.touch == PairPhase::edge) {
+    const double k = stiffness * m.penalty(p).stiffening[laneOf(p)];
+    if (m.phase == PairPhase::edge) {
       if (moveUpper) add(upper, edgeEnd(m.incidentFace), k);
       if (moveLower) add(lower, edgeEnd(m.referenceFace), k);
       continue;
@@ -51,8 +51,8 @@ void addManifold(Simulation& simulation, const Manifold& m) {
     const FaceAxes& face = kFaceAxes[static_cast<std::size_t>(m.incidentFace)];
     std::array<double, 3> place{};
     place[face.across] = face.side;
-    place[face.u] = m.u[p];
-    place[face.v] = m.v[p];
+    place[face.u] = m.u(p);
+    place[face.v] = m.v(p);
     if (moveUpper) add(upper, place, k);
     if (!moveLower) continue;
     const BlockFrame& above = engine.frames[upper];
@@ -76,8 +76,8 @@ double spectralBound(Simulation& simulation, std::span<const std::int32_t> block
   computeFrames(simulation.state.position, blocks, engine.frames);
   for (const std::int32_t block : blocks) engine.contactMetric[static_cast<std::size_t>(block)].setZero();
   for (const std::int32_t at : pairs) {
-    const Manifold& manifold = engine.pairs[static_cast<std::size_t>(at)].manifold;
-    if (manifold.touch != PairPhase::separated) addManifold(simulation, manifold);
+    const ContactView manifold = contactOf(engine, static_cast<std::size_t>(at));
+    if (manifold.phase != PairPhase::separated) addManifold(simulation, manifold);
   }
   double springs = 0.0;
   double contacts = 0.0;
@@ -112,13 +112,13 @@ double blockSpectralRadius(const BlockModel& model, Inertia inertia, std::size_t
 std::uint64_t contactSignature(const Engine& engine, std::span<const std::int32_t> pairs) {
   Hash hash;
   for (const std::int32_t at : pairs) {
-    const Manifold& m = engine.pairs[static_cast<std::size_t>(at)].manifold;
-    if (m.touch == PairPhase::separated) continue;
+    const ContactView m = contactOf(engine, static_cast<std::size_t>(at));
+    if (m.phase == PairPhase::separated) continue;
     hash.word(static_cast<std::uint64_t>(at));
     hash.word(static_cast<std::uint64_t>(m.count) + 16U * static_cast<std::uint64_t>(m.incidentFace) +
               256U * static_cast<std::uint64_t>(m.referenceFace));
     for (std::size_t p = 0; p < static_cast<std::size_t>(m.count); ++p)
-      hash.word(static_cast<std::uint64_t>(16.0 * std::log2(m.scale[p])));
+      hash.word(static_cast<std::uint64_t>(16.0 * std::log2(m.penalty(p).stiffening[laneOf(p)])));
   }
   return hash.value();
 }

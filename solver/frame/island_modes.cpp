@@ -57,38 +57,42 @@ bool isLeftAlone(const IslandStep& step) {
 }
 
 // What a point's springs do becomes the force that its impulses start from.
-void penaltyToImpulse(const IslandStep& step, Manifold& manifold) {
+void penaltyToImpulse(const IslandStep& step, std::int32_t contact, const ContactView& manifold) {
   const PointForces points = forcesNow(step.simulation, manifold);
+  const PointRows rows = step.engine.contacts.points(contact);
   for (std::size_t i = 0; i < static_cast<std::size_t>(manifold.count); ++i) {
-    manifold.relaxed[i] = points.normal[i];
-    manifold.stretchX[i] = points.friction[i][0];
-    manifold.stretchY[i] = points.friction[i][1];
-    manifold.stretchZ[i] = points.friction[i][2];
-    manifold.offset[i] = manifold.live[i] != 0.0 ? std::max(0.0, manifold.offset[i]) : 0.0;
-    manifold.live[i] = 0.0;
+    const std::size_t lane = laneOf(i);
+    PointRow& row = *rows[rowOf(i)];
+    const double restDepth = row.penalty.touching[lane] != 0.0 ? std::max(0.0, row.penalty.restDepth[lane]) : 0.0;
+    row.impulse.normalForce[lane] = points.normal[i];
+    for (std::size_t k = 0; k < 3; ++k) row.impulse.friction[k][lane] = points.friction[i][k];
+    row.impulse.restDepth[lane] = restDepth;
+    row.impulse.untouched[lane] = 0.0;
   }
-  manifold.rigid = true;
+  step.engine.contacts.shape(contact).kind = PointKind::impulse;
 }
 
 // The other way round: springs that push as the impulses did last.
-void impulseToPenalty(const IslandStep& step, Manifold& manifold) {
+void impulseToPenalty(const IslandStep& step, std::int32_t contact, const ContactView& manifold) {
   const PointForces points = forcesNow(step.simulation, manifold);
   const double stiffness = manifold.lower < 0 ? step.law.floorStiffness_n_m : step.law.stiffness_n_m;
   const double tangential = step.law.tangentialRatio * stiffness;
+  const PointRows rows = step.engine.contacts.points(contact);
   for (std::size_t i = 0; i < static_cast<std::size_t>(manifold.count); ++i) {
+    const std::size_t lane = laneOf(i);
+    PointRow& row = *rows[rowOf(i)];
     const bool touches = points.depth[i] > 0.0;
     const double pressed = pressedDepth(step.simulation, manifold, i);
     const double elastic = touches ? std::min(pressed, points.depth[i]) : 0.0;
-    const double share = elastic > 0.0 ? -elastic * stiffness / (manifold.relaxed[i] * tangential) : 0.0;
-    manifold.live[i] = elastic > 0.0 ? 1.0 : (touches ? kUnpressed : 0.0);
-    manifold.scale[i] = 1.0;
-    manifold.offset[i] = touches ? points.depth[i] - elastic : 0.0;
-    manifold.relaxed[i] = elastic;
-    manifold.stretchX[i] *= share;
-    manifold.stretchY[i] *= share;
-    manifold.stretchZ[i] *= share;
+    const double share = elastic > 0.0 ? -elastic * stiffness / (row.impulse.normalForce[lane] * tangential) : 0.0;
+    const Vec3 friction = vectorAt(row.impulse.friction, i);
+    row.penalty.touching[lane] = elastic > 0.0 ? 1.0 : (touches ? kUnpressed : 0.0);
+    row.penalty.stiffening[lane] = 1.0;
+    row.penalty.restDepth[lane] = touches ? points.depth[i] - elastic : 0.0;
+    row.penalty.maxwellDepth[lane] = elastic;
+    setVectorAt(row.penalty.displacement, i, share * friction);
   }
-  manifold.rigid = false;
+  step.engine.contacts.shape(contact).kind = PointKind::penalty;
 }
 
 }  // namespace
@@ -128,27 +132,28 @@ IslandMode nextMode(ModeChange when, const IslandFacts& facts) {
 void setMode(IslandStep& step, IslandMode mode) {
   const bool falling = mode == IslandMode::rigid;
   std::vector<BlockHistory>& history = step.engine.blockHistory;
-  const auto forEachManifold = [&](bool rigid, const auto& change) {
-    for (const std::int32_t at : step.pairs) {
-      Manifold& manifold = step.engine.pairs[static_cast<std::size_t>(at)].manifold;
-      if (manifold.touch == PairPhase::separated || manifold.rigid != rigid) continue;
-      savePair(step.engine, static_cast<std::size_t>(at));
-      change(step, manifold);
+  const auto forEachContact = [&](PointKind kind, const auto& change) {
+    for (const std::int32_t pair : step.pairs) {
+      const auto at = static_cast<std::size_t>(pair);
+      const std::int32_t contact = step.engine.pairs.contact[at];
+      if (!step.engine.pairs.touches(at) || step.engine.contacts.shape(contact).kind != kind) continue;
+      savePair(step.engine, at);
+      change(step, contact, contactOf(step.engine, at));
     }
   };
   const bool all = std::all_of(step.blocks.begin(), step.blocks.end(),
                                [&](std::int32_t block) { return history[static_cast<std::size_t>(block)].falls; });
   if (falling && all) {
-    forEachManifold(false, penaltyToImpulse);  // of blocks that slept while a neighbour went back to springs
+    forEachContact(PointKind::penalty, penaltyToImpulse);  // of blocks that slept while a neighbour went back to springs
     return;
   }
-  forEachManifold(true, impulseToPenalty);
+  forEachContact(PointKind::impulse, impulseToPenalty);
   for (const std::int32_t block : step.blocks) history[static_cast<std::size_t>(block)].falls = falling;
   if (!falling) return;
   for (const std::int32_t block : step.blocks) history[static_cast<std::size_t>(block)].hasFallen = true;
   step.gravity = step.simulation.scene.gravity.at(step.simulation.time_s);
   synchronise(step);
-  forEachManifold(false, penaltyToImpulse);
+  forEachContact(PointKind::penalty, penaltyToImpulse);
 }
 
 IslandOutcome runFall(IslandStep& step, double begin_s) {

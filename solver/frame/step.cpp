@@ -3,6 +3,7 @@
 #include "solver/contact/approach.h"
 #include "solver/contact/evaluate_forces.h"
 #include "solver/contact/query.h"
+#include "solver/contact/rigid_contacts.h"
 #include "solver/contact/update.h"
 #include "solver/explicit/leapfrog.h"
 #include "solver/explicit/stable_step.h"
@@ -56,8 +57,10 @@ ApproachEstimate approachOf(const IslandStep& step) {
   const double frame_s = simulation.scene.settings.frame_s;
   const double fall = simulation.scene.gravity.magnitude * frame_s;
   ApproachEstimate approach;
-  for (const std::int32_t at : step.pairs) {
-    const NearPair& pair = step.engine.pairs[static_cast<std::size_t>(at)];
+  const PairTable& pairs = step.engine.pairs;
+  for (const std::int32_t position : step.pairs) {
+    const auto at = static_cast<std::size_t>(position);
+    const BlockPair& pair = pairs.key[at];
     const auto a = static_cast<std::size_t>(pair.a);
     const double massA = simulation.model.mass[a];
     // A block that has been at rest is held; another may be in free fall.
@@ -79,10 +82,10 @@ ApproachEstimate approachOf(const IslandStep& step) {
       resting = resting && simulation.restTime_s[b] > 0.0;
     }
     if (!resting) speed += fall;
-    const bool apart = pair.manifold.touch == PairPhase::separated;
-    const bool mayMeet = apart && pair.clearance - (travel - pair.travelAtCheck) < speed * frame_s;
+    const bool apart = !pairs.touches(at);
+    const bool mayMeet = apart && pairs.clearance[at] - (travel - pairs.travelAtCheck[at]) < speed * frame_s;
     if (apart && !mayMeet) continue;
-    if (apart || !anyPointTouches(pair.manifold)) {
+    if (apart || !anyPointTouches(contactOf(step.engine, at))) {
       for (const std::int32_t block : {pair.a, pair.b}) {  // sleepers may be those of other islands as well, and do not move
         if (!sleeps(simulation, block))
           approach.together = std::max(approach.together, ++beginning[static_cast<std::size_t>(block)]);
@@ -156,7 +159,7 @@ int chooseSubsteps(IslandStep& step) {
     allowed = stableSpectralRadius(settings.method, settings.frame_s / substeps, simulation.dampingTime_s, settings.stepMargin);
     if (held.stiffness > 0.0) allowed = std::min(allowed, needed);
   }
-  step.scaleMost = born > 0.0 ? std::clamp((allowed - standing) / (together * born), 1.0, std::max(1.0, wanted)) : 1.0;
+  step.maxStiffening = born > 0.0 ? std::clamp((allowed - standing) / (together * born), 1.0, std::max(1.0, wanted)) : 1.0;
   return substeps;
 }
 
@@ -189,7 +192,7 @@ IslandOutcome runIsland(IslandStep& step) {
   Simulation& simulation = step.simulation;
   const Settings& settings = simulation.scene.settings;
   IslandOutcome outcome;
-  step.rigid = isRigid(settings.method);
+  step.pointKind = pointKindOf(settings.method);
   if (simulation.frame == 0 && settings.method != Method::report) findTouching(step);
   if (isRigid(settings.method)) return runRigidSteps(step, rigidSubsteps(settings), 0.0);
   if (simulation.frame == 0 && settings.method != Method::report) startInEquilibrium(step);
@@ -265,10 +268,14 @@ bool runIslands(Simulation& simulation) {
   const ContactLaw law = contactLaw(simulation);
   prepareFrameStart(simulation);
   if (simulation.scene.settings.method == Method::report) prepareReportFrame(simulation);
-  if (isImplicit(simulation.scene.settings.method) || simulation.frame == 0) engine.trial.resize(engine.pairs.size());
-  if ((isImplicit(simulation.scene.settings.method) || isRigid(simulation.scene.settings.method)) &&
-      (engine.topologyChanged || engine.pose.size() != engine.pairs.size()))
-    engine.pose.assign(engine.pairs.size(), RelativePose{});
+  bool wide = false;
+  for (std::size_t i = 0; i < islands; ++i) wide = wide || engine.islands.island(i).size() >= kParallelBlocks;
+  engine.contacts.reserve(engine.pairs.size(), wide);
+  if (engine.topologyChanged) {
+    for (const std::int32_t contact : engine.pairs.contact) {
+      if (contact >= 0) engine.contacts.pose(contact) = RelativePose{};
+    }
+  }
   tbb::parallel_for(std::size_t{0}, islands, [&](std::size_t i) {
     const auto first = static_cast<std::size_t>(engine.pairStart[i]);
     IslandStep step{simulation,

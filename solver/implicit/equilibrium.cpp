@@ -37,8 +37,8 @@ constexpr double kLeanStep = 0.01;
 bool mayRest(const IslandStep& step) {
   std::vector<std::uint8_t> touches(step.simulation.model.blockCount(), 0);
   for (const std::int32_t at : step.pairs) {
-    const Manifold& manifold = step.engine.pairs[static_cast<std::size_t>(at)].manifold;
-    if (manifold.touch == PairPhase::separated) continue;
+    const ContactView manifold = contactOf(step.engine, static_cast<std::size_t>(at));
+    if (manifold.phase == PairPhase::separated) continue;
     touches[static_cast<std::size_t>(manifold.upper)] = 1;
     if (manifold.lower >= 0) touches[static_cast<std::size_t>(manifold.lower)] = 1;
   }
@@ -94,7 +94,7 @@ bool settle(IslandStep& step) {
 bool startInEquilibrium(IslandStep& step) {
   if (!mayRest(step)) return false;
   const Counters before = step.counters;
-  step.scaleMost = 1.0;
+  step.maxStiffening = 1.0;
   step.unforced = true;
   const double damping_s = step.law.dampingTime_s;
   step.law.dampingTime_s = std::min(damping_s, kMaxDamping * step.simulation.lengths.fallTime_s);

@@ -22,9 +22,11 @@ void setWeights(const BlockFrame& frame, const Vec3& place, std::size_t lane, La
 }
 
 // Force of a point on upper, N.
-double pushOf(const ContactLaw& law, const PointMemory& memory, std::size_t i, double stiffness, double depth) {
-  const double elastic = depth - memory.offset[i];
-  return std::max(0.0, stiffness * memory.scale[i] * (elastic + law.relaxingRatio * (elastic - memory.relaxed[i])));
+double pushOf(const ContactLaw& law, const ContactView& trial, std::size_t i, double stiffness, double depth) {
+  const PenaltyRow& row = trial.penalty(i);
+  const std::size_t lane = laneOf(i);
+  const double elastic = depth - row.restDepth[lane];
+  return std::max(0.0, stiffness * row.stiffening[lane] * (elastic + law.maxwellRatio * (elastic - row.maxwellDepth[lane])));
 }
 
 void addPair(const IslandStep& step, const NewtonSystem& island, std::size_t at, ActiveSetBits mask, Part part, double step_s,
@@ -32,8 +34,8 @@ void addPair(const IslandStep& step, const NewtonSystem& island, std::size_t at,
   if ((mask & 0xFFU) == 0) return;
   const Engine& engine = step.engine;
   const auto pair = static_cast<std::size_t>(island.touching[at]);
-  const Manifold& m = engine.pairs[pair].manifold;
-  const PointMemory& memory = engine.trial[pair];
+  const ContactView m = contactOf(engine, pair);
+  const ContactView trial = trialOf(engine, pair, m);
   const auto upper = static_cast<std::size_t>(m.upper);
   const BlockFrame* frameLower = m.lower < 0 ? nullptr : &engine.frames[static_cast<std::size_t>(m.lower)];
   static const AffineField kStill{};
@@ -53,7 +55,7 @@ void addPair(const IslandStep& step, const NewtonSystem& island, std::size_t at,
     for (std::size_t i = first; i < std::min(first + 4, static_cast<std::size_t>(m.count)); ++i) {
       if ((mask >> i & 1U) == 0) continue;
       const std::size_t lane = i - first;
-      const PointStiffness resists = pointStiffness(step, m, memory, mask, i, step_s);
+      const PointStiffness resists = pointStiffness(step, m, trial, mask, i, step_s);
       setWeights(engine.frames[upper], points.place[i], lane, tangent.upperWeight);
       if (frameLower != nullptr) setWeights(*frameLower, points.lowerPlace[i], lane, tangent.lowerWeight);
       tangent.isotropic[lane] = sign * resists.tangential;
@@ -63,7 +65,7 @@ void addPair(const IslandStep& step, const NewtonSystem& island, std::size_t at,
       const bool slides = (mask >> (8 + i) & 1U) != 0;
       if (part == Part::factors || !slides) continue;
       tangent.coupling[lane] = friction * resists.normal;
-      const Vec3 push = pushOf(step.law, memory, i, stiffness, points.depth[i]) * (normalOf(tangent) - friction * resists.slip);
+      const Vec3 push = pushOf(step.law, trial, i, stiffness, points.depth[i]) * (normalOf(tangent) - friction * resists.slip);
       for (std::size_t k = 0; k < 3; ++k) tangent.push[k][lane] = push[static_cast<Eigen::Index>(k)];
     }
   }
@@ -84,35 +86,42 @@ SPRINGTOWER_INLINE void addMotion(const double* d, const Lanes (&weight)[3], dou
 }  // namespace
 
 ActiveSetBits activeSetBits(const IslandStep& step, const NewtonSystem& island, std::size_t at) {
-  const auto pair = static_cast<std::size_t>(island.touching[at]);
-  const Manifold& manifold = step.engine.pairs[pair].manifold;
-  const PointMemory& trial = step.engine.trial[pair];
-  const PointMemory& slid = island.trialIsAhead ? trial : manifold;
+  const ContactPool& contacts = step.engine.contacts;
+  const std::int32_t contact = step.engine.pairs.contact[static_cast<std::size_t>(island.touching[at])];
+  const ConstPointRows trial = contacts.trial(contact);
+  const ConstPointRows slid = island.trialIsAhead ? trial : contacts.points(contact);
+  const auto count = static_cast<std::size_t>(contacts.shape(contact).count);
   const double least = island.useConsistentTangent ? 1.0 : kUnpressed;
   unsigned mask = 0;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(manifold.count); ++i) {
-    if (trial.live[i] < least) continue;
-    mask |= 1U << i;
-    if (slid.sliding[i] != 0.0) mask |= 0x100U << i;
+  for (std::size_t first = 0; first < count; first += kRowPoints) {
+    const FourValues& touching = trial[rowOf(first)]->penalty.touching;
+    const FourValues& slipRatio = slid[rowOf(first)]->penalty.slipRatio;
+    for (std::size_t lane = 0; lane < kRowPoints && first + lane < count; ++lane) {
+      if (touching[lane] < least) continue;
+      mask |= 1U << (first + lane);
+      if (slipRatio[lane] != 0.0) mask |= 0x100U << (first + lane);
+    }
   }
   return static_cast<ActiveSetBits>(mask);
 }
 
-PointStiffness pointStiffness(const IslandStep& step, const Manifold& manifold, const PointMemory& memory, ActiveSetBits mask,
+PointStiffness pointStiffness(const IslandStep& step, const ContactView& manifold, const ContactView& trial, ActiveSetBits mask,
                               std::size_t i, double step_s) {
   const ContactLaw& law = step.law;
   const double stiffness = manifold.lower < 0 ? law.floorStiffness_n_m : law.stiffness_n_m;
-  const bool born = manifold.live[i] == 0.0;  // in this step, in which its dashpot has closed by its depth
+  const PenaltyRow& row = trial.penalty(i);
+  const std::size_t lane = laneOf(i);
+  const bool born = touchingAt(manifold, i) == 0.0;  // in this step, in which its dashpot has closed by its depth
   const double damping = law.dampingTime_s / step_s;
-  const double relaxing = born ? law.relaxingRatio : law.relaxingRatio * law.relaxingTime_s / (law.relaxingTime_s + step.drift_s);
-  const double k = stiffness * std::max(1.0, memory.scale[i]);
+  const double relaxing = born ? law.maxwellRatio : law.maxwellRatio * law.maxwellTime_s / (law.maxwellTime_s + step.drift_s);
+  const double k = stiffness * std::max(1.0, row.stiffening[lane]);
   PointStiffness result;
   result.normal = k * (1.0 + relaxing + (born ? law.dampingTime_s / step.drift_s : damping));
   result.tangential = k * (law.tangentialRatio * (1.0 + damping));
   if ((mask >> (8 + i) & 1U) != 0) {
     // Until something has moved it slides as it slid before.
-    result.tangential *= memory.sliding[i] > 0.0 ? memory.sliding[i] : manifold.sliding[i];
-    result.slip = Vec3(memory.stretchX[i], memory.stretchY[i], memory.stretchZ[i]).normalized();
+    result.tangential *= row.slipRatio[lane] > 0.0 ? row.slipRatio[lane] : manifold.penalty(i).slipRatio[lane];
+    result.slip = vectorAt(row.displacement, i).normalized();
   }
   return result;
 }

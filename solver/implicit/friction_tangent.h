@@ -20,7 +20,7 @@ struct PointStiffness {
 };
 
 /// Of point `i`, which stands as `mask` says. `step_s` is the step times the method's factor.
-PointStiffness pointStiffness(const IslandStep& step, const Manifold& manifold, const PointMemory& memory, ActiveSetBits mask,
+PointStiffness pointStiffness(const IslandStep& step, const ContactView& manifold, const ContactView& trial, ActiveSetBits mask,
                               std::size_t i, double step_s);
 
 /// What the factors know of a pair (position in island.touching) whose points stand as `mask` says: appended to `to`.

@@ -151,32 +151,14 @@ void applyStep(IslandStep& step, const NewtonSystem& island, double share, doubl
   }
 }
 
-SPRINGTOWER_INLINE void copyPoints(const PointMemory& from, std::int32_t count, PointMemory& to) {
-  if (count > 4) {
-    to = from;
-    return;
-  }
-  const auto copy = [](const auto& source, auto& target) {
-    Lanes lanes;
-    load(source.data(), lanes);
-    store(lanes, target.data());
-  };
-  copy(from.stretchX, to.stretchX);
-  copy(from.stretchY, to.stretchY);
-  copy(from.stretchZ, to.stretchZ);
-  copy(from.relaxed, to.relaxed);
-  copy(from.offset, to.offset);
-  copy(from.scale, to.scale);
-  copy(from.live, to.live);
-  copy(from.sliding, to.sliding);
-}
-
 SPRINGTOWER_KERNEL
 void accept(IslandStep& step, NewtonSystem& island) {
   Engine& engine = step.engine;
   for (const std::int32_t at : island.touching) {
-    Manifold& manifold = engine.pairs[static_cast<std::size_t>(at)].manifold;
-    copyPoints(engine.trial[static_cast<std::size_t>(at)], manifold.count, manifold);
+    const std::int32_t contact = engine.pairs.contact[static_cast<std::size_t>(at)];
+    const PointRows points = engine.contacts.points(contact);
+    const PointRows trial = engine.contacts.trial(contact);
+    for (std::size_t r = 0; r < kManifoldRows && points[r] != nullptr; ++r) *points[r] = *trial[r];
   }
   for (const std::int32_t block : step.blocks) {
     BlockHistory& history = engine.blockHistory[static_cast<std::size_t>(block)];

@@ -62,10 +62,10 @@ bool isQuiescent(const IslandStep& step) {
 // Whether the island touches a sleeping block. Sleepers wake on a change of contact force; with fewer than kImplicitSteps steps,
 // numerical damping would filter out the vibration that should wake them.
 bool touchesSleeping(const IslandStep& step) {
-  return std::any_of(step.pairs.begin(), step.pairs.end(), [&](std::int32_t at) {
-    const NearPair& pair = step.engine.pairs[static_cast<std::size_t>(at)];
-    return pair.b >= 0 && pair.manifold.touch != PairPhase::separated &&
-           (sleeps(step.simulation, pair.a) || sleeps(step.simulation, pair.b));
+  return std::any_of(step.pairs.begin(), step.pairs.end(), [&](std::int32_t pair) {
+    const auto at = static_cast<std::size_t>(pair);
+    const BlockPair& key = step.engine.pairs.key[at];
+    return key.b >= 0 && step.engine.pairs.touches(at) && (sleeps(step.simulation, key.a) || sleeps(step.simulation, key.b));
   });
 }
 
@@ -160,7 +160,7 @@ void setJacobians(IslandStep& step, double effective_s) {
 bool implicitStepsFit(const IslandStep& step, double step_s) {
   const Simulation& simulation = step.simulation;
   const bool touches = std::any_of(step.pairs.begin(), step.pairs.end(), [&](std::int32_t at) {
-    return step.engine.pairs[static_cast<std::size_t>(at)].manifold.touch != PairPhase::separated;
+    return step.engine.pairs.touches(static_cast<std::size_t>(at));
   });
   if (!touches || meetsSoon(step, step_s) || bounces(step, step_s)) return false;
   for (const std::int32_t block : step.blocks) {
@@ -204,7 +204,7 @@ IslandOutcome runImplicitSteps(IslandStep& step, bool heap, double& reached_s) {
   };
   takeSteps(steps);
   // A heap that steps do not converge for lies well with rigid ones, as it did before.
-  step.scaleMost = 1.0;
+  step.maxStiffening = 1.0;
   island.forcesKnown = known;
   while (steps > 0) {
     step.time_s = simulation.time_s + reached_s;

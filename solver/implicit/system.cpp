@@ -111,7 +111,8 @@ SPRINGTOWER_INLINE void addProduct(double factor, const Weights& p, const Weight
 SPRINGTOWER_KERNEL
 void addManifold(const IslandStep& step, NewtonSystem& island, std::size_t at, double step_s) {
   const Engine& engine = step.engine;
-  const Manifold& m = engine.pairs[static_cast<std::size_t>(island.touching[at])].manifold;
+  const auto pair = static_cast<std::size_t>(island.touching[at]);
+  const ContactView m = contactOf(engine, pair);
   const ActiveSetBits mask = island.mask[at];
   if ((mask & 0xFFU) == 0) return;
   const auto upper = static_cast<std::size_t>(m.upper);
@@ -120,7 +121,7 @@ void addManifold(const IslandStep& step, NewtonSystem& island, std::size_t at, d
   static const AffineField kStill{};
   const PointForces points = pointForces(m, {&frameUpper, &kStill, &kStill}, {frameLower, &kStill, &kStill}, step.law);
 
-  const PointMemory& memory = engine.trial[static_cast<std::size_t>(island.touching[at])];
+  const ContactView trial = trialOf(engine, pair, m);
   BlockCholesky& matrix = island.matrix;
   const auto diagonalOf = [&](std::size_t block) {
     return matrix.diagonal.data() +
@@ -137,7 +138,7 @@ void addManifold(const IslandStep& step, NewtonSystem& island, std::size_t at, d
   Coupling upperNormal{}, upperTangential{}, lowerNormal{}, lowerTangential{}, crossNormal{}, crossTangential{};
   for (std::size_t i = 0; i < static_cast<std::size_t>(m.count); ++i) {
     if ((mask >> i & 1U) == 0) continue;
-    const auto [normal, tangential, along] = pointStiffness(step, m, memory, mask, i, step_s);
+    const auto [normal, tangential, along] = pointStiffness(step, m, trial, mask, i, step_s);
     const bool slides = (mask >> (8 + i) & 1U) != 0;
     const Weights wu = weightsAt(frameUpper, points.place[i]);
     if (slides && ofUpper != nullptr) takeAlong(tangential, wu, wu, along, ofUpper);
@@ -190,7 +191,7 @@ std::size_t firstBlock(const IslandStep& step) {
 }
 
 // Whether a touching pair couples two nodes: neither side is the floor or asleep.
-bool isCoupled(const IslandStep& step, const Manifold& m) {
+bool isCoupled(const IslandStep& step, const ManifoldShape& m) {
   const std::vector<std::uint8_t>& asleep = step.simulation.asleep;
   return m.lower >= 0 && asleep[static_cast<std::size_t>(m.upper)] == 0 && asleep[static_cast<std::size_t>(m.lower)] == 0;
 }
@@ -201,8 +202,8 @@ void findEdges(const IslandStep& step, NewtonSystem& island) {
   island.edges.clear();
   island.touching.clear();
   for (const std::int32_t at : step.pairs) {
-    const Manifold& m = engine.pairs[static_cast<std::size_t>(at)].manifold;
-    if (m.touch == PairPhase::separated) continue;
+    if (!engine.pairs.touches(static_cast<std::size_t>(at))) continue;
+    const ManifoldShape m = shapeOf(engine, static_cast<std::size_t>(at));
     island.touching.push_back(at);
     if (!isCoupled(step, m)) continue;
     island.edges.push_back({engine.nodeOf[static_cast<std::size_t>(m.upper)], engine.nodeOf[static_cast<std::size_t>(m.lower)]});
@@ -250,7 +251,7 @@ void findSlots(const IslandStep& step, NewtonSystem& island) {
   const Engine& engine = step.engine;
   island.slot.clear();
   for (const std::int32_t at : island.touching) {
-    const Manifold& m = engine.pairs[static_cast<std::size_t>(at)].manifold;
+    const ManifoldShape m = shapeOf(engine, static_cast<std::size_t>(at));
     island.slot.push_back(isCoupled(step, m) ? slotOf(island.matrix, engine.nodeOf[static_cast<std::size_t>(m.upper)],
                                                       engine.nodeOf[static_cast<std::size_t>(m.lower)])
                                              : BlockSlot{});
@@ -274,8 +275,8 @@ void layOut(IslandStep& step, NewtonSystem& island) {
   for (const std::int32_t block : step.blocks) hash.word(static_cast<std::uint64_t>(block));
   const std::uint64_t members = hash.value();
   for (const std::int32_t at : step.pairs) {
-    const Manifold& m = engine.pairs[static_cast<std::size_t>(at)].manifold;
-    if (m.touch == PairPhase::separated) continue;
+    if (!engine.pairs.touches(static_cast<std::size_t>(at))) continue;
+    const ManifoldShape m = shapeOf(engine, static_cast<std::size_t>(at));
     hash.word(static_cast<std::uint64_t>(m.upper) << 32U | static_cast<std::uint32_t>(m.lower));
     hash.word(static_cast<std::uint64_t>(at));
     if (m.lower >= 0) {

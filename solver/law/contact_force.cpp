@@ -11,7 +11,7 @@ namespace springtower {
 
 namespace {
 
-constexpr double kMinRelaxingRatio = 1e-9;  // stands for none: no branch, no lag
+constexpr double kMinMaxwellRatio = 1e-9;  // stands for none: no branch, no lag
 constexpr double kMinShare = 1e-30;         // of friction, left to a point that slides unpressed: that it slides must be seen
 
 // Inverse mass of a point of a face whose four points are pushed alike, over that of the block: 4 (1 + 3), as it moves and
@@ -23,21 +23,21 @@ struct LawStep {
   const ContactStep& step;
   double stiffness;     // N/m
   double impactFactor;  // stiffness scale per squared approach speed
-  double scaleKeep;     // what is left of a scale's excess after the step
-  double relaxGain;     // how much of its lag the relaxing branch forgets in the step
+  double stiffeningKeep;     // what is left of a scale's excess after the step
+  double maxwellGain;     // how much of its lag the relaxing branch forgets in the step
   double perAdvance;    // 1/s; 0 where the memory is not advanced
   double pointMass;     // kg that a point moves at least: all four of a face that is hit flat push and squash the block
 };
 
-SPRINGTOWER_INLINE LawStep lawStep(const Manifold& m, const ContactLaw& law, const ContactStep& step, double reducedMass) {
+SPRINGTOWER_INLINE LawStep lawStep(const ContactView& m, const ContactLaw& law, const ContactStep& step, double reducedMass) {
   const double aim = law.impactPenetration_m;
   const double stiffness = m.lower < 0 ? law.floorStiffness_n_m : law.stiffness_n_m;
   return {law,
           step,
           stiffness,
           reducedMass / (stiffness * aim * aim),
-          1.0 / (1.0 + step.advance_s / law.scaleTime_s),
-          step.advance_s / (law.relaxingTime_s + step.advance_s),
+          1.0 / (1.0 + step.advance_s / law.stiffeningTime_s),
+          step.advance_s / (law.maxwellTime_s + step.advance_s),
           step.advance_s > 0.0 ? 1.0 / step.advance_s : 0.0,
           reducedMass / kFlatInverse};
 }
@@ -64,27 +64,27 @@ SPRINGTOWER_INLINE void frictionLaw(const LawStep& s, const PointState& state, c
   const LaneMask touching = state.touching;
   const Lanes push = p.normalForce;
   const Lanes carriedNormal = carried[0] * normal[0] + carried[1] * normal[1] + carried[2] * normal[2];
-  Lanes stretch[3];
+  Lanes displacement[3];
   Lanes slip[3];
   for (int a = 0; a < 3; ++a) {
-    stretch[a] = p.stretch[a] + (carried[a] - carriedNormal * normal[a]) * s.step.advance_s;
+    displacement[a] = p.displacement[a] + (carried[a] - carriedNormal * normal[a]) * s.step.advance_s;
     slip[a] = relative[a] + state.closing * normal[a];
   }
-  const Lanes outOfPlane = stretch[0] * normal[0] + stretch[1] * normal[1] + stretch[2] * normal[2];
+  const Lanes outOfPlane = displacement[0] * normal[0] + displacement[1] * normal[1] + displacement[2] * normal[2];
   const Lanes tangential = state.stiffness * law.tangentialRatio;
   Lanes friction[3];
   for (int a = 0; a < 3; ++a) {
-    stretch[a] -= outOfPlane * normal[a];
-    friction[a] = -tangential * (stretch[a] + law.dampingTime_s * slip[a]);
+    displacement[a] -= outOfPlane * normal[a];
+    friction[a] = -tangential * (displacement[a] + law.dampingTime_s * slip[a]);
   }
   const Lanes squared = friction[0] * friction[0] + friction[1] * friction[1] + friction[2] * friction[2];
-  const Lanes coefficient = p.sliding > zero ? zero + law.kineticFriction : zero + law.staticFriction;
+  const Lanes coefficient = p.slipRatio > zero ? zero + law.kineticFriction : zero + law.staticFriction;
   const Lanes sticking = coefficient * push;
   const LaneMask slides = squared > sticking * sticking;
   if (!any(slides)) {
-    p.sliding = zero;
+    p.slipRatio = zero;
     for (int a = 0; a < 3; ++a) {
-      p.stretch[a] = touching ? stretch[a] : zero;
+      p.displacement[a] = touching ? displacement[a] : zero;
       p.force[a] = push * normal[a] + friction[a];
     }
     return;
@@ -92,14 +92,14 @@ SPRINGTOWER_INLINE void frictionLaw(const LawStep& s, const PointState& state, c
   Lanes size;
   squareRoot(squared, size);
   const Lanes keep = slides ? law.kineticFriction * push / size : one;
-  p.sliding = slides & touching ? (keep > kMinShare ? keep : zero + kMinShare) : zero;
+  p.slipRatio = slides & touching ? (keep > kMinShare ? keep : zero + kMinShare) : zero;
   // What slips frees a little of the offset; friction's own loss pays for the work.
-  Lanes stretchSize;
-  squareRoot(stretch[0] * stretch[0] + stretch[1] * stretch[1] + stretch[2] * stretch[2], stretchSize);
-  const Lanes freed = p.offset - law.offsetPerSlip * (1.0 - keep) * stretchSize;
-  p.offset = state.known ? (freed > zero ? freed : zero) : p.offset;
+  Lanes displacementSize;
+  squareRoot(displacement[0] * displacement[0] + displacement[1] * displacement[1] + displacement[2] * displacement[2], displacementSize);
+  const Lanes freed = p.restDepth - law.restDepthPerSlip * (1.0 - keep) * displacementSize;
+  p.restDepth = state.known ? (freed > zero ? freed : zero) : p.restDepth;
   for (int a = 0; a < 3; ++a) {
-    p.stretch[a] = touching ? stretch[a] * keep : zero;
+    p.displacement[a] = touching ? displacement[a] * keep : zero;
     p.force[a] = push * normal[a] + friction[a] * keep;
   }
 }
@@ -117,36 +117,36 @@ SPRINGTOWER_INLINE void pointLaw(const LawStep& s, const Lanes& depth, const Lan
   // unloaded and adds no energy. Stiffness is multiplied so that the impact at the present closing speed stops within the impact
   // depth. The offset shrinks with the depth as the point lifts, where the spring stores nothing.
   const LaneMask touching = (depth > zero) & (inUse > zero);
-  const LaneMask known = touching & (p.live > zero);
+  const LaneMask known = touching & (p.touching > zero);
   Lanes impact = s.impactFactor * closing * closing;
   impact = impact > one ? impact : one;
-  impact = impact < s.step.scaleMost ? impact : zero + s.step.scaleMost;
-  p.scale = known ? 1.0 + (p.scale - 1.0) * s.scaleKeep : impact;
-  const Lanes lower = p.offset < depth ? p.offset : depth;
-  p.offset = known ? lower : depth * s.step.bornOffset;
+  impact = impact < s.step.maxStiffening ? impact : zero + s.step.maxStiffening;
+  p.stiffening = known ? 1.0 + (p.stiffening - 1.0) * s.stiffeningKeep : impact;
+  const Lanes lower = p.restDepth < depth ? p.restDepth : depth;
+  p.restDepth = known ? lower : depth * s.step.bornRestDepth;
 
-  const Lanes elastic = depth - p.offset;
-  const Lanes relaxed = p.relaxed + (elastic - p.relaxed) * s.relaxGain;
+  const Lanes elastic = depth - p.restDepth;
+  const Lanes maxwell = p.maxwellDepth + (elastic - p.maxwellDepth) * s.maxwellGain;
   const Lanes pushedOut =
-      elastic * (1.0 + 1.0 / std::max(law.relaxingRatio, kMinRelaxingRatio));  // beyond this the branch would pull
-  p.relaxed = known ? (relaxed < pushedOut ? relaxed : pushedOut) : zero;
-  const Lanes stiffness = s.stiffness * p.scale;
+      elastic * (1.0 + 1.0 / std::max(law.maxwellRatio, kMinMaxwellRatio));  // beyond this the branch would pull
+  p.maxwellDepth = known ? (maxwell < pushedOut ? maxwell : pushedOut) : zero;
+  const Lanes stiffness = s.stiffness * p.stiffening;
   // Implicit steps only: a point that makes contact inside the step has been closing for a part of it. Its damping velocity is
   // limited to depth / step; otherwise the damping force would jump at zero depth, and the step equation might have no solution.
   // (In explicit steps such a point has no elastic depth yet, so no force.)
   const Lanes damped = known | (depth > closing * s.step.advance_s) ? closing : depth * s.perAdvance;
-  Lanes push = stiffness * (elastic + law.relaxingRatio * (elastic - p.relaxed) + law.dampingTime_s * damped);
+  Lanes push = stiffness * (elastic + law.maxwellRatio * (elastic - p.maxwellDepth) + law.dampingTime_s * damped);
   push = touching & (push > zero) & (elastic > zero) ? push : zero;
-  if (s.step.kick_s > 0.0 && any(p.scale > one)) {
+  if (s.step.kick_s > 0.0 && any(p.stiffening > one)) {
     // A point that is thrown back within the step is given no more energy than it came with and its spring stores.
-    const Lanes spring = stiffness * (elastic + law.relaxingRatio * (elastic - p.relaxed));
+    const Lanes spring = stiffness * (elastic + law.maxwellRatio * (elastic - p.maxwellDepth));
     const Lanes given = closing * closing + spring * (elastic - closing * s.step.kick_s) / s.pointMass;
     Lanes back;
     squareRoot(given > zero ? given : zero, back);
     const Lanes most = (closing + back) * (s.pointMass / s.step.kick_s);
-    push = (p.scale > one) & (push > most) ? (most > zero ? most : zero) : push;
+    push = (p.stiffening > one) & (push > most) ? (most > zero ? most : zero) : push;
   }
-  p.live = touching ? (push > zero ? one : zero + kUnpressed) : zero;
+  p.touching = touching ? (push > zero ? one : zero + kUnpressed) : zero;
   p.normalForce = push;
   frictionLaw(s, {touching, known, closing, stiffness}, relative, carried, normal, p);
 }
@@ -244,8 +244,8 @@ void reportFace(const FacePoints& p, const PointLanes& points, const double* nor
 }
 
 template <bool Floor, bool SameMotion>
-SPRINGTOWER_INLINE void faceForces(const Manifold& m, const ContactSide& upper, const ContactSide& lower, const LawStep& law,
-                                   PointMemory* keep, PairForce& result, PointForces* report) {
+SPRINGTOWER_INLINE void faceForces(const ContactView& m, const ContactSide& upper, const ContactSide& lower, const LawStep& law,
+                                   const PointRows* keep, PairForce& result, PointForces* report) {
   const FaceAxes& upperFace = kFaceAxes[static_cast<std::size_t>(m.incidentFace)];
   const FaceAxes& lowerFace = kFaceAxes[static_cast<std::size_t>(m.referenceFace)];
   MovingFace above;
@@ -261,21 +261,24 @@ SPRINGTOWER_INLINE void faceForces(const Manifold& m, const ContactSide& upper, 
   }
 
   const Lanes zero = {0.0, 0.0, 0.0, 0.0};
-  Lanes onUpper[3] = {zero, zero, zero};
-  Lanes onLower[3] = {zero, zero, zero};
+  Lanes onUpper[3];
+  Lanes onLower[3];
+  onUpper[0] = onUpper[1] = onUpper[2] = zero;
+  onLower[0] = onLower[1] = onLower[2] = zero;
   const auto count = static_cast<std::size_t>(m.count);
-  for (std::size_t first = 0; first < count; first += 4) {
+  for (std::size_t row = 0, first = 0; first < count; ++row, first += kRowPoints) {
+    const PlaceRow& place = *m.place[row];
     FacePoints p;
-    load(m.u.data() + first, p.u);
-    load(m.v.data() + first, p.v);
+    load(place.u.data(), p.u);
+    load(place.v.data(), p.v);
     const double left = static_cast<double>(count - first);
     const Lanes inUse = Lanes{0.0, 1.0, 2.0, 3.0} < left ? zero + 1.0 : zero;
     placePoints<Floor, SameMotion>(above, below, p);
 
     PointLanes points;
-    loadPoints(m, first, points);
+    loadPoints(m.points[row]->penalty, points);
     pointLaw(law, p.depth, p.relative, SameMotion ? p.relative : p.carried, below.normal, inUse, points);
-    if (keep != nullptr) storePoints(points, first, *keep);
+    if (keep != nullptr) storePoints(points, (*keep)[row]->penalty);
     for (int k = 0; k < 3; ++k) {
       const Lanes& f = points.force[k];
       Lanes total;
@@ -295,8 +298,8 @@ SPRINGTOWER_INLINE void faceForces(const Manifold& m, const ContactSide& upper, 
 }
 
 // Edges that cross: one point, whose normal is the edges' common normal and whose places are where they come closest.
-SPRINGTOWER_INLINE void edgeForces(const Manifold& m, const ContactSide& upper, const ContactSide& lower, const LawStep& law,
-                                   PointMemory* keep, PairForce& result, PointForces* report) {
+SPRINGTOWER_INLINE void edgeForces(const ContactView& m, const ContactSide& upper, const ContactSide& lower, const LawStep& law,
+                                   const PointRows* keep, PairForce& result, PointForces* report) {
   const EdgeAxes edgeUpper = edgeAxes(m.incidentFace);
   const EdgeAxes edgeLower = edgeAxes(m.referenceFace);
   Crossing crossing;
@@ -313,9 +316,9 @@ SPRINGTOWER_INLINE void edgeForces(const Manifold& m, const ContactSide& upper, 
     carried[k] = zero + (onEdge(*upper.carried, edgeUpper, t1, k) - onEdge(*lower.carried, edgeLower, t2, k));
   }
   PointLanes points;
-  loadPoints(m, 0, points);
+  loadPoints(m.penalty(0), points);
   pointLaw(law, zero + depth, relative, carried, normal, Lanes{1.0, 0.0, 0.0, 0.0}, points);
-  if (keep != nullptr) storePoints(points, 0, *keep);
+  if (keep != nullptr) storePoints(points, (*keep)[0]->penalty);
   const auto apply = [](const EdgeAxes& edge, double t, double f, std::size_t k, AffineField& force) {
     force.centre[k] = f;
     force.side[edge.along][k] = t * f;
@@ -338,10 +341,10 @@ SPRINGTOWER_INLINE void edgeForces(const Manifold& m, const ContactSide& upper, 
   }
 }
 
-SPRINGTOWER_INLINE void evaluate(const Manifold& m, const ContactSide& upper, const ContactSide& lower, const LawStep& law,
-                                 PointMemory* keep, PairForce& result, PointForces* report) {
+SPRINGTOWER_INLINE void evaluate(const ContactView& m, const ContactSide& upper, const ContactSide& lower, const LawStep& law,
+                                 const PointRows* keep, PairForce& result, PointForces* report) {
   const bool same = upper.carried == upper.motion;
-  if (m.touch == PairPhase::edge) {
+  if (m.phase == PairPhase::edge) {
     edgeForces(m, upper, lower, law, keep, result, report);
   } else if (m.lower < 0) {
     same ? faceForces<true, true>(m, upper, lower, law, keep, result, report)
@@ -355,13 +358,13 @@ SPRINGTOWER_INLINE void evaluate(const Manifold& m, const ContactSide& upper, co
 }  // namespace
 
 SPRINGTOWER_KERNEL
-void manifoldForces(const Manifold& manifold, const ContactSide& upper, const ContactSide& lower, const ContactLaw& law,
-                    const ContactStep& step, double reducedMass_kg, PointMemory* keep, PairForce& result) {
+void manifoldForces(const ContactView& manifold, const ContactSide& upper, const ContactSide& lower, const ContactLaw& law,
+                    const ContactStep& step, double reducedMass_kg, const PointRows* keep, PairForce& result) {
   const LawStep constants = lawStep(manifold, law, step, reducedMass_kg);
   evaluate(manifold, upper, lower, constants, keep, result, nullptr);
 }
 
-PointForces pointForces(const Manifold& manifold, const ContactSide& upper, const ContactSide& lower, const ContactLaw& law) {
+PointForces pointForces(const ContactView& manifold, const ContactSide& upper, const ContactSide& lower, const ContactLaw& law) {
   PairForce unused;
   PointForces report;
   const ContactStep now;

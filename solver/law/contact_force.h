@@ -13,25 +13,25 @@ namespace springtower {
 struct ContactLaw {
   double stiffness_n_m = 0.0;        ///< k between blocks, N/m
   double floorStiffness_n_m = 0.0;   ///< k on the floor, N/m
-  double relaxingRatio = 0.0;        ///< stiffness of the relaxing branch over k
-  double relaxingTime_s = 1.0;       ///< its relaxation time, s
+  double maxwellRatio = 0.0;        ///< stiffness of the relaxing branch over k
+  double maxwellTime_s = 1.0;       ///< its relaxation time, s
   double dampingTime_s = 0.0;        ///< dashpot over stiffness, s
   double tangentialRatio = 1.0;      ///< tangential stiffness over k
   double staticFriction = 0.0;       ///< Coulomb's coefficient while it sticks
   double kineticFriction = 0.0;      ///< and while it slides
   double impactPenetration_m = 1.0;  ///< depth aimed at in an impact; decides how much a new contact is stiffened
-  double scaleTime_s = 1.0;          ///< s in which that stiffening fades
-  double offsetPerSlip = 0.0;  ///< how much of the offset fades per length of slip; its work is paid by the slip's own friction
+  double stiffeningTime_s = 1.0;          ///< s in which that stiffening fades
+  double restDepthPerSlip = 0.0;  ///< how much of the offset fades per length of slip; its work is paid by the slip's own friction
 };
 
 /// What changes from step to step.
 struct ContactStep {
   double advance_s = 0.0;  ///< s by which the contact memory is behind the positions
-  double scaleMost = 1.0;  ///< most a contact that is born now may be stiffened
+  double maxStiffening = 1.0;  ///< most a contact that is born now may be stiffened
   /// Where a point that is reached now starts to push: at 1 from the depth it is found at, which adds no energy; at 0 from the
   /// surface, which an implicit step needs, as it looks at the step's end alone. Its dashpot then closes by its depth in the
   /// step.
-  double bornOffset = 1.0;
+  double bornRestDepth = 1.0;
   double kick_s = 0.0;  ///< s for which the force acts on the velocities of a leapfrog step; 0 in other steps
 };
 
@@ -59,14 +59,14 @@ struct PointForces {
   Vec3 direction = Vec3::UnitZ();                ///< unit normal from lower to upper
 };
 
-/// Evaluates a manifold: advances a copy of its memory by `step.advance_s` and returns the forces. The advanced memory goes to
-/// `keep`, which may be the manifold itself, or null where it is not wanted. `reducedMass_kg` is that of the two blocks.
-/// Precondition: the manifold is not apart.
-void manifoldForces(const Manifold& manifold, const ContactSide& upper, const ContactSide& lower, const ContactLaw& law,
-                    const ContactStep& step, double reducedMass_kg, PointMemory* keep, PairForce& result);
+/// Evaluates a manifold: advances a copy of what its points store by `step.advance_s` and returns the forces. The advanced points
+/// go to `keep`, which may be the manifold's own rows, or null where they are not wanted. `reducedMass_kg` is that of the two blocks.
+/// Precondition: the manifold is of penalty points.
+void manifoldForces(const ContactView& manifold, const ContactSide& upper, const ContactSide& lower, const ContactLaw& law,
+                    const ContactStep& step, double reducedMass_kg, const PointRows* keep, PairForce& result);
 
 /// The same for reports: evaluates without advancing or keeping anything.
-PointForces pointForces(const Manifold& manifold, const ContactSide& upper, const ContactSide& lower, const ContactLaw& law);
+PointForces pointForces(const ContactView& manifold, const ContactSide& upper, const ContactSide& lower, const ContactLaw& law);
 
 /// Adds one affine field of forces to another.
 inline void addForce(const AffineField& part, AffineField& sum) {

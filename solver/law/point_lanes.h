@@ -5,35 +5,35 @@
 
 namespace springtower {
 
-/// Memory and force of up to four points of a manifold, as the contact law works on them.
+/// What four points of a manifold store, and their forces, as the contact law works on them.
 struct PointLanes {
-  Lanes stretch[3];
-  Lanes relaxed, offset, scale, live, sliding;
+  Lanes displacement[3];
+  Lanes maxwellDepth, restDepth, stiffening, touching, slipRatio;
   Lanes force[3];
   Lanes normalForce;
 };
 
-/// Reads the memory of four points from the first one named on, and writes it back.
-SPRINGTOWER_INLINE void loadPoints(const PointMemory& m, std::size_t first, PointLanes& p) {
-  load(m.stretchX.data() + first, p.stretch[0]);
-  load(m.stretchY.data() + first, p.stretch[1]);
-  load(m.stretchZ.data() + first, p.stretch[2]);
-  load(m.relaxed.data() + first, p.relaxed);
-  load(m.offset.data() + first, p.offset);
-  load(m.scale.data() + first, p.scale);
-  load(m.live.data() + first, p.live);
-  load(m.sliding.data() + first, p.sliding);
+/// Reads a row of points, and writes it back.
+SPRINGTOWER_INLINE void loadPoints(const PenaltyRow& row, PointLanes& p) {
+  load(row.displacement[0].data(), p.displacement[0]);
+  load(row.displacement[1].data(), p.displacement[1]);
+  load(row.displacement[2].data(), p.displacement[2]);
+  load(row.maxwellDepth.data(), p.maxwellDepth);
+  load(row.restDepth.data(), p.restDepth);
+  load(row.stiffening.data(), p.stiffening);
+  load(row.touching.data(), p.touching);
+  load(row.slipRatio.data(), p.slipRatio);
 }
 
-SPRINGTOWER_INLINE void storePoints(const PointLanes& p, std::size_t first, PointMemory& m) {
-  store(p.stretch[0], m.stretchX.data() + first);
-  store(p.stretch[1], m.stretchY.data() + first);
-  store(p.stretch[2], m.stretchZ.data() + first);
-  store(p.relaxed, m.relaxed.data() + first);
-  store(p.offset, m.offset.data() + first);
-  store(p.scale, m.scale.data() + first);
-  store(p.live, m.live.data() + first);
-  store(p.sliding, m.sliding.data() + first);
+SPRINGTOWER_INLINE void storePoints(const PointLanes& p, PenaltyRow& row) {
+  store(p.displacement[0], row.displacement[0].data());
+  store(p.displacement[1], row.displacement[1].data());
+  store(p.displacement[2], row.displacement[2].data());
+  store(p.maxwellDepth, row.maxwellDepth.data());
+  store(p.restDepth, row.restDepth.data());
+  store(p.stiffening, row.stiffening.data());
+  store(p.touching, row.touching.data());
+  store(p.slipRatio, row.slipRatio.data());
 }
 
 }  // namespace springtower

@@ -216,7 +216,7 @@ bool collideWithFloor(IslandStep& step, std::int32_t block) {
 }
 
 bool collideBlocks(IslandStep& step, std::size_t pairAt) {
-  const NearPair& pair = step.engine.pairs[pairAt];
+  const BlockPair& pair = step.engine.pairs.key[pairAt];
   std::vector<std::uint32_t>& version = step.engine.report.version;
   const auto a = static_cast<std::size_t>(pair.a);
   const auto b = static_cast<std::size_t>(pair.b);
@@ -244,11 +244,11 @@ void resolveCollisions(IslandStep& step) {
     ++step.counters.responseIterations;
     any = false;
     for (const std::int32_t pairAt : step.pairs) {
-      const NearPair& pair = engine.pairs[static_cast<std::size_t>(pairAt)];
+      const BlockPair& pair = engine.pairs.key[static_cast<std::size_t>(pairAt)];
       if (pair.b < 0) any = collideWithFloor(step, pair.a) || any;
     }
     for (const std::int32_t pairAt : step.pairs) {
-      const NearPair& pair = engine.pairs[static_cast<std::size_t>(pairAt)];
+      const BlockPair& pair = engine.pairs.key[static_cast<std::size_t>(pairAt)];
       if (pair.b < 0) continue;
       // A pair found clear stays so while neither path changes.
       const std::array<std::uint32_t, 2> now = {engine.report.version[static_cast<std::size_t>(pair.a)],

@@ -14,14 +14,14 @@ struct Places {
   double normal[3];
 };
 
-SPRINGTOWER_INLINE void facePlaces(const Manifold& m, const AffineField& upper, const BlockFrame* lower, std::size_t first,
+SPRINGTOWER_INLINE void facePlaces(const ContactView& m, const AffineField& upper, const BlockFrame* lower, std::size_t first,
                                    Places& places) {
   const FaceAxes& lowerFace = kFaceAxes[static_cast<std::size_t>(m.referenceFace)];
   FaceField face;
   faceOf(upper, kFaceAxes[static_cast<std::size_t>(m.incidentFace)], face);
   Lanes u, v;
-  load(m.u.data() + first, u);
-  load(m.v.data() + first, v);
+  load(m.place[rowOf(first)]->u.data(), u);
+  load(m.place[rowOf(first)]->v.data(), v);
   Lanes point[3];
   at(face, u, v, point);
   double from[3] = {};
@@ -34,7 +34,7 @@ SPRINGTOWER_INLINE void facePlaces(const Manifold& m, const AffineField& upper, 
   for (std::size_t k = 0; k < 3; ++k) places.middle[k] = point[k] + 0.5 * places.depth * places.normal[k];
 }
 
-SPRINGTOWER_INLINE void edgePlaces(const Manifold& m, const AffineField& upper, const AffineField& lower, Places& places) {
+SPRINGTOWER_INLINE void edgePlaces(const ContactView& m, const AffineField& upper, const AffineField& lower, Places& places) {
   const EdgeAxes edgeUpper = edgeAxes(m.incidentFace);
   const EdgeAxes edgeLower = edgeAxes(m.referenceFace);
   Crossing crossing;
@@ -65,9 +65,11 @@ SPRINGTOWER_INLINE void shareOf(const SolverBody& body, const Lanes& normal, Sha
 }
 
 // What the point did in the step before, to start from.
-SPRINGTOWER_INLINE void recallImpulse(const Manifold& m, std::size_t i, double step_s, ContactConstraint& p) {
-  p.push = step_s * m.relaxed[i];
-  const Lanes friction = {m.stretchX[i], m.stretchY[i], m.stretchZ[i], 0.0};
+SPRINGTOWER_INLINE void warmStart(const ContactView& m, std::size_t i, double step_s, ContactConstraint& p) {
+  const ImpulseRow& row = m.impulse(i);
+  const std::size_t lane = laneOf(i);
+  p.push = step_s * row.normalForce[lane];
+  const Lanes friction = {row.friction[0][lane], row.friction[1][lane], row.friction[2][lane], 0.0};
   p.idle = !(p.push > 0.0);
   p.friction = (p.idle ? 0.0 : step_s) * (friction - sum(friction * p.normal) * p.normal);
   p.sliding = false;
@@ -79,13 +81,13 @@ struct Mover {
   Lanes centre;
 };
 
-SPRINGTOWER_INLINE void addPoints(const Manifold& m, const Mover& upper, const Mover& lower, const BlockFrame& upperFrame,
+SPRINGTOWER_INLINE void addPoints(const ContactView& m, const Mover& upper, const Mover& lower, const BlockFrame& upperFrame,
                                   const BlockFrame* lowerFrame, const Simulation& simulation, double step_s, std::int32_t pair,
                                   std::vector<ContactConstraint>& points) {
   const auto count = static_cast<std::size_t>(m.count);
   for (std::size_t first = 0; first < count; first += 4) {
     Places places;
-    if (m.touch == PairPhase::edge) {
+    if (m.phase == PairPhase::edge) {
       edgePlaces(m, upperFrame.place, lowerFrame->place, places);
     } else {
       facePlaces(m, upperFrame.place, lowerFrame, first, places);
@@ -111,9 +113,9 @@ SPRINGTOWER_INLINE void addPoints(const Manifold& m, const Mover& upper, const M
       p.normalMass = 1.0 / normal;
       // Across the normal both directions together ask for the rest, and each for no less than the masses alone.
       p.acrossMass = 1.0 / (up.all + low.all - normal - (upper.body.inverseMass + lower.body.inverseMass));
-      recallImpulse(m, i, step_s, p);
-      p.gap = m.offset[i] + pressedDepth(simulation, m, i) - places.depth[lane];
-      p.coefficient = m.sliding[i] != 0.0 ? simulation.scene.kineticFriction : simulation.scene.staticFriction;
+      warmStart(m, i, step_s, p);
+      p.gap = m.impulse(i).restDepth[lane] + pressedDepth(simulation, m, i) - places.depth[lane];
+      p.coefficient = slipsAt(m, i) ? simulation.scene.kineticFriction : simulation.scene.staticFriction;
       p.upper = upper.at;
       p.lower = lower.at;
       p.pair = pair;
@@ -144,12 +146,12 @@ void gatherPoints(IslandStep& step, RigidIsland& island, bool again) {
     return Mover{at, island.movers[static_cast<std::size_t>(at)], centre};
   };
   for (const std::int32_t at : step.activePairs) {
-    const Manifold& m = engine.pairs[static_cast<std::size_t>(at)].manifold;
-    if (m.touch == PairPhase::separated) continue;
+    const ContactView m = contactOf(engine, static_cast<std::size_t>(at));
+    if (m.phase == PairPhase::separated) continue;
     if (known != island.known.end() && known->pair == at) {
       for (; known != island.known.end() && known->pair == at; ++known) {
         island.points.push_back(*known);
-        recallImpulse(m, static_cast<std::size_t>(known->point), step.drift_s, island.points.back());
+        warmStart(m, static_cast<std::size_t>(known->point), step.drift_s, island.points.back());
       }
       continue;
     }
@@ -163,13 +165,13 @@ void gatherPoints(IslandStep& step, RigidIsland& island, bool again) {
 void keepPoints(IslandStep& step, const RigidIsland& island) {
   const double inverse = 1.0 / step.drift_s;
   for (const ContactConstraint& p : island.points) {
-    Manifold& m = step.engine.pairs[static_cast<std::size_t>(p.pair)].manifold;
     const auto i = static_cast<std::size_t>(p.point);
-    m.relaxed[i] = inverse * p.push;
-    m.stretchX[i] = inverse * p.friction[0];
-    m.stretchY[i] = inverse * p.friction[1];
-    m.stretchZ[i] = inverse * p.friction[2];
-    m.sliding[i] = p.sliding ? 1.0 : 0.0;
+    const std::size_t lane = laneOf(i);
+    const std::int32_t contact = step.engine.pairs.contact[static_cast<std::size_t>(p.pair)];
+    ImpulseRow& row = step.engine.contacts.points(contact)[rowOf(i)]->impulse;
+    row.normalForce[lane] = inverse * p.push;
+    for (std::size_t k = 0; k < 3; ++k) row.friction[k][lane] = inverse * p.friction[k];
+    row.slipping[lane] = p.sliding ? 1.0 : 0.0;
   }
 }
 

@@ -251,8 +251,8 @@ IslandOutcome runRigidSteps(IslandStep& step, int steps, double begin_s) {
   outcome.substeps = std::max(1, static_cast<int>(std::ceil(steps * (frame_s - begin_s) / frame_s - 1e-9)));
   step.drift_s = (frame_s - begin_s) / outcome.substeps;
   step.kick_s = step.advance_s = step.drift_s;
-  step.rigid = true;
   const Method method = simulation.scene.settings.method;
+  step.pointKind = method == Method::xpbd ? PointKind::anchor : PointKind::impulse;
   const bool sequential = method != Method::rigidLcp && method != Method::xpbd;
   readPoses(step);
   computeFrames(simulation.state.position, step.blocks, step.engine.frames);

@@ -35,8 +35,8 @@ void solvePoint(RigidIsland& island, RigidContact& contact, std::array<double, 3
   // and slip. What is left stays in the anchors and is made up for in the next steps.
   const std::array<double, 2> part = {contact.share * contact.mass[1], contact.share * contact.mass[2]};
   const Vec3 move = relativeMove(island, contact);
-  double first = push[1] - part[0] * (contact.stretch[0] + move.dot(contact.direction[1]));
-  double second = push[2] - part[1] * (contact.stretch[1] + move.dot(contact.direction[2]));
+  double first = push[1] - part[0] * (contact.anchor_m[0] + move.dot(contact.direction[1]));
+  double second = push[2] - part[1] * (contact.anchor_m[1] + move.dot(contact.direction[2]));
   // A point that carries nothing in this pass, but did in the step before, keeps its hold.
   const double load = std::max(normal, before);
   boundFriction(first, second, contact.coefficient * load);
@@ -50,11 +50,11 @@ void solvePoint(RigidIsland& island, RigidContact& contact, std::array<double, 3
 // slide.
 void dragAnchor(const RigidIsland& island, double kinetic, RigidContact& contact) {
   const Vec3 move = relativeMove(island, contact);
-  for (std::size_t k = 0; k < 2; ++k) contact.stretch[k] += move.dot(contact.direction[k + 1]);
+  for (std::size_t k = 0; k < 2; ++k) contact.anchor_m[k] += move.dot(contact.direction[k + 1]);
   const double load = std::max(contact.impulse[0], contact.loadBefore);
   const double part = contact.share * std::min(contact.mass[1], contact.mass[2]);
-  contact.sliding = boundFriction(contact.stretch[0], contact.stretch[1], contact.coefficient * load / part);
-  if (contact.sliding) boundFriction(contact.stretch[0], contact.stretch[1], kinetic * load / part);
+  contact.sliding = boundFriction(contact.anchor_m[0], contact.anchor_m[1], contact.coefficient * load / part);
+  if (contact.sliding) boundFriction(contact.anchor_m[0], contact.anchor_m[1], kinetic * load / part);
 }
 
 // Corrections become velocities, but what pushed two blocks apart does not throw them, and an anchor that pulled does not swing:

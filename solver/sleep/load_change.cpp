@@ -27,25 +27,27 @@ double weightOf(const Simulation& simulation, std::int32_t block) {
 }
 
 // How block a of a pair is pushed now.
-ContactWrench pushOnA(const Simulation& simulation, const NearPair& pair) {
-  ContactWrench push = contactWrenchOnUpper(simulation, pair.manifold);
-  if (pair.manifold.upper == pair.a) return push;
+ContactWrench pushOnA(const Simulation& simulation, std::size_t at) {
+  const ContactView contact = contactOf(*simulation.engine, at);
+  ContactWrench push = contactWrenchOnUpper(simulation, contact);
+  if (contact.upper == simulation.engine->pairs.key[at].a) return push;
   return {-push.force, -push.torque, -push.direction};
 }
 
 // Adds what an awake neighbour does to a sleeping block.
-void addChange(Simulation& simulation, const NearPair& pair, std::int32_t sleeper) {
+void addChange(Simulation& simulation, std::size_t at, std::int32_t sleeper) {
   Engine& engine = *simulation.engine;
+  const SleepLoad before = sleepLoadOf(engine, at);
   LoadChange& change = engine.change[static_cast<std::size_t>(sleeper)];
-  const double sign = sleeper == pair.a ? 1.0 : -1.0;
-  const ContactWrench now = pushOnA(simulation, pair);
-  const Vec3 difference = sign * (now.force - pair.restForce);
+  const double sign = sleeper == engine.pairs.key[at].a ? 1.0 : -1.0;
+  const ContactWrench now = pushOnA(simulation, at);
+  const Vec3 difference = sign * (now.force - before.force);
   const double least = kChange * weightOf(simulation, sleeper);
-  const bool pushed = pair.restForce.norm() > least;
+  const bool pushed = before.force.norm() > least;
   const bool pushes = now.force.norm() > least;
   change.begunOrLost = change.begunOrLost || pushed != pushes;
   change.force += difference;
-  change.torque += sign * (now.torque - pair.restTorque) -
+  change.torque += sign * (now.torque - before.torque) -
                    centre(simulation.state.position, static_cast<std::size_t>(sleeper)).cross(difference);
   change.shear += sign * (now.force - now.direction.dot(now.force) * now.direction);
   change.side += sign * now.direction;
@@ -60,15 +62,17 @@ void findLoads(Simulation& simulation) {
     if (!change.side.isZero(0.0)) change.side.normalize();
     engine.joined[static_cast<std::size_t>(block)] = 1;
   }
-  for (const NearPair& pair : engine.pairs) {
+  for (std::size_t at = 0; at < engine.pairs.size(); ++at) {
+    const BlockPair& pair = engine.pairs.key[at];
+    const Vec3 restForce = sleepLoadOf(engine, at).force;
     const auto add = [&](std::int32_t block, std::int32_t partner, const Vec3& force) {
       if (block < 0 || engine.joined[static_cast<std::size_t>(block)] == 0) return;
       LoadChange& change = engine.change[static_cast<std::size_t>(block)];
       change.load_n += 0.5 * force.norm();
       if (sleeps(simulation, partner)) change.hold_n += simulation.scene.staticFriction * force.norm();
     };
-    add(pair.a, pair.b, pair.restForce);
-    add(pair.b, pair.a, -pair.restForce);
+    add(pair.a, pair.b, restForce);
+    add(pair.b, pair.a, -restForce);
   }
 }
 
@@ -93,24 +97,25 @@ bool bears(const Simulation& simulation, std::int32_t block) {
 
 void recordSleepLoads(Simulation& simulation, std::span<const std::uint8_t> staysAwake) {
   Engine& engine = *simulation.engine;
-  for (NearPair& pair : engine.pairs) {
+  for (std::size_t at = 0; at < engine.pairs.size(); ++at) {
+    const BlockPair& pair = engine.pairs.key[at];
     const auto falls = [&](std::int32_t block) {
       return !sleeps(simulation, block) && staysAwake[static_cast<std::size_t>(block)] == 0;
     };
     if (!falls(pair.a) && !falls(pair.b)) continue;
-    const ContactWrench now = pushOnA(simulation, pair);
+    const ContactWrench now = pushOnA(simulation, at);
+    const SleepLoad before = sleepLoadOf(engine, at);
     const std::int32_t sleeper =
         pair.b < 0 ? -1 : (sleeps(simulation, pair.a) ? pair.a : (sleeps(simulation, pair.b) ? pair.b : -1));
     if (sleeper >= 0) {
       const auto s = static_cast<std::size_t>(sleeper);
       const double most = kUnbalanced * weightOf(simulation, sleeper);
-      const Vec3 force = now.force - pair.restForce;
-      const Vec3 torque = now.torque - pair.restTorque - centre(simulation.state.position, s).cross(force);
+      const Vec3 force = now.force - before.force;
+      const Vec3 torque = now.torque - before.torque - centre(simulation.state.position, s).cross(force);
       if (force.norm() <= most && torque.norm() <= most * simulation.model.dimensions[s].minCoeff()) continue;
       engine.toWake.push_back({sleeper, WakeReason::unbalanced});
     }
-    pair.restForce = now.force;
-    pair.restTorque = now.torque;
+    if (engine.pairs.contact[at] >= 0) engine.contacts.sleepLoad(engine.pairs.contact[at]) = {now.force, now.torque};
   }
 }
 
@@ -122,8 +127,9 @@ bool findWakeCandidates(Simulation& simulation) {
   engine.joined.assign(simulation.asleep.size(), 0);
   bool changed = false;
   bool gives = false;
-  for (const std::int32_t at : engine.islandPairs) {
-    const NearPair& pair = engine.pairs[static_cast<std::size_t>(at)];
+  for (const std::int32_t position : engine.islandPairs) {
+    const auto at = static_cast<std::size_t>(position);
+    const BlockPair& pair = engine.pairs.key[at];
     if (pair.b < 0 || sleeps(simulation, pair.a) == sleeps(simulation, pair.b)) continue;
     const std::int32_t sleeper = sleeps(simulation, pair.a) ? pair.a : pair.b;
     LoadChange& change = engine.change[static_cast<std::size_t>(sleeper)];
@@ -132,7 +138,7 @@ bool findWakeCandidates(Simulation& simulation) {
       engine.pushed.push_back(sleeper);
       change = {};
     }
-    addChange(simulation, pair, sleeper);
+    addChange(simulation, at, sleeper);
     const double least = kChange * weightOf(simulation, sleeper);
     changed = changed || change.begunOrLost || change.force.norm() > least ||
               change.torque.norm() > least * simulation.model.dimensions[static_cast<std::size_t>(sleeper)].minCoeff();

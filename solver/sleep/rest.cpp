@@ -87,13 +87,14 @@ void judgeAsReported(Simulation& simulation, std::size_t b) {
 
 // Whether an awake block slides on the sleeper of a pair too fast for it to be asked afterwards, or may hit it in this frame
 // faster than a hand lays a block down. `supported`: whether anything touches the awake block.
-bool isStruck(const Simulation& simulation, const NearPair& pair, std::int32_t awake, bool supported) {
+bool isStruck(const Simulation& simulation, std::size_t at, std::int32_t awake, bool supported) {
+  const BlockPair& pair = simulation.engine->pairs.key[at];
   const auto block = static_cast<std::size_t>(awake);
   const double scale = speedScale(simulation);
   const bool held = block == index(simulation.tether.block);
   const double speed =
       std::max(fastestCorner(simulation.state.velocity, block, Vec3::Zero()), held ? simulation.tether.velocity.norm() : 0.0);
-  if (pair.manifold.touch != PairPhase::separated && anyPointTouches(pair.manifold)) return speed > kRush * scale;
+  if (anyPointTouches(contactOf(*simulation.engine, at))) return speed > kRush * scale;
   const bool falls = !supported && !held;
   if (!falls && speed <= kHit * scale) return false;
   const double frame_s = simulation.scene.settings.frame_s;
@@ -144,8 +145,9 @@ void wakeRequested(Simulation& simulation) {
 void wakeUnbalancedCluster(Simulation& simulation) {
   Engine& engine = *simulation.engine;
   engine.touchingEdges.clear();
-  for (const NearPair& pair : engine.pairs) {
-    if (pair.b >= 0 && pair.manifold.touch != PairPhase::separated) engine.touchingEdges.push_back({pair.a, pair.b});
+  for (std::size_t at = 0; at < engine.pairs.size(); ++at) {
+    const BlockPair& pair = engine.pairs.key[at];
+    if (pair.b >= 0 && engine.pairs.touches(at)) engine.touchingEdges.push_back({pair.a, pair.b});
   }
   engine.touched.resize(simulation.asleep.size());
   findRoots(engine);
@@ -185,8 +187,9 @@ void putToSleep(Simulation& simulation) {
   const Settings& settings = simulation.scene.settings;
   const bool nearCounts = settings.method == Method::report;
   if (settings.sleep == Sleep::on) {
-    for (const NearPair& pair : engine.pairs) {
-      if (pair.b < 0 || (pair.manifold.touch == PairPhase::separated && !nearCounts)) continue;
+    for (std::size_t at = 0; at < engine.pairs.size(); ++at) {
+      const BlockPair& pair = engine.pairs.key[at];
+      if (pair.b < 0 || (!engine.pairs.touches(at) && !nearCounts)) continue;
       const bool bothAwake =
           simulation.asleep[static_cast<std::size_t>(pair.a)] == 0 && simulation.asleep[static_cast<std::size_t>(pair.b)] == 0;
       if (bothAwake) engine.touchingEdges.push_back({pair.a, pair.b});
@@ -242,24 +245,27 @@ bool wakeOnImpact(Simulation& simulation) {
   const StageTimer timer(simulation.stageTimes, Stage::islandsAndSleep);
   engine.toWake.clear();
   engine.touched.assign(simulation.asleep.size(), 0);
-  for (const std::int32_t at : engine.islandPairs) {
-    const NearPair& pair = engine.pairs[static_cast<std::size_t>(at)];
-    if (pair.manifold.touch == PairPhase::separated || !anyPointTouches(pair.manifold)) continue;
+  for (const std::int32_t position : engine.islandPairs) {
+    const auto at = static_cast<std::size_t>(position);
+    const BlockPair& pair = engine.pairs.key[at];
+    if (!anyPointTouches(contactOf(engine, at))) continue;
     engine.touched[static_cast<std::size_t>(pair.a)] = 1;
     if (pair.b >= 0) engine.touched[static_cast<std::size_t>(pair.b)] = 1;
   }
-  for (const std::int32_t at : engine.islandPairs) {
-    const NearPair& pair = engine.pairs[static_cast<std::size_t>(at)];
+  for (const std::int32_t position : engine.islandPairs) {
+    const auto at = static_cast<std::size_t>(position);
+    const BlockPair& pair = engine.pairs.key[at];
     if (pair.b < 0 || sleeps(simulation, pair.a) == sleeps(simulation, pair.b)) continue;
     const bool sleepsA = sleeps(simulation, pair.a);
     const std::int32_t awake = sleepsA ? pair.b : pair.a;
-    if (isStruck(simulation, pair, awake, engine.touched[static_cast<std::size_t>(awake)] != 0))
+    if (isStruck(simulation, at, awake, engine.touched[static_cast<std::size_t>(awake)] != 0))
       engine.toWake.push_back({sleepsA ? pair.a : pair.b, WakeReason::impact});
   }
   if (engine.toWake.empty()) return false;
   engine.touchingEdges.clear();
-  for (const NearPair& pair : engine.pairs) {
-    if (pair.b >= 0 && pair.manifold.touch != PairPhase::separated && sleeps(simulation, pair.a) && sleeps(simulation, pair.b))
+  for (std::size_t at = 0; at < engine.pairs.size(); ++at) {
+    const BlockPair& pair = engine.pairs.key[at];
+    if (pair.b >= 0 && engine.pairs.touches(at) && sleeps(simulation, pair.a) && sleeps(simulation, pair.b))
       engine.touchingEdges.push_back({pair.a, pair.b});
   }
   engine.touched.resize(simulation.asleep.size());

@@ -35,8 +35,8 @@ void listPairsOfSleepers(Simulation& simulation) {
   SupportCheckScratch& path = engine.loadPath;
   const auto forEach = [&](const auto& visit) {
     for (std::size_t p = 0; p < engine.pairs.size(); ++p) {
-      const NearPair& pair = engine.pairs[p];
-      if (pair.manifold.touch == PairPhase::separated) continue;
+      if (!engine.pairs.touches(p)) continue;
+      const BlockPair& pair = engine.pairs.key[p];
       if (sleeps(simulation, pair.a)) visit(static_cast<std::size_t>(pair.a), p);
       if (pair.b >= 0 && sleeps(simulation, pair.b)) visit(static_cast<std::size_t>(pair.b), p);
     }
@@ -56,7 +56,7 @@ void forEachPair(const Engine& engine, std::int32_t block, const Visit& visit) {
   const SupportCheckScratch& path = engine.loadPath;
   const auto b = static_cast<std::size_t>(block);
   for (auto k = static_cast<std::size_t>(path.start[b]); k < static_cast<std::size_t>(path.start[b + 1]); ++k) {
-    visit(path.pairs[k], engine.pairs[static_cast<std::size_t>(path.pairs[k])]);
+    visit(path.pairs[k], engine.pairs.key[static_cast<std::size_t>(path.pairs[k])]);
   }
 }
 
@@ -74,7 +74,7 @@ void listSleepers(Simulation& simulation, const Vec3& up) {
   }
   for (std::size_t i = 0; i < path.blocks.size(); ++i) {
     const std::int32_t block = path.blocks[i];
-    forEachPair(engine, block, [&](std::int32_t, const NearPair& pair) {
+    forEachPair(engine, block, [&](std::int32_t, const BlockPair& pair) {
       const std::int32_t other = pair.a == block ? pair.b : pair.a;
       if (other < 0 || !sleeps(simulation, other) || engine.joined[static_cast<std::size_t>(other)] != 0) return;
       engine.joined[static_cast<std::size_t>(other)] = 1;
@@ -90,8 +90,8 @@ void listSleepers(Simulation& simulation, const Vec3& up) {
 }
 
 // Whether one sleeper of a pair bears the other: what only leans on another, or lies beside it, does not go with it.
-bool bears(const NearPair& pair, const Vec3& up) {
-  return std::abs(pair.restForce.dot(up)) > kBeneath * pair.restForce.norm();
+bool bears(const SleepLoad& load, const Vec3& up) {
+  return std::abs(load.force.dot(up)) > kBeneath * load.force.norm();
 }
 
 // Adds a sleeper to the groups above the level: it joins those it bears, and opens the pairs below it.
@@ -99,13 +99,13 @@ void addToGroups(Simulation& simulation, std::int32_t block, const Vec3& up) {
   Engine& engine = *simulation.engine;
   SupportCheckScratch& path = engine.loadPath;
   path.parent[static_cast<std::size_t>(block)] = block;
-  forEachPair(engine, block, [&](std::int32_t at, const NearPair& pair) {
+  forEachPair(engine, block, [&](std::int32_t at, const BlockPair& pair) {
     const std::int32_t other = pair.a == block ? pair.b : pair.a;
     if (other < 0 || path.parent[static_cast<std::size_t>(other)] < 0) {
       path.open.push_back(at);
       return;
     }
-    if (!bears(pair, up)) return;
+    if (!bears(sleepLoadOf(engine, static_cast<std::size_t>(at)), up)) return;
     const std::int32_t into = findRoot(path.parent, block);
     const std::int32_t from = findRoot(path.parent, other);
     if (into == from) return;
@@ -132,7 +132,7 @@ void listPushedGroups(Simulation& simulation) {
   path.groups.erase(std::unique(path.groups.begin(), path.groups.end()), path.groups.end());
   path.beneath.clear();
   for (const std::int32_t at : path.open) {
-    const NearPair& pair = engine.pairs[static_cast<std::size_t>(at)];
+    const BlockPair& pair = engine.pairs.key[static_cast<std::size_t>(at)];
     const std::int32_t group = findRoot(path.parent, isAbove(path, pair.a) ? pair.a : pair.b);
     if (std::binary_search(path.groups.begin(), path.groups.end(), group)) path.beneath.push_back({group, at});
   }
@@ -146,13 +146,14 @@ Vec3 findSupports(Simulation& simulation, std::span<const SupportPair> beneath, 
   const Scene& scene = simulation.scene;
   Vec3 middle = Vec3::Zero();
   for (const SupportPair& of : beneath) {
-    const NearPair& pair = simulation.engine->pairs[static_cast<std::size_t>(of.pair)];
+    const BlockPair& pair = simulation.engine->pairs.key[static_cast<std::size_t>(of.pair)];
+    const ContactView contact = contactOf(*simulation.engine, static_cast<std::size_t>(of.pair));
     const std::int32_t above = isAbove(path, pair.a) ? pair.a : pair.b;
-    const PointForces points = forcesNow(simulation, pair.manifold);
-    const double sense = pair.manifold.upper == above ? 1.0 : -1.0;
+    const PointForces points = forcesNow(simulation, contact);
+    const double sense = contact.upper == above ? 1.0 : -1.0;
     if (!(sense * points.direction.dot(up) > kBeneath)) continue;
     const bool awake = !sleeps(simulation, pair.a == above ? pair.b : pair.a);
-    for (std::size_t i = 0; i < static_cast<std::size_t>(pair.manifold.count); ++i) {
+    for (std::size_t i = 0; i < static_cast<std::size_t>(contact.count); ++i) {
       if (!(points.normal[i] > 0.0)) continue;
       const Vec3 friction{points.friction[i][0], points.friction[i][1], points.friction[i][2]};
       SupportPoint point;
@@ -229,7 +230,7 @@ bool findFailedSupports(Simulation& simulation) {
     }
     const auto isOver = [&](std::int32_t block) { return block >= 0 && heightOf(simulation, block, up) > level; };
     std::erase_if(path.open, [&](std::int32_t at) {
-      const NearPair& pair = engine.pairs[static_cast<std::size_t>(at)];
+      const BlockPair& pair = engine.pairs.key[static_cast<std::size_t>(at)];
       return isOver(pair.a) && isOver(pair.b);
     });
     listPushedGroups(simulation);

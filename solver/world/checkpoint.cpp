@@ -10,28 +10,6 @@ void copyBlock(const ParticleArray& from, std::size_t block, ParticleArray& to) 
   for (std::size_t a = 0; a < 3; ++a) std::copy_n(from.values(a, block), kCorners, to.values(a, block));
 }
 
-// Points that the short record of a pair holds; more are kept with the whole pair.
-constexpr std::int32_t kFew = 4;
-
-// Calls with each part of the memory of points and its place in the short record.
-template <class Memory, class Visit>
-void forEachPart(Memory& points, const Visit& visit) {
-  std::size_t part = 0;
-  for (auto* values : {&points.stretchX, &points.stretchY, &points.stretchZ, &points.relaxed, &points.offset, &points.scale,
-                       &points.live, &points.sliding}) {
-    visit(*values, part++);
-  }
-}
-
-void keepPoints(const PointMemory& points, FewPoints& few) {
-  forEachPart(points, [&](const auto& values, std::size_t part) { std::copy_n(values.begin(), kFew, few.memory[part].begin()); });
-}
-
-void restorePoints(const FewPoints& few, PointMemory& points) {
-  points = PointMemory{};
-  forEachPart(points, [&](auto& values, std::size_t part) { std::copy_n(few.memory[part].begin(), kFew, values.begin()); });
-}
-
 bool hasHistory(const Simulation& simulation) {
   return isImplicit(simulation.scene.settings.method);
 }
@@ -47,11 +25,19 @@ void rewindBlock(Simulation& simulation, std::size_t b) {
 }
 
 void rewindPair(Engine& engine, std::size_t at) {
-  NearPair& pair = engine.pairs[at];
-  if (engine.pairKept[at] != 0) pair = engine.pairsBefore[at];
-  if (at < engine.pose.size()) engine.pose[at] = engine.frameStartPose[at];
-  if (pair.manifold.touch == PairPhase::separated || pair.manifold.count > kFew) return;
-  restorePoints(engine.frameStartPoints[at], pair.manifold);
+  PairTable& pairs = engine.pairs;
+  const std::int32_t saved = engine.savedPair[at];
+  if (saved >= 0) {
+    const SavedPairs& page = engine.savedPairs.page(saved);
+    const std::size_t slot = PagePool<SavedPairs>::slot(saved);
+    pairs.phase[at] = page.phase[slot];
+    pairs.clearance[at] = page.clearance[slot];
+    pairs.travelAtCheck[at] = page.travelAtCheck[slot];
+    pairs.setAxis(at, page.axis[slot]);
+  }
+  if (!pairs.touches(at)) return;
+  if (saved >= 0) engine.contacts.restoreShape(pairs.contact[at]);
+  engine.contacts.restorePoints(pairs.contact[at]);
 }
 
 }  // namespace
@@ -66,10 +52,9 @@ void prepareFrameStart(Simulation& simulation) {
       engine.frameStartPreviousVelocity.resize(simulation.model.blockCount());
     }
   }
-  engine.pairsBefore.resize(engine.pairs.size());
-  engine.frameStartPoints.resize(engine.pairs.size());
-  engine.frameStartPose.resize(engine.pairs.size());
-  engine.pairKept.assign(engine.pairs.size(), 0);
+  engine.savedPair.assign(engine.pairs.size(), -1);
+  engine.savedPairs.clear();
+  engine.savedPairs.reserve(kPageRows, engine.pairs.size(), false);
 }
 
 void saveFrameStart(IslandStep& step) {
@@ -85,21 +70,22 @@ void saveFrameStart(IslandStep& step) {
   }
   for (const std::int32_t pair : step.pairs) {
     const auto at = static_cast<std::size_t>(pair);
-    if (at < engine.pose.size()) engine.frameStartPose[at] = engine.pose[at];
-    const Manifold& manifold = engine.pairs[at].manifold;
-    if (manifold.touch == PairPhase::separated) continue;
-    if (manifold.count > kFew) {
-      savePair(engine, at);
-    } else {
-      keepPoints(manifold, engine.frameStartPoints[at]);
-    }
+    if (engine.pairs.touches(at)) engine.contacts.savePoints(engine.pairs.contact[at]);
   }
 }
 
 void savePair(Engine& engine, std::size_t at) {
-  if (engine.pairKept[at] != 0) return;
-  engine.pairKept[at] = 1;
-  engine.pairsBefore[at] = engine.pairs[at];
+  if (engine.savedPair[at] >= 0) return;
+  const PairTable& pairs = engine.pairs;
+  const std::int32_t saved = engine.savedPairs.take();
+  engine.savedPair[at] = saved;
+  SavedPairs& page = engine.savedPairs.page(saved);
+  const std::size_t slot = PagePool<SavedPairs>::slot(saved);
+  page.phase[slot] = pairs.phase[at];
+  page.clearance[slot] = pairs.clearance[at];
+  page.travelAtCheck[slot] = pairs.travelAtCheck[at];
+  page.axis[slot] = pairs.axisOf(at);
+  if (pairs.touches(at)) engine.contacts.saveShape(pairs.contact[at]);
 }
 
 void restoreFrame(Simulation& simulation) {

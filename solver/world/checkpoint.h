@@ -11,7 +11,7 @@ void prepareFrameStart(Simulation& simulation);
 /// side, each just before its data are needed anyway.
 void saveFrameStart(IslandStep& step);
 
-/// Keeps a pair before anything but the memory of its points changes: that is seldom.
+/// Keeps a pair before anything but what its points store changes: that is seldom.
 void savePair(Engine& engine, std::size_t at);
 
 /// Brings it back, for a whole frame that is run again or for one island.

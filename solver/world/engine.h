@@ -5,10 +5,10 @@
 #include "broadphase/swept_boxes.h"
 #include "core/counters.h"
 #include "core/state.h"
-#include "narrowphase/manifold.h"
 #include "solver/algebra/eigen_llt.h"
 #include "solver/law/contact_force.h"
 #include "solver/world/newton_system.h"
+#include "solver/world/pair_table.h"
 #include "solver/world/report_state.h"
 #include "solver/world/rigid_island.h"
 #include "solver/world/simulation.h"
@@ -20,27 +20,6 @@
 #include <vector>
 
 namespace springtower {
-
-/// A pair of near blocks a < b (or block a and the floor, b = -1), kept as long as their swept boxes overlap: how they touch, and
-/// until how much travel that need not be looked at again.
-struct NearPair {
-  std::int32_t a = 0;
-  std::int32_t b = -1;
-  Manifold manifold;
-  Vec3 separatingAxis = Vec3::UnitZ();  ///< apart: a direction that separated them last, from b to a
-  double clearance = 0.0;               ///< apart: their gap along it when last measured, m
-  double travelAtCheck = 0.0;           ///< sum of both blocks' travel when last looked at, m
-  Vec3 restForce = Vec3::Zero();        ///< N on block a when the first of the two fell asleep; what its partner must keep up
-  Vec3 restTorque = Vec3::Zero();       ///< N m, its torque about the world's origin
-};
-
-/// What up to four points of a manifold remember, in as few cache lines as hold it.
-struct FewPoints {
-  alignas(32) std::array<std::array<double, 4>, 8> memory;
-};
-
-/// How the second block of a pair lies to the first: its centre and sides along the other's edges, m.
-using RelativePose = std::array<float, 12>;
 
 /// Per-block integration history. `explicitFrames`, `implicitSteps`, `forced`, `spectralRadius` and `contactSignature` belong to
 /// the island and are read from the entry of its lowest-numbered block: when islands merge or split, that block's values survive.
@@ -115,6 +94,15 @@ struct SupportCheckScratch {
 /// Islands of at least this many blocks run their kernels on many threads; smaller ones fit one core's cache.
 inline constexpr std::size_t kParallelBlocks = 256;
 
+/// Rows of the pair table as the frame began.
+struct SavedPairs {
+  Column<Vec3> axis;
+  Column<double> clearance;
+  Column<double> travelAtCheck;
+  Column<PairPhase> phase;
+  void prepare(bool /*wide*/) {}
+};
+
 /// The engine's working data. All plain vectors, sized once a scene is loaded and grown only when new pairs appear.
 struct Engine {
   SortAndSweep sweep;
@@ -123,12 +111,13 @@ struct Engine {
   std::vector<double> travelAtSweep;  ///< m, [blocks]
   bool swept = false;                 ///< whether the order of the sweep has been set up
   std::vector<BlockPair> sweptPairs;
-  std::vector<BlockPair> keys;            ///< working space: the pairs asked for, the floor as b = -1
-  std::vector<BlockPair> pairKeys;        ///< those of `pairs`, in its order
   std::vector<std::int32_t> awakeBlocks;  ///< ascending
   std::size_t awakeCount = 0;
-  std::vector<NearPair> pairs;        ///< by (a, b), the floor first for each a
-  std::vector<NearPair> pairsBefore;  ///< before the last merge; then, where pairKept is 1, as the frame began
+  PairTable pairs;
+  ContactPool contacts;
+  std::vector<BlockPair> mergedKeys;       ///< working space of the merge of pairs: those there are to be,
+  std::vector<std::int32_t> mergedFrom;    ///< where each of them was before, or -1,
+  std::vector<std::byte> mergedColumn;       ///< and a column of the table
   Islands islands;
   bool topologyChanged = true;          ///< whether pairs or islands are others than in the frame before
   std::vector<std::int32_t> pairStart;  ///< pairs of island i are islandPairs[pairStart[i] .. pairStart[i + 1]]
@@ -152,18 +141,15 @@ struct Engine {
   std::array<MotionState, 4> stage;                ///< states inside a step of the multi-stage methods; empty for the others
   std::array<ParticleArray, 4> stageAcceleration;  ///< m/s2, of the stages
   ParticleArray carried;                           ///< m/s, mean velocity of the last step of a multi-stage method
-  std::vector<PointMemory> trial;  ///< by position in `pairs`: contact memory at the end of an implicit step not yet taken
   ParticleArray previousVelocity;  ///< m/s, at the start of the step; for implicit steps
   std::vector<NewtonSystem> newtonSystems;   ///< by the island's smallest block; empty for other methods
   std::vector<SparseFactors> sparseFactors;  ///< by the island's smallest block; of `implicitEigen` alone
   std::vector<RigidIsland> rigidIslands;     ///< by the island's smallest block; of rigid methods, and of what falls
-  std::vector<RelativePose> pose;    ///< by position in `pairs`: where blocks of rigid steps lay when their manifold was renewed
   ParticleArray history;             ///< m, what past steps give of the position at an implicit step's end
   ParticleArray stepVelocity;        ///< m/s, mean over the implicit step
   ParticleArray target;              ///< m, where the implicit step ends without forces
   GripForce tetherNow;               ///< the hand's, as last evaluated
   std::vector<std::int32_t> nodeOf;  ///< the place of each block in its island, for implicit steps and rigid methods
-  std::vector<PairForce> pairForce;  ///< N, by position in `pairs`; for islands that run on many threads
   std::vector<BlockHistory> blockHistory;     ///< [blocks]
   std::vector<std::int32_t> lostPartner;      ///< sleeping blocks whose awake neighbour went out of reach in this frame
   std::vector<std::int32_t> newContactCount;  ///< scratch, [blocks]: pairs of the block that may make first contact in this frame
@@ -181,9 +167,8 @@ struct Engine {
   ReportState report;                  ///< of method `report`; empty for the others
   MotionState frameStart;              ///< what a frame that has to be run again starts from
   std::vector<BlockHistory> frameStartClock;
-  std::vector<FewPoints> frameStartPoints;   ///< by position in `pairs`: what the points of those that touch remember
-  std::vector<RelativePose> frameStartPose;  ///< by position in `pairs`, as engine.pose
-  std::vector<std::uint8_t> pairKept;        ///< 1 where a pair has changed since otherwise than in that
+  std::vector<std::int32_t> savedPair;       ///< by position in `pairs`: where it is saved as the frame began, -1 if unchanged
+  PagePool<SavedPairs> savedPairs;
   ParticleArray frameStartPrevious;          ///< m, and for implicit steps what they started from
   ParticleArray frameStartPreviousVelocity;  ///< m/s
   std::vector<Counters> chunkCounters;       ///< of ranges of pairs inside a large island
@@ -194,9 +179,33 @@ struct Engine {
 };
 
 /// How far both blocks of a pair have travelled, m; it only ever grows but where a step or a frame is taken again.
-inline double travelOf(const Engine& engine, const NearPair& pair) {
-  const double first = engine.blockHistory[static_cast<std::size_t>(pair.a)].travel;
-  return pair.b < 0 ? first : first + engine.blockHistory[static_cast<std::size_t>(pair.b)].travel;
+inline double travelOf(const Engine& engine, std::size_t pair) {
+  const BlockPair& key = engine.pairs.key[pair];
+  const double first = engine.blockHistory[static_cast<std::size_t>(key.a)].travel;
+  return key.b < 0 ? first : first + engine.blockHistory[static_cast<std::size_t>(key.b)].travel;
+}
+
+/// The contact of a pair as it lies; without points where the pair is separated.
+inline ContactView contactOf(const Engine& engine, std::size_t pair) {
+  return engine.pairs.touches(pair) ? engine.contacts.view(engine.pairs.contact[pair], engine.pairs[pair]) : ContactView{};
+}
+
+/// Which features of a touching pair touch. Precondition: the pair touches.
+inline ManifoldShape shapeOf(const Engine& engine, std::size_t pair) {
+  return shapeOf(engine.contacts.shape(engine.pairs.contact[pair]), engine.pairs[pair]);
+}
+
+/// The same with its points as they are at the end of an implicit step not yet taken. Precondition: the pair touches.
+inline ContactView trialOf(const Engine& engine, std::size_t pair, const ContactView& contact) {
+  ContactView trial = contact;
+  trial.points = engine.contacts.trial(engine.pairs.contact[pair]);
+  return trial;
+}
+
+/// What a pair's contact did when the first of its blocks fell asleep; zeros where none has been.
+inline SleepLoad sleepLoadOf(const Engine& engine, std::size_t pair) {
+  const std::int32_t contact = engine.pairs.contact[pair];
+  return contact < 0 ? SleepLoad{} : engine.contacts.sleepLoad(contact);
 }
 
 /// The velocities that carried the positions during the last step: those of the state, or the mean over the stages of a

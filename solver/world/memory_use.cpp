@@ -46,17 +46,17 @@ MemoryUse memoryUse(const Simulation& simulation) {
   for (std::size_t g = 0; g < kSpringGroups; ++g) {
     use.model += sumOf(model.restLength[g], model.springStiffness[g], model.springDamping[g]);
   }
-  use.contacts = bytesOf(engine.pairs);
+  use.contacts = PairTable::kBytes * engine.pairs.size() + engine.contacts.bytes();
   use.working = sumOf(
-      engine.reach, engine.travelAtSweep, engine.sweptPairs, engine.keys, engine.pairKeys, engine.awakeBlocks, engine.pairsBefore,
+      engine.reach, engine.travelAtSweep, engine.sweptPairs, engine.mergedKeys, engine.mergedFrom, engine.mergedColumn, engine.awakeBlocks,
       engine.pairStart, engine.islandPairs, engine.watchedPairs, engine.path, engine.foreseenPath, engine.blockPairStart,
       engine.blockPairs, engine.cursor, engine.touchingEdges, engine.force, engine.frames, engine.motion, engine.carriedMotion,
-      engine.contactForce, engine.springRadius, engine.contactMetric, engine.previous, engine.carried, engine.pairForce,
+      engine.contactForce, engine.springRadius, engine.contactMetric, engine.previous, engine.carried,
       engine.blockHistory, engine.lostPartner, engine.toWake, engine.wakeRoots, engine.pushed, engine.change,
       engine.loadPath.start, engine.loadPath.pairs, engine.loadPath.blocks, engine.loadPath.parent, engine.loadPath.open,
       engine.loadPath.groups, engine.loadPath.beneath, engine.loadPath.known, engine.loadPath.supports, engine.newContactCount,
       engine.restless, engine.parent, engine.joined, engine.touched, engine.rest, engine.report, engine.frameStart,
-      engine.frameStartClock, engine.frameStartPoints, engine.frameStartPose, engine.pairKept, engine.chunkCounters,
+      engine.frameStartClock, engine.savedPair, engine.chunkCounters,
       engine.chunkTimes, engine.islandCounters, engine.islandTimes, engine.islandOutcome);
   use.working += sumOf(engine.sweep.order, engine.sweep.place, engine.sweep.columns, engine.sweep.awake, engine.sweep.renewed,
                        engine.sweep.ascending, engine.sweep.outOfOrder);
@@ -89,8 +89,9 @@ MemoryUse memoryUse(const Simulation& simulation) {
                                                pivoting.column, pivoting.clamped, pivoting.placeOf);
   }
   for (const SparseFactors& sparse : engine.sparseFactors) use.factor += bytesOf(sparse);
-  use.working += sumOf(engine.trial, engine.previousVelocity, engine.history, engine.stepVelocity, engine.target, engine.nodeOf,
-                       engine.pose, engine.frameStartPrevious, engine.frameStartPreviousVelocity);
+  use.working += sumOf(engine.previousVelocity, engine.history, engine.stepVelocity, engine.target, engine.nodeOf,
+                       engine.frameStartPrevious, engine.frameStartPreviousVelocity);
+  use.working += engine.contacts.stepBytes();
   return use;
 }
 

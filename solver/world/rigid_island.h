@@ -46,7 +46,7 @@ struct RigidContact {
   double coefficient = 0.0;         ///< of friction, static or kinetic as the point did last
   std::array<double, 3> mass{};     ///< kg, effective along each direction
   std::array<double, 3> impulse{};  ///< N s, accumulated along each direction
-  std::array<double, 2> stretch{};  ///< m, tangential displacement since the point took hold (position-based method)
+  std::array<double, 2> anchor_m{}; ///< m, tangential displacement since the point took hold (position-based method)
   double share = 1.0;               ///< one over the points of its manifold
   double loadBefore = 0.0;          ///< N s2, normal push of the step before (position-based method)
   bool sliding = false;             ///< whether friction is at its bound

@@ -53,17 +53,25 @@ std::uint64_t stateHash(const Simulation& simulation) {
   for (const auto& values : simulation.state.position.component) mixDoubles(values);
   for (const auto& values : simulation.state.velocity.component) mixDoubles(values);
   hash.bytes(simulation.asleep.data(), simulation.asleep.size());
-  for (const NearPair& pair : simulation.engine->pairs) {
-    const Manifold& m = pair.manifold;
-    hash.bytes(&m.count, sizeof m.count);
-    mixDoubles(m.u);
-    mixDoubles(m.v);
-    mixDoubles(m.stretchX);
-    mixDoubles(m.stretchY);
-    mixDoubles(m.stretchZ);
-    mixDoubles(m.relaxed);
-    mixDoubles(m.offset);
-  }
+  // Eight points a pair whether it touches or not, each number of all of them after the other.
+  const auto mixContact = [&](const ContactView& contact) {
+    static const PlaceRow kNowhere{};
+    static const PointRow kNothing{};
+    const std::size_t rows = rowsFor(contact.count);
+    const auto place = [&](std::size_t row) -> const PlaceRow& { return row < rows ? *contact.place[row] : kNowhere; };
+    const auto points = [&](std::size_t row) -> const PenaltyRow& {
+      return row < rows ? contact.points[row]->penalty : kNothing.penalty;
+    };
+    hash.bytes(&contact.count, sizeof contact.count);
+    for (std::size_t r = 0; r < kManifoldRows; ++r) mixDoubles(place(r).u);
+    for (std::size_t r = 0; r < kManifoldRows; ++r) mixDoubles(place(r).v);
+    for (std::size_t a = 0; a < 3; ++a) {
+      for (std::size_t r = 0; r < kManifoldRows; ++r) mixDoubles(points(r).displacement[a]);
+    }
+    for (std::size_t r = 0; r < kManifoldRows; ++r) mixDoubles(points(r).maxwellDepth);
+    for (std::size_t r = 0; r < kManifoldRows; ++r) mixDoubles(points(r).restDepth);
+  };
+  for (std::size_t at = 0; at < simulation.engine->pairs.size(); ++at) mixContact(contactOf(*simulation.engine, at));
   for (const std::vector<ReportContact>& contacts : simulation.engine->report.contacts) {
     for (const ReportContact& contact : contacts) {
       hash.bytes(&contact.first, sizeof contact.first);

@@ -57,7 +57,8 @@ TEST(Manifold, TurnedSidesCrossInEightPoints) {
 
 // m, on the incident face, whose first side is the block's width.
 Eigen::Vector2d pointOf(const Manifold& m, std::size_t point) {
-  return {kWidth_m * m.u[point], kLength_m * m.v[point]};
+  const PlaceRow& row = m.place[rowOf(point)];
+  return {kWidth_m * row.u[laneOf(point)], kLength_m * row.v[laneOf(point)]};
 }
 
 // m, of a point from the border of a manifold's polygon.

@@ -167,8 +167,10 @@ TEST(ContactTangent, ATouchingPointThatDoesNotPushResistsNothing) {
   drawn.move(lift);
   std::ptrdiff_t unpressed = 0;
   for (const std::int32_t pair : drawn.island().touching) {
-    const PointMemory& points = engine.trial[static_cast<std::size_t>(pair)];
-    unpressed += std::count(points.live.begin(), points.live.end(), kUnpressed);
+    const auto at = static_cast<std::size_t>(pair);
+    const ContactView trial = trialOf(engine, at, contactOf(engine, at));
+    for (std::size_t i = 0; i < static_cast<std::size_t>(trial.count); ++i)
+      unpressed += touchingAt(trial, i) == kUnpressed ? 1 : 0;
   }
   ASSERT_GE(unpressed, 2);
   expectTangentsToBeTheDerivative(drawn, 1e-9);
@@ -184,8 +186,12 @@ TEST(ContactTangent, APointThatIsReachedInTheStepPushesFromNothing) {
   DrawnBlock drawn;
   Engine& engine = *drawn.simulation.engine;
   for (const std::int32_t pair : drawn.island().touching) {
-    Manifold& manifold = engine.pairs[static_cast<std::size_t>(pair)].manifold;
-    if (manifold.upper == kLanding || manifold.lower == kLanding) static_cast<PointMemory&>(manifold) = PointMemory{};
+    const auto at = static_cast<std::size_t>(pair);
+    const ManifoldShape shape = shapeOf(engine, at);
+    if (shape.upper != kLanding && shape.lower != kLanding) continue;
+    for (PointRow* row : engine.contacts.points(engine.pairs.contact[at])) {
+      if (row != nullptr) *row = PointRow{};
+    }
   }
   std::vector<double> lift(kNodeSize * drawn.step.blocks.size());
   lift[kNodeSize * static_cast<std::size_t>(engine.nodeOf[static_cast<std::size_t>(kLanding)]) + 2] = kLift_m;
@@ -197,13 +203,13 @@ TEST(ContactTangent, APointThatIsReachedInTheStepPushesFromNothing) {
   double most = 0.0;
   int pushing = 0;
   for (const std::int32_t pair : drawn.island().touching) {
-    const Manifold& manifold = engine.pairs[static_cast<std::size_t>(pair)].manifold;
+    const ContactView manifold = contactOf(engine, static_cast<std::size_t>(pair));
     if (manifold.upper != kLanding && manifold.lower != kLanding) continue;
     const PointForces points = forcesNow(drawn.simulation, manifold);
     for (std::size_t i = 0; i < static_cast<std::size_t>(manifold.count); ++i) {
       if (!(points.depth[i] > 0.0)) continue;
       ++pushing;
-      most += law.stiffness_n_m * points.depth[i] * (1.0 + law.relaxingRatio + law.dampingTime_s / drawn.step.drift_s);
+      most += law.stiffness_n_m * points.depth[i] * (1.0 + law.maxwellRatio + law.dampingTime_s / drawn.step.drift_s);
     }
   }
   ASSERT_GE(pushing, 4);

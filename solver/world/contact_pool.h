@@ -1,0 +1,234 @@
+#pragma once
+
+#include "narrowphase/manifold.h"
+#include "solver/law/contact_force.h"
+#include "solver/world/page_pool.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+
+namespace springtower {
+
+/// How the second block of a pair lies to the first: its centre and sides along the other's edges, m.
+using RelativePose = std::array<float, 12>;
+
+/// What a contact did to block a of its pair when the first of the two fell asleep, and its partner must keep up.
+struct SleepLoad {
+  Vec3 force = Vec3::Zero();   ///< N
+  Vec3 torque = Vec3::Zero();  ///< N m, about the world's origin
+};
+
+/// The shape of a contact without the names of its blocks, which its pair knows; eight bytes.
+struct StoredShape {
+  std::int32_t secondRow = -1;  ///< of points 5 to 8 in their own pages; -1 where no contact of the pair has had so many
+  std::int8_t count = 0;
+  std::int8_t incidentFace = 0;
+  std::int8_t referenceFace = 0;
+  bool upperIsB : 1 = false;
+  PointKind kind : 7 = PointKind::penalty;
+};
+
+/// A contact of a pair (a, b): which pair it is of, and how it touches.
+struct PairOfBlocks {
+  std::int32_t a;
+  std::int32_t b;  ///< -1: the floor
+  PairPhase phase;
+};
+
+/// A contact's shape by its names, for a touching pair.
+inline ManifoldShape shapeOf(const StoredShape& stored, const PairOfBlocks& pair) {
+  ManifoldShape shape;
+  shape.upper = stored.upperIsB ? pair.b : pair.a;
+  shape.lower = stored.upperIsB ? pair.a : pair.b;
+  shape.count = stored.count;
+  shape.incidentFace = stored.incidentFace;
+  shape.referenceFace = stored.referenceFace;
+  shape.phase = pair.phase;
+  shape.kind = stored.kind;
+  return shape;
+}
+
+/// The contacts of the pairs that touch, structure of arrays: rows for touching pairs alone, four points a row and a second row
+/// for points five to eight. Beside what lasts lies what a frame or a step works with: the points as the frame began, and as an
+/// implicit step that is not yet taken ends.
+class ContactPool {
+ public:
+  /// Bytes that a touching pair costs with up to four points, and what a second row adds; and what frames and steps add to each.
+  static constexpr std::size_t kFirstBytes = sizeof(StoredShape) + sizeof(SleepLoad) + sizeof(PlaceRow) + sizeof(PointRow);
+  static constexpr std::size_t kSecondBytes = sizeof(PlaceRow) + sizeof(PointRow);
+  static constexpr std::size_t kFirstStepBytes =
+      2 * sizeof(PointRow) + sizeof(PlaceRow) + sizeof(StoredShape) + sizeof(RelativePose);
+  static constexpr std::size_t kSecondStepBytes = 2 * sizeof(PointRow) + sizeof(PlaceRow);
+
+  /// Takes a contact for a pair, with no points. Any thread.
+  std::int32_t take();
+  /// Gives one back. Not while others take.
+  void giveBack(std::int32_t contact);
+  /// Makes room for a frame: `most` bounds the contacts that there may be. `wide`: whether islands sum their forces
+  /// pair by pair. Not while others take.
+  void reserve(std::size_t most, bool wide);
+
+  /// Puts a manifold into a contact. Any thread, one a contact.
+  void store(std::int32_t contact, const PairOfBlocks& pair, const Manifold& manifold);
+
+  /// A contact as it lies, to be read. Precondition: its pair touches.
+  [[nodiscard]] ContactView view(std::int32_t contact, const PairOfBlocks& pair) const {
+    const First& page = first_.page(contact);
+    const std::size_t slot = Pool::slot(contact);
+    const StoredShape& stored = page.shape[slot];
+    ContactView view;
+    static_cast<ManifoldShape&>(view) = shapeOf(stored, pair);
+    view.place[0] = &page.place[slot];
+    view.points[0] = &page.points[slot];
+    if (stored.count <= static_cast<std::int8_t>(kRowPoints)) return view;
+    const Second& more = second_.page(stored.secondRow);
+    view.place[1] = &more.place[Pool::slot(stored.secondRow)];
+    view.points[1] = &more.points[Pool::slot(stored.secondRow)];
+    return view;
+  }
+
+  [[nodiscard]] StoredShape& shape(std::int32_t contact) { return first_.page(contact).shape[Pool::slot(contact)]; }
+  [[nodiscard]] const StoredShape& shape(std::int32_t contact) const { return first_.page(contact).shape[Pool::slot(contact)]; }
+
+  /// A contact with the rows of its points, as they are and as they are at the end of an implicit step not yet taken.
+  struct Editable {
+    ContactView view;
+    PointRows points;
+    PointRows trial;
+  };
+  [[nodiscard]] Editable edit(std::int32_t contact, const PairOfBlocks& pair) {
+    First& page = first_.page(contact);
+    const std::size_t slot = Pool::slot(contact);
+    const StoredShape& stored = page.shape[slot];
+    Editable result;
+    static_cast<ManifoldShape&>(result.view) = shapeOf(stored, pair);
+    result.view.place[0] = &page.place[slot];
+    result.points = {&page.points[slot], nullptr};
+    result.trial = {&page.step->trial[slot], nullptr};
+    if (stored.count > static_cast<std::int8_t>(kRowPoints)) {
+      Second& more = second_.page(stored.secondRow);
+      const std::size_t moreSlot = Pool::slot(stored.secondRow);
+      result.view.place[1] = &more.place[moreSlot];
+      result.points[1] = &more.points[moreSlot];
+      result.trial[1] = &more.step->trial[moreSlot];
+    }
+    result.view.points = {result.points[0], result.points[1]};
+    return result;
+  }
+
+  /// The rows of a contact's points now, and at the end of an implicit step not yet taken; null past those in use.
+  [[nodiscard]] PointRows points(std::int32_t contact) {
+    return rows(
+        contact, [](auto& page) -> auto& { return page.points; });
+  }
+  [[nodiscard]] PointRows trial(std::int32_t contact) {
+    return rows(
+        contact, [](auto& page) -> auto& { return page.step->trial; });
+  }
+  [[nodiscard]] ConstPointRows points(std::int32_t contact) const {
+    return constRows(
+        contact, [](const auto& page) -> const auto& { return page.points; });
+  }
+  [[nodiscard]] ConstPointRows trial(std::int32_t contact) const {
+    return constRows(
+        contact, [](const auto& page) -> const auto& { return page.step->trial; });
+  }
+
+  [[nodiscard]] SleepLoad& sleepLoad(std::int32_t contact) { return first_.page(contact).sleepLoad[Pool::slot(contact)]; }
+  [[nodiscard]] const SleepLoad& sleepLoad(std::int32_t contact) const {
+    return first_.page(contact).sleepLoad[Pool::slot(contact)];
+  }
+  /// Where the blocks lay to one another when rigid steps renewed the manifold last; zeros where they have not.
+  [[nodiscard]] RelativePose& pose(std::int32_t contact) { return first_.page(contact).pose[Pool::slot(contact)]; }
+  /// Forces of the pair in a large island's sums. Precondition: reserved as wide.
+  [[nodiscard]] PairForce& pairForce(std::int32_t contact) { return (*first_.page(contact).pairForce)[Pool::slot(contact)]; }
+
+  /// Keeps the points as the frame begins, and brings them back.
+  void savePoints(std::int32_t contact);
+  void restorePoints(std::int32_t contact);
+  /// Keeps shape, places and pose too, where they are about to change in the frame, and brings them back.
+  void saveShape(std::int32_t contact);
+  void restoreShape(std::int32_t contact);
+
+  [[nodiscard]] std::size_t inUse() const { return first_.rowsInUse(); }
+  [[nodiscard]] std::size_t secondRowsInUse() const { return second_.rowsInUse(); }
+  [[nodiscard]] std::size_t bytes() const;      ///< that contacts in use cost
+  [[nodiscard]] std::size_t stepBytes() const;  ///< that frames and steps add, pages that are free included
+
+ private:
+  // What a page owns beside its rows and frames or steps fill anew: not copied.
+  template <class T>
+  struct Working : std::unique_ptr<T> {
+    Working() = default;
+    Working(const Working& other) : std::unique_ptr<T>() { *this = other; }
+    Working& operator=(const Working& other) {
+      if (other != nullptr && *this == nullptr) this->reset(new T);
+      return *this;
+    }
+    Working(Working&&) noexcept = default;
+    Working& operator=(Working&&) noexcept = default;
+    ~Working() = default;
+  };
+
+  struct FirstStep {
+    Column<PointRow> trial;
+    Column<PointRow> before;
+    Column<PlaceRow> placeBefore;
+    Column<StoredShape> shapeBefore;
+    Column<RelativePose> poseBefore;
+  };
+  struct SecondStep {
+    Column<PointRow> trial;
+    Column<PointRow> before;
+    Column<PlaceRow> placeBefore;
+  };
+  struct First {
+    Column<StoredShape> shape;
+    Column<SleepLoad> sleepLoad;
+    Column<PlaceRow> place;
+    Column<PointRow> points;
+    Column<RelativePose> pose;
+    Working<FirstStep> step;
+    Working<Column<PairForce>> pairForce;
+    void prepare(bool wide) {
+      if (step == nullptr) step.reset(new FirstStep);
+      if (wide && pairForce == nullptr) pairForce.reset(new Column<PairForce>);
+    }
+  };
+  struct Second {
+    Column<PlaceRow> place;
+    Column<PointRow> points;
+    Working<SecondStep> step;
+    void prepare(bool /*wide*/) {
+      if (step == nullptr) step.reset(new SecondStep);
+    }
+  };
+  using Pool = PagePool<First>;
+
+  template <class Get>
+  PointRows rows(std::int32_t contact, const Get& get) {
+    First& page = first_.page(contact);
+    const StoredShape& stored = page.shape[Pool::slot(contact)];
+    PointRows result{&get(page)[Pool::slot(contact)], nullptr};
+    if (stored.count > static_cast<std::int8_t>(kRowPoints))
+      result[1] = &get(second_.page(stored.secondRow))[Pool::slot(stored.secondRow)];
+    return result;
+  }
+
+  template <class Get>
+  [[nodiscard]] ConstPointRows constRows(std::int32_t contact, const Get& get) const {
+    const First& page = first_.page(contact);
+    const StoredShape& stored = page.shape[Pool::slot(contact)];
+    ConstPointRows result{&get(page)[Pool::slot(contact)], nullptr};
+    if (stored.count > static_cast<std::int8_t>(kRowPoints))
+      result[1] = &get(second_.page(stored.secondRow))[Pool::slot(stored.secondRow)];
+    return result;
+  }
+
+  PagePool<First> first_;
+  PagePool<Second> second_;
+};
+
+}  // namespace springtower
