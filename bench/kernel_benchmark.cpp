@@ -48,7 +48,7 @@ void springs(benchmark::State& run) {
   Simulation s = startedTowers(static_cast<int>(run.range(0)), framesFor(run));
   const std::vector<std::int32_t> blocks = allBlocks(s.model.blockCount());
   for (auto iteration : run) {
-    springForces(s.model, s.state, blocks, s.engine->contactForce, s.engine->force);
+    springForces(s.model, s.state, blocks, s.engine->scratch.contactForce, s.engine->memo.force);
     benchmark::ClobberMemory();
   }
   const auto count = static_cast<double>(blocks.size());
@@ -60,8 +60,8 @@ void frames(benchmark::State& run) {
   Simulation s = startedTowers(static_cast<int>(run.range(0)), framesFor(run));
   const std::vector<std::int32_t> blocks = allBlocks(s.model.blockCount());
   for (auto iteration : run) {
-    computeFrames(s.state.position, blocks, s.engine->frames);
-    computeMotions(s.state.velocity, blocks, s.engine->motion);
+    computeFrames(s.state.position, blocks, s.engine->memo.frames);
+    computeMotions(s.state.velocity, blocks, s.engine->memo.motion);
     benchmark::ClobberMemory();
   }
   const auto count = static_cast<double>(blocks.size());
@@ -76,7 +76,7 @@ void contacts(benchmark::State& run) {
   const auto side = [&](std::int32_t block) -> ContactSide {
     if (block < 0) return {};
     const auto b = static_cast<std::size_t>(block);
-    return {&engine.frames[b], &engine.motion[b], &engine.motion[b]};
+    return {&engine.memo.frames[b], &engine.memo.motion[b], &engine.memo.motion[b]};
   };
   double points = 0.0;
   double pairs = 0.0;
@@ -102,11 +102,15 @@ void contacts(benchmark::State& run) {
 // One island's step through the frame it is in.
 IslandStep islandStep(Simulation& s, Counters& counters, StageTimes& times) {
   Engine& engine = *s.engine;
-  const auto pairs = static_cast<std::size_t>(engine.pairStart[1]);
-  IslandStep step{
-      s,     engine,       engine.islands.island(0), std::span<const std::int32_t>(engine.islandPairs).first(pairs), counters,
-      times, contactLaw(s)};
-  step.drift_s = engine.blockHistory[static_cast<std::size_t>(step.blocks.front())].lastExplicitStep_s;
+  const auto pairs = static_cast<std::size_t>(engine.memo.pairStart[1]);
+  IslandStep step{s,
+                  engine,
+                  engine.memo.islands.island(0),
+                  std::span<const std::int32_t>(engine.memo.islandPairs).first(pairs),
+                  counters,
+                  times,
+                  contactLaw(s)};
+  step.drift_s = engine.memo.blockHistory[static_cast<std::size_t>(step.blocks.front())].lastExplicitStep_s;
   step.kick_s = step.drift_s;
   step.advance_s = step.drift_s;
   step.gravity = s.scene.gravity.at(s.time_s);
@@ -146,7 +150,7 @@ void watchedPairs(benchmark::State& run) {
   Counters counters;
   StageTimes times;
   IslandStep step = islandStep(s, counters, times);
-  s.engine->previous = s.state.position;
+  s.engine->memo.previous = s.state.position;
   const RefreshTravel renewal = refreshTravelOfExplicitSteps(s);
   for (auto iteration : run) benchmark::DoNotOptimize(updateContacts(step, renewal));
   const auto pairs = static_cast<double>(step.pairs.size());

@@ -188,7 +188,8 @@ void buildFloorManifold(const CornerView& upper, const ManifoldLimits& limits, M
   manifold.count = static_cast<std::int32_t>(kept);
 }
 
-void carryMemory(const ContactView& old, const CornerView& oldUpper, Manifold& fresh, const CornerView& freshUpper, double radius) {
+void carryMemory(const ContactView& old, const CornerView& oldUpper, Manifold& fresh, const CornerView& freshUpper,
+                 double radius) {
   if (old.phase != PairPhase::face || fresh.phase != PairPhase::face) return;
   std::array<Vec3, kManifoldPoints> place;
   const auto oldCount = static_cast<std::size_t>(old.count);

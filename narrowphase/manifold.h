@@ -38,22 +38,22 @@ struct PenaltyRow {
 
 /// Four points as impulses (methods rigid-pgs and rigid-lcp, and what falls).
 struct ImpulseRow {
-  FourVectors friction;      ///< N, mean over the step, on upper
-  FourValues normalForce;    ///< N, mean over the step
-  FourValues restDepth;      ///< m, overlap that is left as it is
-  FourValues stiffening;     ///< 1, for the springs that follow
-  FourValues untouched;      ///< 0: no springs hold energy
-  FourValues slipping;       ///< 1 where friction is at its bound, else 0
+  FourVectors friction;    ///< N, mean over the step, on upper
+  FourValues normalForce;  ///< N, mean over the step
+  FourValues restDepth;    ///< m, overlap that is left as it is
+  FourValues stiffening;   ///< 1, for the springs that follow
+  FourValues untouched;    ///< 0: no springs hold energy
+  FourValues slipping;     ///< 1 where friction is at its bound, else 0
 };
 
 /// Four points as position constraints (method xpbd).
 struct AnchorRow {
-  FourVectors displacement;  ///< m, tangential, since the point took hold
-  FourValues normalForce;    ///< N, mean over the step
-  FourValues firstFriction;  ///< N, on upper along the first tangent
-  FourValues secondFriction; ///< N, along the second
-  FourValues untouched;      ///< 0: no springs hold energy
-  FourValues slipping;       ///< 1 where friction is at its bound, else 0
+  FourVectors displacement;   ///< m, tangential, since the point took hold
+  FourValues normalForce;     ///< N, mean over the step
+  FourValues firstFriction;   ///< N, on upper along the first tangent
+  FourValues secondFriction;  ///< N, along the second
+  FourValues untouched;       ///< 0: no springs hold energy
+  FourValues slipping;        ///< 1 where friction is at its bound, else 0
 };
 
 /// Four points of a contact. Which of the three it is says `kind` of its manifold; as all members have one layout, any may be
@@ -92,8 +92,12 @@ constexpr std::size_t rowsFor(std::int32_t count) {
 }
 
 /// Row and lane of a point.
-constexpr std::size_t rowOf(std::size_t point) { return point / kRowPoints; }
-constexpr std::size_t laneOf(std::size_t point) { return point % kRowPoints; }
+constexpr std::size_t rowOf(std::size_t point) {
+  return point / kRowPoints;
+}
+constexpr std::size_t laneOf(std::size_t point) {
+  return point % kRowPoints;
+}
 
 /// A contact manifold by value: its features, the places of its points and what they store.
 struct Manifold : ManifoldShape {
@@ -183,7 +187,8 @@ void buildFloorManifold(const CornerView& upper, const ManifoldLimits& limits, M
 /// Hands what the points of an old manifold store to those of a new one of the same pair: each new point takes that of the
 /// nearest old point within `radius` (m, in space). Roles may have swapped. The corners are those of the blocks a manifold names
 /// as upper.
-void carryMemory(const ContactView& old, const CornerView& oldUpper, Manifold& fresh, const CornerView& freshUpper, double radius);
+void carryMemory(const ContactView& old, const CornerView& oldUpper, Manifold& fresh, const CornerView& freshUpper,
+                 double radius);
 
 /// Place of a manifold's point in space, m: on the incident face (face manifolds only).
 Vec3 pointOnIncidentFace(const ContactView& manifold, const CornerView& upper, std::size_t point);

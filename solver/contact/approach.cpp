@@ -89,7 +89,7 @@ double wayOf(const IslandStep& step, std::int32_t block) {
   double largest = 0.0;
   for (std::size_t a = 0; a < 3; ++a) {
     const double* now = step.simulation.state.position.values(a, b);
-    const double* before = step.engine.previous.values(a, b);
+    const double* before = step.engine.memo.previous.values(a, b);
     for (std::size_t c = 0; c < kCorners; ++c) largest = std::max(largest, std::abs(now[c] - before[c]));
   }
   return std::sqrt(3.0) * largest;
@@ -121,12 +121,12 @@ Meeting meetingOf(const IslandStep& step, std::size_t at, double way) {
   Vec3 direction = pair.b >= 0 ? engine.pairs.axisOf(at) : Vec3(Vec3::UnitZ());
   if (gapOf(pair, direction, now) > 0.0) return {};
   if (pair.b >= 0) {  // another direction may separate them still
-    direction = findSeparation(cornersOf(engine.previous, static_cast<std::size_t>(pair.a)),
-                               cornersOf(engine.previous, static_cast<std::size_t>(pair.b)))
+    direction = findSeparation(cornersOf(engine.memo.previous, static_cast<std::size_t>(pair.a)),
+                               cornersOf(engine.memo.previous, static_cast<std::size_t>(pair.b)))
                     .bestNormal();
   }
   const double gap = gapOf(pair, direction, now);
-  return {-gap, gapOf(pair, direction, engine.previous) - gap};
+  return {-gap, gapOf(pair, direction, engine.memo.previous) - gap};
 }
 
 // Depth of every point of a manifold with the blocks where these positions have them, m.
@@ -155,7 +155,7 @@ bool metAnew(const IslandStep& step, std::size_t at, double way, double most) {
   const ParticleArray& now = step.simulation.state.position;
   const std::array<double, kManifoldPoints> depth = depthsAt(step, manifold, now);
   if (begins) {
-    const std::array<double, kManifoldPoints> before = depthsAt(step, manifold, step.engine.previous);
+    const std::array<double, kManifoldPoints> before = depthsAt(step, manifold, step.engine.memo.previous);
     const double bearable = bearableClosing(step, pair);
     for (std::size_t i = 0; i < count; ++i) {
       if (touchingAt(trial, i) != 0.0 && touchingAt(manifold, i) == 0.0 && depth[i] - before[i] > bearable) return true;
@@ -194,7 +194,7 @@ double slowestRate(const IslandStep& step, const ContactView& manifold) {
       pointForces(manifold, {&upper, &still, &still}, {manifold.lower < 0 ? nullptr : &lower, &still, &still}, step.law);
   const bool any = anyPointTouches(manifold);
   const bool rebounds =
-      step.engine.blockHistory[u].explicitLast || (manifold.lower >= 0 && step.engine.blockHistory[l].explicitLast);
+      step.engine.memo.blockHistory[u].explicitLast || (manifold.lower >= 0 && step.engine.memo.blockHistory[l].explicitLast);
   double slowest = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < static_cast<std::size_t>(manifold.count); ++i) {
     if (any && touchingAt(manifold, i) == 0.0) continue;

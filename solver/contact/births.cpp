@@ -158,7 +158,7 @@ void updateSeparatedFloor(IslandStep& step, std::size_t at, Counters& counters) 
   pairs.clearance[at] = 0.0;
   if (!step.simulation.scene.settings.continuousTests) return;
   ++counters.cubicHits;
-  const double before = lowestCorner(cornersOf(step.engine.previous, block));
+  const double before = lowestCorner(cornersOf(step.engine.memo.previous, block));
   if (step.simulation.frame > 0 && before < -step.simulation.lengths.contactError_m) ++counters.contactsBornPenetrating;
   ++counters.contactsBorn;
   Manifold fresh;
@@ -203,8 +203,8 @@ void updateSeparated(IslandStep& step, std::size_t at, Counters& counters, Stage
   }
   const auto a = static_cast<std::size_t>(pair.a);
   const auto b = static_cast<std::size_t>(pair.b);
-  const MovingBlock movingA{cornersOf(step.engine.previous, a), cornersOf(step.simulation.state.position, a)};
-  const MovingBlock movingB{cornersOf(step.engine.previous, b), cornersOf(step.simulation.state.position, b)};
+  const MovingBlock movingA{cornersOf(step.engine.memo.previous, a), cornersOf(step.simulation.state.position, a)};
+  const MovingBlock movingB{cornersOf(step.engine.memo.previous, b), cornersOf(step.simulation.state.position, b)};
 
   // The margin is the gap at the step's end: along a fixed direction no pair of points can close it with less travel.
   const double touching = touchingGap(step.simulation);
@@ -236,7 +236,7 @@ void updateSeparated(IslandStep& step, std::size_t at, Counters& counters, Stage
     return;
   }
   const double unsure =
-      step.simulation.lengths.contactError_m + 2.0 * (warp(step.engine.previous, a) + warp(step.engine.previous, b));
+      step.simulation.lengths.contactError_m + 2.0 * (warp(step.engine.memo.previous, a) + warp(step.engine.memo.previous, b));
   if (step.simulation.frame > 0 && before.best() < -unsure) ++counters.contactsBornPenetrating;
   Manifold fresh;
   chooseManifold(before, movingA.end, movingB.end, limitsOf(step.simulation), 0.0, edgeSlackOf(step.simulation), pair, {}, fresh);

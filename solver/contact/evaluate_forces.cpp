@@ -32,8 +32,8 @@ void overBlocks(const IslandStep& step, bool parallel, const Kernel& kernel) {
 ContactSide sideOf(const Engine& engine, std::int32_t block, bool sameMotion) {
   if (block < 0) return {};
   const auto b = static_cast<std::size_t>(block);
-  const AffineField* motion = &engine.motion[b];
-  return {&engine.frames[b], motion, sameMotion ? motion : &engine.carriedMotion[b]};
+  const AffineField* motion = &engine.memo.motion[b];
+  return {&engine.memo.frames[b], motion, sameMotion ? motion : &engine.memo.carriedMotion[b]};
 }
 
 struct Evaluation {
@@ -58,7 +58,7 @@ SPRINGTOWER_INLINE void evaluatePair(IslandStep& step, const Evaluation& evaluat
 std::uint64_t contactsInOrder(IslandStep& step, const Evaluation& evaluation) {
   Engine& engine = step.engine;
   const std::vector<std::uint8_t>& asleep = step.simulation.asleep;
-  for (const std::int32_t block : step.blocks) engine.contactForce[static_cast<std::size_t>(block)] = AffineField{};
+  for (const std::int32_t block : step.blocks) engine.scratch.contactForce[static_cast<std::size_t>(block)] = AffineField{};
   std::uint64_t points = 0;
   for (const std::int32_t pair : step.activePairs) {
     const auto at = static_cast<std::size_t>(pair);
@@ -69,10 +69,10 @@ std::uint64_t contactsInOrder(IslandStep& step, const Evaluation& evaluation) {
     evaluatePair(step, evaluation, contact, force);
     points += static_cast<std::uint64_t>(manifold.count);
     const auto upper = static_cast<std::size_t>(manifold.upper);
-    if (asleep[upper] == 0) addForce(force.upper, engine.contactForce[upper]);
+    if (asleep[upper] == 0) addForce(force.upper, engine.scratch.contactForce[upper]);
     if (manifold.lower < 0) continue;
     const auto lower = static_cast<std::size_t>(manifold.lower);
-    if (asleep[lower] == 0) addForce(force.lower, engine.contactForce[lower]);
+    if (asleep[lower] == 0) addForce(force.lower, engine.scratch.contactForce[lower]);
   }
   return points;
 }
@@ -93,14 +93,14 @@ std::uint64_t contactsInParallel(IslandStep& step, const Evaluation& evaluation)
       const std::int32_t block = step.blocks[i];
       const auto b = static_cast<std::size_t>(block);
       AffineField sum{};
-      for (std::int32_t k = engine.blockPairStart[b]; k < engine.blockPairStart[b + 1]; ++k) {
-        const auto at = static_cast<std::size_t>(engine.blockPairs[static_cast<std::size_t>(k)]);
+      for (std::int32_t k = engine.memo.blockPairStart[b]; k < engine.memo.blockPairStart[b + 1]; ++k) {
+        const auto at = static_cast<std::size_t>(engine.memo.blockPairs[static_cast<std::size_t>(k)]);
         if (!engine.pairs.touches(at)) continue;
         const PairForce& force = engine.contacts.pairForce(engine.pairs.contact[at]);
         const bool isUpper = shapeOf(engine, at).upper == block;
         addForce(isUpper ? force.upper : force.lower, sum);
       }
-      engine.contactForce[b] = sum;
+      engine.scratch.contactForce[b] = sum;
     }
   });
   std::uint64_t points = 0;
@@ -115,12 +115,12 @@ void addUserForces(IslandStep& step) {
   for (const UserForce& user : step.simulation.scene.forces) {
     if (step.time_s < user.start_s || step.time_s >= user.end_s) continue;
     const auto block = static_cast<std::size_t>(user.block);
-    const std::int32_t island = step.engine.islands.islandOf[block];
-    if (island < 0 || island != step.engine.islands.islandOf[static_cast<std::size_t>(step.blocks.front())]) continue;
+    const std::int32_t island = step.engine.memo.islands.islandOf[block];
+    if (island < 0 || island != step.engine.memo.islands.islandOf[static_cast<std::size_t>(step.blocks.front())]) continue;
     if (user.corner >= 0) {
-      step.engine.force.add(block, static_cast<std::size_t>(user.corner), user.force);
+      step.engine.memo.force.add(block, static_cast<std::size_t>(user.corner), user.force);
     } else {
-      for (std::size_t c = 0; c < kCorners; ++c) step.engine.force.add(block, c, user.force / static_cast<double>(kCorners));
+      for (std::size_t c = 0; c < kCorners; ++c) step.engine.memo.force.add(block, c, user.force / static_cast<double>(kCorners));
     }
   }
 }
@@ -129,8 +129,8 @@ void addTether(IslandStep& step, const MotionState& state, double time_s) {
   if (!holdsTether(step)) return;
   const Tether& tether = step.simulation.tether;
   std::array<Vec3, kCorners> corner;
-  step.engine.tetherNow = tetherForces(tether, step.simulation.model, state, time_s, corner);
-  for (std::size_t c = 0; c < kCorners; ++c) step.engine.force.add(index(tether.block), c, corner[c]);
+  step.engine.memo.tetherForce = tetherForces(tether, step.simulation.model, state, time_s, corner);
+  for (std::size_t c = 0; c < kCorners; ++c) step.engine.memo.force.add(index(tether.block), c, corner[c]);
 }
 
 }  // namespace
@@ -144,14 +144,15 @@ void evaluateForces(IslandStep& step, const MotionState& state, const ParticleAr
   const Evaluation evaluation{{advance_s, step.maxStiffening, memory == Memory::trial ? 0.0 : 1.0, kick_s}, sameMotion, memory};
   using Blocks = std::span<const std::int32_t>;
   overBlocks(step, parallel, [&](Blocks blocks) {
-    computeFrames(state.position, blocks, engine.frames);
-    computeMotions(state.velocity, blocks, engine.motion);
-    if (!evaluation.sameMotion) computeMotions(carried, blocks, engine.carriedMotion);
+    computeFrames(state.position, blocks, engine.memo.frames);
+    computeMotions(state.velocity, blocks, engine.memo.motion);
+    if (!evaluation.sameMotion) computeMotions(carried, blocks, engine.memo.carriedMotion);
   });
   step.counters.contactEvaluations += parallel ? contactsInParallel(step, evaluation) : contactsInOrder(step, evaluation);
   clock.lap(Stage::contacts);
-  overBlocks(step, parallel,
-             [&](Blocks blocks) { springForces(step.simulation.model, state, blocks, engine.contactForce, engine.force); });
+  overBlocks(step, parallel, [&](Blocks blocks) {
+    springForces(step.simulation.model, state, blocks, engine.scratch.contactForce, engine.memo.force);
+  });
   if (!step.unforced) addUserForces(step);
   // Implicit steps ask for the forces at their end.
   addTether(step, state, step.time_s + (memory == Memory::trial ? advance_s : 0.0));
@@ -160,7 +161,7 @@ void evaluateForces(IslandStep& step, const MotionState& state, const ParticleAr
 }
 
 bool isPushed(const IslandStep& step) {
-  const std::vector<std::int32_t>& islandOf = step.engine.islands.islandOf;
+  const std::vector<std::int32_t>& islandOf = step.engine.memo.islands.islandOf;
   const double end_s = step.simulation.time_s + step.simulation.scene.settings.frame_s;
   return std::any_of(step.simulation.scene.forces.begin(), step.simulation.scene.forces.end(), [&](const UserForce& user) {
     return user.start_s < end_s && user.end_s > step.simulation.time_s &&
@@ -171,7 +172,7 @@ bool isPushed(const IslandStep& step) {
 bool holdsTether(const IslandStep& step) {
   const BlockId held = step.simulation.tether.block;
   if (held == kFloor || step.unforced) return false;
-  const std::vector<std::int32_t>& islandOf = step.engine.islands.islandOf;
+  const std::vector<std::int32_t>& islandOf = step.engine.memo.islands.islandOf;
   return islandOf[index(held)] >= 0 && islandOf[index(held)] == islandOf[static_cast<std::size_t>(step.blocks.front())];
 }
 
@@ -180,7 +181,7 @@ void accelerate(const IslandStep& step, std::size_t block, double (&acceleration
   const double own = inverse.own / step.simulation.model.mass[block];
   const double shared = inverse.shared / step.simulation.model.mass[block];
   for (std::size_t a = 0; a < 3; ++a) {
-    const double* f = step.engine.force.values(a, block);
+    const double* f = step.engine.memo.force.values(a, block);
     const double sum = ((f[0] + f[1]) + (f[2] + f[3])) + ((f[4] + f[5]) + (f[6] + f[7]));
     const double uniform = step.gravity[static_cast<Eigen::Index>(a)] - shared * sum;
     for (std::size_t c = 0; c < kCorners; ++c) acceleration[a][c] = own * f[c] + uniform;

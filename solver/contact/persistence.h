@@ -11,6 +11,7 @@ namespace springtower {
 /// points reach, lost: kept points that a move of the outline has pressed deeper give some back, and what points stored that are
 /// gone is shared by those that are new, as if they had all been reached at one depth. So a rolling pair that keeps changing its
 /// points neither gains energy nor sinks. Without anything stored a new point starts like any other when it touches.
-void keepContactMemory(const ContactView& old, const ParticleArray& position, const ContactLaw& law, double radius, Manifold& fresh);
+void keepContactMemory(const ContactView& old, const ParticleArray& position, const ContactLaw& law, double radius,
+                       Manifold& fresh);
 
 }  // namespace springtower

@@ -16,14 +16,14 @@ void chooseTangents(std::array<Vec3, 3>& direction) {
 
 std::int32_t bodyOf(const IslandStep& step, std::int32_t block) {
   if (block < 0 || step.simulation.asleep[static_cast<std::size_t>(block)] != 0) return -1;
-  return step.engine.nodeOf[static_cast<std::size_t>(block)];
+  return step.engine.scratch.nodeOf[static_cast<std::size_t>(block)];
 }
 
-// The points of a manifold as they lie at engine.frames.
+// The points of a manifold as they lie at engine.memo.frames.
 PointForces pointsNow(const IslandStep& step, const ContactView& manifold) {
   static const AffineField still{};
   const auto side = [&](std::int32_t block) {
-    return block < 0 ? ContactSide{} : ContactSide{&step.engine.frames[static_cast<std::size_t>(block)], &still, &still};
+    return block < 0 ? ContactSide{} : ContactSide{&step.engine.memo.frames[static_cast<std::size_t>(block)], &still, &still};
   };
   return pointForces(manifold, side(manifold.upper), side(manifold.lower), step.law);
 }

@@ -18,8 +18,8 @@ constexpr PointKind pointKindOf(Method method) {
   return isRigid(method) ? PointKind::impulse : PointKind::penalty;
 }
 
-/// Lists all points of an island's touching manifolds at the places of engine.frames, with arms, gaps, effective masses and the
-/// impulses of the step before.
+/// Lists all points of an island's touching manifolds at the places of engine.memo.frames, with arms, gaps, effective masses and
+/// the impulses of the step before.
 void gatherContacts(IslandStep& step, RigidIsland& island);
 
 /// Puts the impulses of a step back into the manifolds, as forces.

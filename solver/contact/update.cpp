@@ -45,7 +45,7 @@ SPRINGTOWER_INLINE BlockTravel blockTravel(const ParticleArray& now, const Parti
 
 // A path longer than its box reaches need not lead out of it.
 bool isInSweptBox(const IslandStep& step, std::size_t block) {
-  const SweptBoxes& boxes = step.engine.boxes;
+  const SweptBoxes& boxes = step.engine.memo.boxes;
   for (std::size_t a = 0; a < 3; ++a) {
     const double* x = step.simulation.state.position.values(a, block);
     const auto [least, most] = std::minmax_element(x, x + kCorners);
@@ -66,14 +66,15 @@ std::int32_t addPaths(IslandStep& step, bool& inside) {
   inside = true;
   for (const std::int32_t block : step.blocks) {
     const auto b = static_cast<std::size_t>(block);
-    const auto [path, deformed] = blockTravel(step.simulation.state.position, step.engine.previous, b);
+    const auto [path, deformed] = blockTravel(step.simulation.state.position, step.engine.memo.previous, b);
     const double most = kMaxTravelPerStep * step.simulation.model.dimensions[b].minCoeff();
     if (!(deformed < static_cast<double>(kCorners) * most * most)) return block;
-    BlockHistory& history = step.engine.blockHistory[b];
+    BlockHistory& history = step.engine.memo.blockHistory[b];
     history.travel += path;
-    step.engine.path[b] = path;
-    if (path > step.engine.foreseenPath[b]) step.activeListSteps = 0;
-    if (history.travel - step.engine.travelAtSweep[b] > step.engine.reach[b]) inside = inside && isInSweptBox(step, b);
+    step.engine.scratch.path[b] = path;
+    if (path > step.engine.scratch.foreseenPath[b]) step.activeListSteps = 0;
+    if (history.travel - step.engine.memo.travelAtSweep[b] > step.engine.scratch.reach[b])
+      inside = inside && isInSweptBox(step, b);
   }
   return -1;
 }
@@ -85,7 +86,7 @@ bool addTravel(IslandStep& step) {
   const std::int32_t diverged = addPaths(step, inside);
   if (diverged < 0) return inside;
   const double deformed =
-      blockTravel(step.simulation.state.position, step.engine.previous, static_cast<std::size_t>(diverged)).deformed;
+      blockTravel(step.simulation.state.position, step.engine.memo.previous, static_cast<std::size_t>(diverged)).deformed;
   const double time = step.time_s + step.drift_s;
   throw DivergenceError(
       fmt::format("block {} diverged at {:.6f} s: {}", diverged, time,
@@ -130,7 +131,7 @@ constexpr double kStayed = 0.9;
 // How one block of a pair lies to the other: b's centre and sides along a's edges, or a's own where b is the floor, m.
 RelativePose poseOf(const IslandStep& step, const BlockPair& pair) {
   const auto a = static_cast<std::size_t>(pair.a);
-  const BlockFrame& frame = step.engine.frames[a];
+  const BlockFrame& frame = step.engine.memo.frames[a];
   RelativePose pose;
   if (pair.b < 0) {
     for (std::size_t k = 0; k < 3; ++k) {
@@ -139,7 +140,7 @@ RelativePose poseOf(const IslandStep& step, const BlockPair& pair) {
     }
     return pose;
   }
-  const AffineField& other = step.engine.frames[static_cast<std::size_t>(pair.b)].place;
+  const AffineField& other = step.engine.memo.frames[static_cast<std::size_t>(pair.b)].place;
   const Vec3& lengths = step.simulation.model.dimensions[a];
   for (std::size_t k = 0; k < 3; ++k) {
     const double length = lengths[static_cast<Eigen::Index>(k)];
@@ -225,21 +226,21 @@ void listWatched(IslandStep& step) {
   const double falling_m = kListedSteps * step.simulation.scene.gravity.magnitude * step.drift_s * step.drift_s;
   for (const std::int32_t block : step.blocks) {
     const auto b = static_cast<std::size_t>(block);
-    engine.foreseenPath[b] = kFaster * (engine.path[b] + falling_m);
+    engine.scratch.foreseenPath[b] = kFaster * (engine.scratch.path[b] + falling_m);
   }
   const auto pathOf = [&](std::int32_t block) {
-    return block < 0 || sleeps(step.simulation, block) ? 0.0 : engine.foreseenPath[static_cast<std::size_t>(block)];
+    return block < 0 || sleeps(step.simulation, block) ? 0.0 : engine.scratch.foreseenPath[static_cast<std::size_t>(block)];
   };
-  const std::size_t first = static_cast<std::size_t>(step.pairs.data() - engine.islandPairs.data());
+  const std::size_t first = static_cast<std::size_t>(step.pairs.data() - engine.memo.islandPairs.data());
   std::size_t count = 0;
   for (const std::int32_t pair : step.pairs) {
     const auto at = static_cast<std::size_t>(pair);
     const BlockPair& key = engine.pairs.key[at];
     const double left = engine.pairs.clearance[at] - (travelOf(engine, at) - engine.pairs.travelAtCheck[at]);
     if (!engine.pairs.touches(at) && left > kListedSteps * (pathOf(key.a) + pathOf(key.b))) continue;
-    engine.watchedPairs[first + count++] = pair;
+    engine.scratch.watchedPairs[first + count++] = pair;
   }
-  step.activePairs = std::span<const std::int32_t>(engine.watchedPairs).subspan(first, count);
+  step.activePairs = std::span<const std::int32_t>(engine.scratch.watchedPairs).subspan(first, count);
   step.activeListSteps = kListedSteps;
 }
 
@@ -303,8 +304,8 @@ bool updateContacts(IslandStep& step, const RefreshTravel& renewal) {
 
   constexpr std::size_t kChunk = 256;
   const std::size_t chunks = (step.activePairs.size() + kChunk - 1) / kChunk;
-  std::vector<Counters>& counted = step.engine.chunkCounters;
-  std::vector<StageTimes>& timed = step.engine.chunkTimes;
+  std::vector<Counters>& counted = step.engine.scratch.chunkCounters;
+  std::vector<StageTimes>& timed = step.engine.scratch.chunkTimes;
   if (counted.size() < chunks) counted.resize(chunks);
   if (timed.size() < chunks) timed.resize(chunks);
   tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t chunk) {

@@ -25,7 +25,7 @@ void stepSemiImplicitEuler(IslandStep& step) {
       for (std::size_t a = 0; a < 3; ++a) {
         double* x = state.position.values(a, block);
         double* v = state.velocity.values(a, block);
-        double* before = step.engine.previous.values(a, block);
+        double* before = step.engine.memo.previous.values(a, block);
         for (std::size_t c = 0; c < kCorners; ++c) {
           before[c] = x[c];
           v[c] += step.kick_s * acceleration[a][c];

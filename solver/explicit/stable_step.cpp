@@ -39,7 +39,7 @@ void addManifold(Simulation& simulation, const ContactView& m) {
                            std::max(1.0 + settings.viscoelasticRatio, settings.tangentialRatio) * share;
   const auto add = [&](std::size_t block, const std::array<double, 3>& place, double k) {
     const Eigen::Vector4d w = affineWeights(place, settings.inertia, simulation.model.mass[block]);
-    engine.contactMetric[block] += k * w * w.transpose();
+    engine.scratch.contactMetric[block] += k * w * w.transpose();
   };
   for (std::size_t p = 0; p < static_cast<std::size_t>(m.count); ++p) {
     const double k = stiffness * m.penalty(p).stiffening[laneOf(p)];
@@ -55,8 +55,8 @@ void addManifold(Simulation& simulation, const ContactView& m) {
     place[face.v] = m.v(p);
     if (moveUpper) add(upper, place, k);
     if (!moveLower) continue;
-    const BlockFrame& above = engine.frames[upper];
-    const BlockFrame& below = engine.frames[lower];
+    const BlockFrame& above = engine.memo.frames[upper];
+    const BlockFrame& below = engine.memo.frames[lower];
     std::array<double, 3> arm{};
     for (std::size_t a = 0; a < 3; ++a) {
       arm[a] = above.place.centre[a] - below.place.centre[a];
@@ -73,8 +73,8 @@ void addManifold(Simulation& simulation, const ContactView& m) {
 
 double spectralBound(Simulation& simulation, std::span<const std::int32_t> blocks, std::span<const std::int32_t> pairs) {
   Engine& engine = *simulation.engine;
-  computeFrames(simulation.state.position, blocks, engine.frames);
-  for (const std::int32_t block : blocks) engine.contactMetric[static_cast<std::size_t>(block)].setZero();
+  computeFrames(simulation.state.position, blocks, engine.memo.frames);
+  for (const std::int32_t block : blocks) engine.scratch.contactMetric[static_cast<std::size_t>(block)].setZero();
   for (const std::int32_t at : pairs) {
     const ContactView manifold = contactOf(engine, static_cast<std::size_t>(at));
     if (manifold.phase != PairPhase::separated) addManifold(simulation, manifold);
@@ -85,8 +85,8 @@ double spectralBound(Simulation& simulation, std::span<const std::int32_t> block
     const auto b = static_cast<std::size_t>(block);
     springs = std::max(springs, engine.springRadius[b]);
     // The trace is a bound as well and often settles that a block is not the largest.
-    if (engine.contactMetric[b].trace() <= contacts) continue;
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> solver(engine.contactMetric[b], Eigen::EigenvaluesOnly);
+    if (engine.scratch.contactMetric[b].trace() <= contacts) continue;
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> solver(engine.scratch.contactMetric[b], Eigen::EigenvaluesOnly);
     contacts = std::max(contacts, solver.eigenvalues()[3]);
   }
   return springs + 2.0 * contacts;

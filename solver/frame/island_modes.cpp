@@ -108,7 +108,7 @@ IslandFacts islandFacts(const IslandStep& step) {
   if (!facts.leftAlone) return facts;  // nothing else counts then
   std::size_t fallen = 0;
   for (const std::int32_t block : step.blocks) {
-    const BlockHistory& history = step.engine.blockHistory[static_cast<std::size_t>(block)];
+    const BlockHistory& history = step.engine.memo.blockHistory[static_cast<std::size_t>(block)];
     facts.rigidBefore = facts.rigidBefore || history.falls;
     facts.rigidPinned = facts.rigidPinned || history.explicitFrames > 0;
     fallen += history.hasFallen ? 1U : 0U;
@@ -131,7 +131,7 @@ IslandMode nextMode(ModeChange when, const IslandFacts& facts) {
 
 void setMode(IslandStep& step, IslandMode mode) {
   const bool falling = mode == IslandMode::rigid;
-  std::vector<BlockHistory>& history = step.engine.blockHistory;
+  std::vector<BlockHistory>& history = step.engine.memo.blockHistory;
   const auto forEachContact = [&](PointKind kind, const auto& change) {
     for (const std::int32_t pair : step.pairs) {
       const auto at = static_cast<std::size_t>(pair);
@@ -165,13 +165,13 @@ IslandOutcome runFall(IslandStep& step, double begin_s) {
   const IslandOutcome outcome =
       runRigidSteps(step, std::clamp(static_cast<int>(std::ceil(steps)), kFallSteps, kMaxFallSteps), begin_s);
   for (const std::int32_t block : step.blocks) {
-    BlockHistory& history = step.engine.blockHistory[static_cast<std::size_t>(block)];
+    BlockHistory& history = step.engine.memo.blockHistory[static_cast<std::size_t>(block)];
     history.lastExplicitStep_s = 0.0;
     history.lastImplicitStep_s = 0.0;
     history.explicitLast = true;
     history.explicitFrames = std::max(0, history.explicitFrames - 1);
   }
-  step.engine.newtonSystems[static_cast<std::size_t>(step.blocks.front())].forcesKnown = false;
+  step.engine.memo.newtonSystems[static_cast<std::size_t>(step.blocks.front())].forcesKnown = false;
   return outcome;
 }
 

@@ -19,8 +19,8 @@ void dropPair(Simulation& simulation, std::size_t at) {
   Engine& engine = *simulation.engine;
   const BlockPair pair = engine.pairs.key[at];
   if (pair.b >= 0 && !sleepLoadOf(engine, at).force.isZero(0.0)) {
-    if (sleeps(simulation, pair.a)) engine.lostPartner.push_back(pair.a);
-    if (sleeps(simulation, pair.b)) engine.lostPartner.push_back(pair.b);
+    if (sleeps(simulation, pair.a)) engine.scratch.lostPartners.push_back(pair.a);
+    if (sleeps(simulation, pair.b)) engine.scratch.lostPartners.push_back(pair.b);
   }
   if (engine.pairs.contact[at] >= 0) engine.contacts.giveBack(engine.pairs.contact[at]);
 }
@@ -29,12 +29,12 @@ void dropPair(Simulation& simulation, std::size_t at) {
 template <class Visit>
 void forEachSwept(const Simulation& simulation, const Visit& visit) {
   const Engine& engine = *simulation.engine;
-  auto pair = engine.sweptPairs.begin();
+  auto pair = engine.memo.sweptPairs.begin();
   const auto blocks = static_cast<std::int32_t>(simulation.model.blockCount());
   for (std::int32_t block = 0; block < blocks; ++block) {
     const auto b = static_cast<std::size_t>(block);
-    if (simulation.scene.floor && simulation.asleep[b] == 0 && engine.boxes.lower[2][b] <= 0.0) visit(BlockPair{block, -1});
-    for (; pair != engine.sweptPairs.end() && pair->a == block; ++pair) visit(*pair);
+    if (simulation.scene.floor && simulation.asleep[b] == 0 && engine.memo.boxes.lower[2][b] <= 0.0) visit(BlockPair{block, -1});
+    for (; pair != engine.memo.sweptPairs.end() && pair->a == block; ++pair) visit(*pair);
   }
 }
 
@@ -69,8 +69,8 @@ void rearrange(const std::vector<std::int32_t>& from, T first, std::vector<std::
 bool mergePairs(Simulation& simulation) {
   Engine& engine = *simulation.engine;
   PairTable& pairs = engine.pairs;
-  std::vector<BlockPair>& keys = engine.mergedKeys;
-  std::vector<std::int32_t>& from = engine.mergedFrom;
+  std::vector<BlockPair>& keys = engine.scratch.mergedKeys;
+  std::vector<std::int32_t>& from = engine.scratch.mergedFrom;
   keys.clear();
   from.clear();
   std::size_t old = 0;
@@ -97,57 +97,56 @@ bool mergePairs(Simulation& simulation) {
   keepDormantBefore({static_cast<std::int32_t>(simulation.model.blockCount()), 0});
   if (!changed) return false;
   std::swap(pairs.key, keys);
-  rearrange(from, PairPhase::separated, engine.mergedColumn, pairs.phase);
-  rearrange(from, std::int32_t{-1}, engine.mergedColumn, pairs.contact);
-  rearrange(from, 0.0, engine.mergedColumn, pairs.clearance);
-  rearrange(from, 0.0, engine.mergedColumn, pairs.travelAtCheck);
-  for (std::size_t k = 0; k < 3; ++k) rearrange(from, k == 2 ? 1.0 : 0.0, engine.mergedColumn, pairs.axis[k]);
+  rearrange(from, PairPhase::separated, engine.scratch.mergedColumn, pairs.phase);
+  rearrange(from, std::int32_t{-1}, engine.scratch.mergedColumn, pairs.contact);
+  rearrange(from, 0.0, engine.scratch.mergedColumn, pairs.clearance);
+  rearrange(from, 0.0, engine.scratch.mergedColumn, pairs.travelAtCheck);
+  for (std::size_t k = 0; k < 3; ++k) rearrange(from, k == 2 ? 1.0 : 0.0, engine.scratch.mergedColumn, pairs.axis[k]);
   keys.reserve(pairs.key.capacity());  // the two change places: as large as one has grown, the other will be
   return true;
 }
 
 // The island a pair moves with: that of whichever block is awake.
 std::int32_t islandOf(const Engine& engine, const BlockPair& pair) {
-  const std::int32_t island = engine.islands.islandOf[static_cast<std::size_t>(pair.a)];
-  return island >= 0 || pair.b < 0 ? island : engine.islands.islandOf[static_cast<std::size_t>(pair.b)];
+  const std::int32_t island = engine.memo.islands.islandOf[static_cast<std::size_t>(pair.a)];
+  return island >= 0 || pair.b < 0 ? island : engine.memo.islands.islandOf[static_cast<std::size_t>(pair.b)];
 }
 
 // Lists the pairs of each island, in order; for islands that run on many threads those of each block as well.
 void listIslandPairs(Simulation& simulation) {
   Engine& engine = *simulation.engine;
-  const std::size_t islands = engine.islands.count();
-  engine.pairStart.assign(islands + 1, 0);
+  const std::size_t islands = engine.memo.islands.count();
+  engine.memo.pairStart.assign(islands + 1, 0);
   for (const BlockPair& pair : engine.pairs.key) {
     const std::int32_t island = islandOf(engine, pair);
-    if (island >= 0) ++engine.pairStart[static_cast<std::size_t>(island) + 1];
+    if (island >= 0) ++engine.memo.pairStart[static_cast<std::size_t>(island) + 1];
   }
-  for (std::size_t i = 0; i < islands; ++i) engine.pairStart[i + 1] += engine.pairStart[i];
-  engine.islandPairs.resize(static_cast<std::size_t>(engine.pairStart[islands]));
-  engine.watchedPairs.resize(engine.islandPairs.size());
-  engine.cursor.assign(engine.pairStart.begin(), engine.pairStart.end());
+  for (std::size_t i = 0; i < islands; ++i) engine.memo.pairStart[i + 1] += engine.memo.pairStart[i];
+  engine.memo.islandPairs.resize(static_cast<std::size_t>(engine.memo.pairStart[islands]));
+  engine.scratch.cursor.assign(engine.memo.pairStart.begin(), engine.memo.pairStart.end());
   for (std::size_t p = 0; p < engine.pairs.size(); ++p) {
     const std::int32_t island = islandOf(engine, engine.pairs.key[p]);
     if (island >= 0)
-      engine.islandPairs[static_cast<std::size_t>(engine.cursor[static_cast<std::size_t>(island)]++)] =
+      engine.memo.islandPairs[static_cast<std::size_t>(engine.scratch.cursor[static_cast<std::size_t>(island)]++)] =
           static_cast<std::int32_t>(p);
   }
 
   bool parallel = false;
-  for (std::size_t i = 0; i < islands && !parallel; ++i) parallel = engine.islands.island(i).size() >= kParallelBlocks;
+  for (std::size_t i = 0; i < islands && !parallel; ++i) parallel = engine.memo.islands.island(i).size() >= kParallelBlocks;
   if (!parallel) return;
   const std::size_t blocks = simulation.model.blockCount();
-  engine.blockPairStart.assign(blocks + 1, 0);
+  engine.memo.blockPairStart.assign(blocks + 1, 0);
   const auto forEachAwake = [&](const BlockPair& pair, const auto& visit) {
     if (simulation.asleep[static_cast<std::size_t>(pair.a)] == 0) visit(static_cast<std::size_t>(pair.a));
     if (pair.b >= 0 && simulation.asleep[static_cast<std::size_t>(pair.b)] == 0) visit(static_cast<std::size_t>(pair.b));
   };
-  for (const BlockPair& pair : engine.pairs.key) forEachAwake(pair, [&](std::size_t b) { ++engine.blockPairStart[b + 1]; });
-  for (std::size_t b = 0; b < blocks; ++b) engine.blockPairStart[b + 1] += engine.blockPairStart[b];
-  engine.blockPairs.resize(static_cast<std::size_t>(engine.blockPairStart[blocks]));
-  engine.cursor.assign(engine.blockPairStart.begin(), engine.blockPairStart.end());
+  for (const BlockPair& pair : engine.pairs.key) forEachAwake(pair, [&](std::size_t b) { ++engine.memo.blockPairStart[b + 1]; });
+  for (std::size_t b = 0; b < blocks; ++b) engine.memo.blockPairStart[b + 1] += engine.memo.blockPairStart[b];
+  engine.memo.blockPairs.resize(static_cast<std::size_t>(engine.memo.blockPairStart[blocks]));
+  engine.scratch.cursor.assign(engine.memo.blockPairStart.begin(), engine.memo.blockPairStart.end());
   for (std::size_t p = 0; p < engine.pairs.size(); ++p) {
     forEachAwake(engine.pairs.key[p], [&](std::size_t b) {
-      engine.blockPairs[static_cast<std::size_t>(engine.cursor[b]++)] = static_cast<std::int32_t>(p);
+      engine.memo.blockPairs[static_cast<std::size_t>(engine.scratch.cursor[b]++)] = static_cast<std::int32_t>(p);
     });
   }
 }
@@ -158,26 +157,28 @@ void findNearPairs(Simulation& simulation, double margin_m) {
   Engine& engine = *simulation.engine;
   {
     const StageTimer timer(simulation.stageTimes, Stage::broadphase);
-    engine.awakeBlocks.clear();
+    engine.scratch.awakeBlocks.clear();
     for (std::size_t b = 0; b < simulation.asleep.size(); ++b) {
-      if (simulation.asleep[b] == 0) engine.awakeBlocks.push_back(static_cast<std::int32_t>(b));
+      if (simulation.asleep[b] == 0) engine.scratch.awakeBlocks.push_back(static_cast<std::int32_t>(b));
     }
-    computeSweptBoxes(simulation.state, engine.awakeBlocks, simulation.scene.gravity.magnitude, simulation.scene.settings.frame_s,
-                      margin_m, engine.boxes, engine.reach);
-    for (const std::int32_t block : engine.awakeBlocks) {
+    computeSweptBoxes(simulation.state, engine.scratch.awakeBlocks, simulation.scene.gravity.magnitude,
+                      simulation.scene.settings.frame_s, margin_m, engine.memo.boxes, engine.scratch.reach);
+    for (const std::int32_t block : engine.scratch.awakeBlocks) {
       const auto b = static_cast<std::size_t>(block);
-      engine.travelAtSweep[b] = engine.blockHistory[b].travel;
+      engine.memo.travelAtSweep[b] = engine.memo.blockHistory[b].travel;
     }
-    if (simulation.frame == 0 || !engine.swept) reset(engine.sweep, engine.boxes);
-    engine.swept = true;
-    findPairs(engine.sweep, engine.boxes, simulation.asleep, engine.sweptPairs);
-    simulation.counters.blockPairs += engine.sweptPairs.size();
+    if (simulation.frame == 0 || !engine.memo.swept) reset(engine.memo.sweep, engine.memo.boxes);
+    engine.memo.swept = true;
+    findPairs(engine.memo.sweep, engine.memo.boxes, simulation.asleep, engine.memo.sweptPairs);
+    simulation.counters.blockPairs += engine.memo.sweptPairs.size();
     releaseContacts(simulation);
-    engine.topologyChanged = mergePairs(simulation);
+    engine.memo.topologyChanged = mergePairs(simulation);
   }
   const StageTimer timer(simulation.stageTimes, Stage::islandsAndSleep);
-  engine.topologyChanged = updateIslands(engine.islands, engine.sweptPairs, simulation.asleep) || engine.topologyChanged;
-  if (engine.topologyChanged) listIslandPairs(simulation);
+  engine.memo.topologyChanged =
+      updateIslands(engine.memo.islands, engine.memo.sweptPairs, simulation.asleep) || engine.memo.topologyChanged;
+  if (engine.memo.topologyChanged) listIslandPairs(simulation);
+  engine.scratch.watchedPairs.resize(engine.memo.islandPairs.size());  // also where a snapshot has brought other lists
 }
 
 }  // namespace springtower

@@ -94,27 +94,27 @@ void sizeEngine(Simulation& simulation) {
   const BlockModel& model = simulation.model;
   const std::size_t count = model.blockCount();
   Engine& e = *simulation.engine;
-  e.boxes.resize(count);
-  e.reach.assign(count, 0.0);
-  e.path.assign(count, 0.0);
-  e.foreseenPath.assign(count, 0.0);
-  e.travelAtSweep.assign(count, 0.0);
-  e.force.resize(count);
-  e.frames.resize(count);
-  e.motion.resize(count);
-  e.contactForce.resize(count);
-  e.contactMetric.resize(count);
+  e.memo.boxes.resize(count);
+  e.scratch.reach.assign(count, 0.0);
+  e.scratch.path.assign(count, 0.0);
+  e.scratch.foreseenPath.assign(count, 0.0);
+  e.memo.travelAtSweep.assign(count, 0.0);
+  e.memo.force.resize(count);
+  e.memo.frames.resize(count);
+  e.memo.motion.resize(count);
+  e.scratch.contactForce.resize(count);
+  e.scratch.contactMetric.resize(count);
   e.springRadius.resize(count);
-  e.previous = simulation.state.position;
-  e.blockHistory.assign(count, BlockHistory{});
-  e.rest.resize(count);
-  e.newContactCount.assign(count, 0);
-  e.awakeCount = count;
+  e.memo.previous = simulation.state.position;
+  e.memo.blockHistory.assign(count, BlockHistory{});
+  e.sleep.windows.resize(count);
+  e.scratch.newContactCount.assign(count, 0);
+  e.sleep.awakeCount = count;
   for (std::size_t b = 0; b < count; ++b) {
     const bool asBefore =
         b > 0 && scene.blocks[b].dimensions == scene.blocks[b - 1].dimensions && model.mass[b] == model.mass[b - 1];
     e.springRadius[b] = asBefore ? e.springRadius[b - 1] : blockSpectralRadius(model, scene.settings.inertia, b);
-    e.rest[b].centre = centre(simulation.state.position, b);
+    e.sleep.windows[b].centre = centre(simulation.state.position, b);
   }
 }
 
@@ -154,17 +154,17 @@ Simulation::Simulation(const Scene& given) : scene(given), engine(std::make_uniq
     prepareImplicit(*this);  // explicit methods start in the equilibrium that implicit steps find
   }
   if (scene.settings.method == Method::midpoint || scene.settings.method == Method::rungeKutta4) {
-    e.carried.resize(count);
-    e.carriedMotion.resize(count);
-    for (MotionState& stage : e.stage) stage = state;
-    for (ParticleArray& acceleration : e.stageAcceleration) acceleration.resize(count);
+    e.memo.carried.resize(count);
+    e.memo.carriedMotion.resize(count);
+    for (MotionState& stage : e.scratch.stage) stage = state;
+    for (ParticleArray& acceleration : e.scratch.stageAcceleration) acceleration.resize(count);
   }
 }
 
 void kick(Simulation& simulation, std::size_t block, const Vec3& velocity) {
   for (std::size_t c = 0; c < kCorners; ++c) simulation.state.velocity.add(block, c, velocity);
-  simulation.engine->blockHistory[block].lastImplicitStep_s = 0.0;
-  simulation.engine->blockHistory[block].explicitFrames = kExplicitFrames;
+  simulation.engine->memo.blockHistory[block].lastImplicitStep_s = 0.0;
+  simulation.engine->memo.blockHistory[block].explicitFrames = kExplicitFrames;
   simulation.restTime_s[block] = 0.0;
   wake(simulation, block, WakeReason::kick);
 }

@@ -20,6 +20,7 @@
 #include "solver/sleep/rest.h"
 #include "solver/world/checkpoint.h"
 #include "solver/world/island_step.h"
+#include "solver/world/poison.h"
 #include "solver/world/stiffness.h"
 
 #include <algorithm>
@@ -50,7 +51,7 @@ struct ApproachEstimate {
 
 ApproachEstimate approachOf(const IslandStep& step) {
   const Simulation& simulation = step.simulation;
-  std::vector<std::int32_t>& beginning = step.engine.newContactCount;
+  std::vector<std::int32_t>& beginning = step.engine.scratch.newContactCount;
   for (const std::int32_t block : step.blocks) beginning[static_cast<std::size_t>(block)] = 0;
   const ParticleArray& velocity = simulation.state.velocity;
   const double corner = affineCornerInverseMass(simulation.scene.settings.inertia);
@@ -68,7 +69,7 @@ ApproachEstimate approachOf(const IslandStep& step) {
     double speed = 0.0;
     double reduced = massA;
     double inverse = corner / massA;
-    double travel = step.engine.blockHistory[a].travel;
+    double travel = step.engine.memo.blockHistory[a].travel;
     if (pair.b < 0) {
       speed = fastestCorner(velocity, a, Vec3::Zero());
     } else {
@@ -78,7 +79,7 @@ ApproachEstimate approachOf(const IslandStep& step) {
       const double massB = simulation.model.mass[b];
       reduced = massA * massB / (massA + massB);
       inverse += corner / massB;
-      travel += step.engine.blockHistory[b].travel;
+      travel += step.engine.memo.blockHistory[b].travel;
       resting = resting && simulation.restTime_s[b] > 0.0;
     }
     if (!resting) speed += fall;
@@ -124,7 +125,7 @@ double shortening(double radius, double dampingTime_s, double damping) {
 int chooseSubsteps(IslandStep& step) {
   Simulation& simulation = step.simulation;
   const Settings& settings = simulation.scene.settings;
-  BlockHistory& record = step.engine.blockHistory[static_cast<std::size_t>(step.blocks.front())];
+  BlockHistory& record = step.engine.memo.blockHistory[static_cast<std::size_t>(step.blocks.front())];
   const std::uint64_t signature = contactSignature(step.engine, step.pairs) ^ (step.blocks.size() << 1U);
   if (signature != record.contactSignature || record.spectralRadius == 0.0) {
     record.spectralRadius = spectralBound(simulation, step.blocks, step.pairs);
@@ -218,7 +219,7 @@ IslandOutcome runIsland(IslandStep& step) {
   const double rest_s = settings.frame_s - begin_s;
   outcome.substeps = std::max(1, static_cast<int>(std::ceil(chooseSubsteps(step) * rest_s / settings.frame_s - 1e-9)));
   step.drift_s = rest_s / outcome.substeps;
-  BlockHistory& record = step.engine.blockHistory[static_cast<std::size_t>(step.blocks.front())];
+  BlockHistory& record = step.engine.memo.blockHistory[static_cast<std::size_t>(step.blocks.front())];
   double last = record.lastExplicitStep_s;
   step.usesActiveList = true;
   step.activeListSteps = 0;
@@ -234,7 +235,7 @@ IslandOutcome runIsland(IslandStep& step) {
     if (!outcome.inside) break;
   }
   for (const std::int32_t block : step.blocks) {
-    BlockHistory& history = step.engine.blockHistory[static_cast<std::size_t>(block)];
+    BlockHistory& history = step.engine.memo.blockHistory[static_cast<std::size_t>(block)];
     history.lastExplicitStep_s = last;
     history.explicitLast = true;
     history.lastImplicitStep_s = 0.0;
@@ -261,42 +262,42 @@ void checkShapes(const Simulation& simulation, std::span<const std::int32_t> blo
 // Runs all islands through the frame; false when one has left its swept boxes.
 bool runIslands(Simulation& simulation) {
   Engine& engine = *simulation.engine;
-  const std::size_t islands = engine.islands.count();
-  engine.islandCounters.assign(islands, Counters{});
-  engine.islandTimes.assign(islands, StageTimes{});
-  engine.islandOutcome.assign(islands, 0);
+  const std::size_t islands = engine.memo.islands.count();
+  engine.scratch.islandCounters.assign(islands, Counters{});
+  engine.scratch.islandTimes.assign(islands, StageTimes{});
+  engine.scratch.islandOutcome.assign(islands, 0);
   const ContactLaw law = contactLaw(simulation);
   prepareFrameStart(simulation);
   if (simulation.scene.settings.method == Method::report) prepareReportFrame(simulation);
   bool wide = false;
-  for (std::size_t i = 0; i < islands; ++i) wide = wide || engine.islands.island(i).size() >= kParallelBlocks;
+  for (std::size_t i = 0; i < islands; ++i) wide = wide || engine.memo.islands.island(i).size() >= kParallelBlocks;
   engine.contacts.reserve(engine.pairs.size(), wide);
-  if (engine.topologyChanged) {
+  if (engine.memo.topologyChanged) {
     for (const std::int32_t contact : engine.pairs.contact) {
       if (contact >= 0) engine.contacts.pose(contact) = RelativePose{};
     }
   }
   tbb::parallel_for(std::size_t{0}, islands, [&](std::size_t i) {
-    const auto first = static_cast<std::size_t>(engine.pairStart[i]);
+    const auto first = static_cast<std::size_t>(engine.memo.pairStart[i]);
     IslandStep step{simulation,
                     engine,
-                    engine.islands.island(i),
-                    std::span<const std::int32_t>(engine.islandPairs)
-                        .subspan(first, static_cast<std::size_t>(engine.pairStart[i + 1]) - first),
-                    engine.islandCounters[i],
-                    engine.islandTimes[i],
+                    engine.memo.islands.island(i),
+                    std::span<const std::int32_t>(engine.memo.islandPairs)
+                        .subspan(first, static_cast<std::size_t>(engine.memo.pairStart[i + 1]) - first),
+                    engine.scratch.islandCounters[i],
+                    engine.scratch.islandTimes[i],
                     law};
     saveFrameStart(step);
     const IslandOutcome outcome = runIsland(step);
-    engine.islandOutcome[i] = outcome.inside ? outcome.substeps : -1;
+    engine.scratch.islandOutcome[i] = outcome.inside ? outcome.substeps : -1;
   });
   bool inside = true;
   simulation.substeps = 0;
   for (std::size_t i = 0; i < islands; ++i) {
-    inside = inside && engine.islandOutcome[i] >= 0;
-    simulation.substeps = std::max(simulation.substeps, engine.islandOutcome[i]);
+    inside = inside && engine.scratch.islandOutcome[i] >= 0;
+    simulation.substeps = std::max(simulation.substeps, engine.scratch.islandOutcome[i]);
   }
-  for (std::size_t i = 0; i < islands; ++i) simulation.stageTimes += engine.islandTimes[i];
+  for (std::size_t i = 0; i < islands; ++i) simulation.stageTimes += engine.scratch.islandTimes[i];
   return inside;
 }
 
@@ -304,9 +305,12 @@ bool runIslands(Simulation& simulation) {
 
 void stepFrame(Simulation& simulation) {
   Engine& engine = *simulation.engine;
+#ifndef NDEBUG
+  poisonScratch(engine);
+#endif
   wakeForInputs(simulation);
-  engine.lostPartner.clear();
-  if (engine.awakeCount > 0) {
+  engine.scratch.lostPartners.clear();
+  if (engine.sleep.awakeCount > 0) {
     double margin = kSweepMargin * simulation.lengths.blockHeight_m;
     findNearPairs(simulation, margin);
     while (true) {
@@ -322,10 +326,10 @@ void stepFrame(Simulation& simulation) {
       if (simulation.scene.settings.method == Method::report) rewindReportFrame(simulation);
       findNearPairs(simulation, margin);
     }
-    for (const Counters& island : engine.islandCounters) simulation.counters += island;
+    for (const Counters& island : engine.scratch.islandCounters) simulation.counters += island;
     simulation.counters.steps += static_cast<std::uint64_t>(simulation.substeps);
     simulation.time_s += simulation.scene.settings.frame_s;
-    checkShapes(simulation, engine.awakeBlocks);
+    checkShapes(simulation, engine.scratch.awakeBlocks);
     if (simulation.scene.plane) keepInPlane(simulation);
   } else {
     simulation.substeps = 0;
@@ -333,7 +337,7 @@ void stepFrame(Simulation& simulation) {
   ++simulation.frame;
   ++simulation.counters.frames;
   simulation.time_s = static_cast<double>(simulation.frame) * simulation.scene.settings.frame_s;
-  if (engine.awakeCount > 0) {
+  if (engine.sleep.awakeCount > 0) {
     const StageTimer timer(simulation.stageTimes, Stage::islandsAndSleep);
     updateRest(simulation);
   }

@@ -18,23 +18,23 @@ void synchronise(IslandStep& step) {
   Engine& engine = step.engine;
   double behind_s = 0.0;
   for (const std::int32_t block : step.blocks)
-    behind_s = std::max(behind_s, engine.blockHistory[static_cast<std::size_t>(block)].lastExplicitStep_s);
+    behind_s = std::max(behind_s, engine.memo.blockHistory[static_cast<std::size_t>(block)].lastExplicitStep_s);
   if (behind_s == 0.0) return;
   ParticleArray& velocity = step.simulation.state.velocity;
   step.kick_s = behind_s;
   evaluateForces(step, step.simulation.state, velocity, behind_s, Memory::advance);
   for (const std::int32_t block : step.blocks) {
     const auto b = static_cast<std::size_t>(block);
-    const double half_s = 0.5 * engine.blockHistory[b].lastExplicitStep_s;
+    const double half_s = 0.5 * engine.memo.blockHistory[b].lastExplicitStep_s;
     double acceleration[3][kCorners];
     accelerate(step, b, acceleration);
     for (std::size_t a = 0; a < 3; ++a) {
       double* v = velocity.values(a, b);
       for (std::size_t c = 0; c < kCorners; ++c) v[c] += half_s * acceleration[a][c];
     }
-    engine.blockHistory[b].lastExplicitStep_s = 0.0;
+    engine.memo.blockHistory[b].lastExplicitStep_s = 0.0;
   }
-  step.engine.newtonSystems[static_cast<std::size_t>(step.blocks.front())].forcesKnown = false;
+  step.engine.memo.newtonSystems[static_cast<std::size_t>(step.blocks.front())].forcesKnown = false;
 }
 
 SPRINGTOWER_KERNEL
@@ -46,7 +46,7 @@ void predictBdf2(IslandStep& step, double effective_s) {
   for (const std::int32_t block : step.blocks) {
     const auto b = static_cast<std::size_t>(block);
     // The step before may have been longer or shorter: its mean acceleration then tells of one as long as this.
-    const double past_s = engine.blockHistory[b].lastImplicitStep_s;
+    const double past_s = engine.memo.blockHistory[b].lastImplicitStep_s;
     const bool known = past_s > 0.0;
     const double share = known ? h / past_s : 0.0;
     double start[3][kCorners] = {};
@@ -62,10 +62,10 @@ void predictBdf2(IslandStep& step, double effective_s) {
       const double pull = effective_s * effective_s * step.gravity[static_cast<Eigen::Index>(a)];
       double* x = state.position.values(a, b);
       double* v = state.velocity.values(a, b);
-      double* xBefore = engine.previous.values(a, b);
-      double* vBefore = engine.previousVelocity.values(a, b);
-      double* history = engine.history.values(a, b);
-      double* target = engine.target.values(a, b);
+      double* xBefore = engine.memo.previous.values(a, b);
+      double* vBefore = engine.memo.previousVelocity.values(a, b);
+      double* history = engine.scratch.pastPosition.values(a, b);
+      double* target = engine.scratch.freePosition.values(a, b);
       for (std::size_t c = 0; c < kCorners; ++c) {
         const double dv = known ? share * (v[c] - vBefore[c]) : h * start[a][c];
         const double dx = past_s == h ? x[c] - xBefore[c] : h * v[c] - 0.5 * h * dv;
@@ -87,11 +87,11 @@ void predictEuler(IslandStep& step, double effective_s) {
       const double pull = effective_s * effective_s * step.gravity[static_cast<Eigen::Index>(a)];
       const double* x = state.position.values(a, b);
       const double* v = state.velocity.values(a, b);
-      double* target = engine.target.values(a, b);
+      double* target = engine.scratch.freePosition.values(a, b);
       for (std::size_t c = 0; c < kCorners; ++c) target[c] = x[c] + effective_s * v[c] + pull;
-      std::copy_n(x, kCorners, engine.history.values(a, b));
-      std::copy_n(x, kCorners, engine.previous.values(a, b));
-      std::copy_n(v, kCorners, engine.previousVelocity.values(a, b));
+      std::copy_n(x, kCorners, engine.scratch.pastPosition.values(a, b));
+      std::copy_n(x, kCorners, engine.memo.previous.values(a, b));
+      std::copy_n(v, kCorners, engine.memo.previousVelocity.values(a, b));
     }
   }
 }

@@ -58,10 +58,10 @@ double stop(IslandStep& step) {
   for (const std::int32_t block : step.blocks) {
     const auto b = static_cast<std::size_t>(block);
     for (std::size_t c = 0; c < kCorners; ++c) {
-      farthest = std::max(farthest, (state.position.at(b, c) - step.engine.previous.at(b, c)).norm());
+      farthest = std::max(farthest, (state.position.at(b, c) - step.engine.memo.previous.at(b, c)).norm());
       state.velocity.set(b, c, Vec3::Zero());
     }
-    step.engine.blockHistory[b].lastImplicitStep_s = 0.0;
+    step.engine.memo.blockHistory[b].lastImplicitStep_s = 0.0;
   }
   return farthest;
 }
@@ -106,7 +106,7 @@ bool startInEquilibrium(IslandStep& step) {
     for (const std::int32_t block : step.blocks) {  // nothing has moved yet
       for (std::size_t a = 0; a < 3; ++a) {
         const auto b = static_cast<std::size_t>(block);
-        std::copy_n(step.simulation.state.position.values(a, b), kCorners, step.engine.previous.values(a, b));
+        std::copy_n(step.simulation.state.position.values(a, b), kCorners, step.engine.memo.previous.values(a, b));
       }
     }
     findTouching(step);

@@ -37,9 +37,10 @@ void addPair(const IslandStep& step, const NewtonSystem& island, std::size_t at,
   const ContactView m = contactOf(engine, pair);
   const ContactView trial = trialOf(engine, pair, m);
   const auto upper = static_cast<std::size_t>(m.upper);
-  const BlockFrame* frameLower = m.lower < 0 ? nullptr : &engine.frames[static_cast<std::size_t>(m.lower)];
+  const BlockFrame* frameLower = m.lower < 0 ? nullptr : &engine.memo.frames[static_cast<std::size_t>(m.lower)];
   static const AffineField kStill{};
-  const PointForces points = pointForces(m, {&engine.frames[upper], &kStill, &kStill}, {frameLower, &kStill, &kStill}, step.law);
+  const PointForces points =
+      pointForces(m, {&engine.memo.frames[upper], &kStill, &kStill}, {frameLower, &kStill, &kStill}, step.law);
   const double stiffness = m.lower < 0 ? step.law.floorStiffness_n_m : step.law.stiffness_n_m;
   const double friction = step.law.kineticFriction;
   const double sign = part == Part::factors ? 1.0 : -1.0;
@@ -47,16 +48,16 @@ void addPair(const IslandStep& step, const NewtonSystem& island, std::size_t at,
 
   for (std::size_t first = 0; first < static_cast<std::size_t>(m.count); first += 4) {
     ContactTangent& tangent = to.emplace_back();
-    if (asleep[upper] == 0) tangent.upper = engine.nodeOf[upper];
+    if (asleep[upper] == 0) tangent.upper = engine.scratch.nodeOf[upper];
     if (frameLower != nullptr && asleep[static_cast<std::size_t>(m.lower)] == 0)
-      tangent.lower = engine.nodeOf[static_cast<std::size_t>(m.lower)];
+      tangent.lower = engine.scratch.nodeOf[static_cast<std::size_t>(m.lower)];
     for (std::size_t k = 0; k < 3; ++k) tangent.normal[k] = points.direction[static_cast<Eigen::Index>(k)];
     for (std::size_t a = 0; a < 3 && tangent.lower >= 0; ++a) std::copy_n(frameLower->dual[a].begin(), 3, tangent.dual[a]);
     for (std::size_t i = first; i < std::min(first + 4, static_cast<std::size_t>(m.count)); ++i) {
       if ((mask >> i & 1U) == 0) continue;
       const std::size_t lane = i - first;
       const PointStiffness resists = pointStiffness(step, m, trial, mask, i, step_s);
-      setWeights(engine.frames[upper], points.place[i], lane, tangent.upperWeight);
+      setWeights(engine.memo.frames[upper], points.place[i], lane, tangent.upperWeight);
       if (frameLower != nullptr) setWeights(*frameLower, points.lowerPlace[i], lane, tangent.lowerWeight);
       tangent.isotropic[lane] = sign * resists.tangential;
       tangent.alongNormal[lane] = sign * (resists.normal - resists.tangential);

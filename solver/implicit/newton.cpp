@@ -10,6 +10,7 @@
 #include "solver/implicit/run.h"
 #include "solver/implicit/step_count.h"
 #include "solver/implicit/system.h"
+#include "solver/world/checkpoint.h"
 #include "solver/world/stage_clock.h"
 
 #include <algorithm>
@@ -54,7 +55,7 @@ constexpr NewtonOptions kFromRest{40, 0.0, 0.0};
 constexpr NewtonOptions kWideFromRest{40, 1e5, 0.0};
 
 NewtonSystem& islandOf(IslandStep& step) {
-  return step.engine.newtonSystems[static_cast<std::size_t>(step.blocks.front())];
+  return step.engine.memo.newtonSystems[static_cast<std::size_t>(step.blocks.front())];
 }
 
 // The line search accepts a share s of the direction d when |r(x + s d) . d| <= 0.5 |r(x) . d| (curvature condition; Nocedal &
@@ -105,7 +106,8 @@ double findResidual(IslandStep& step, NewtonSystem& island, double effective_s) 
   for (std::size_t i = 0; i < step.blocks.size(); ++i) {
     const auto b = static_cast<std::size_t>(step.blocks[i]);
     ModeVectors& residual = island.residual[i];
-    residualForces(jacobianOf(island, i), rate, engine.force, engine.target, step.simulation.state.position, b, residual);
+    residualForces(jacobianOf(island, i), rate, engine.memo.force, engine.scratch.freePosition, step.simulation.state.position, b,
+                   residual);
     double largest = 0.0;
     for (const auto& vector : residual) {
       for (const double r : vector) {
@@ -126,10 +128,10 @@ SPRINGTOWER_INLINE void updateVelocities(IslandStep& step, std::size_t b, double
   const double stepRate = 1.0 / step.drift_s;
   for (std::size_t a = 0; a < 3; ++a) {
     const double* x = state.position.values(a, b);
-    const double* before = engine.previous.values(a, b);
-    const double* history = engine.history.values(a, b);
+    const double* before = engine.memo.previous.values(a, b);
+    const double* history = engine.scratch.pastPosition.values(a, b);
     double* v = state.velocity.values(a, b);
-    double* carried = engine.stepVelocity.values(a, b);
+    double* carried = engine.scratch.stepVelocity.values(a, b);
     for (std::size_t c = 0; c < kCorners; ++c) {
       v[c] = (x[c] - history[c]) * rate;
       carried[c] = (x[c] - before[c]) * stepRate;
@@ -161,7 +163,7 @@ void accept(IslandStep& step, NewtonSystem& island) {
     for (std::size_t r = 0; r < kManifoldRows && points[r] != nullptr; ++r) *points[r] = *trial[r];
   }
   for (const std::int32_t block : step.blocks) {
-    BlockHistory& history = engine.blockHistory[static_cast<std::size_t>(block)];
+    BlockHistory& history = engine.memo.blockHistory[static_cast<std::size_t>(block)];
     history.lastImplicitStep_s = step.drift_s;
     history.lastExplicitStep_s = 0.0;
     history.explicitLast = false;
@@ -169,22 +171,10 @@ void accept(IslandStep& step, NewtonSystem& island) {
   ++step.counters.implicitSteps;
 }
 
-// Puts the blocks back where the step began.
-void goBack(IslandStep& step) {
-  Engine& engine = step.engine;
-  for (const std::int32_t block : step.blocks) {
-    const auto b = static_cast<std::size_t>(block);
-    for (std::size_t a = 0; a < 3; ++a) {
-      std::copy_n(engine.previous.values(a, b), kCorners, step.simulation.state.position.values(a, b));
-      std::copy_n(engine.previousVelocity.values(a, b), kCorners, step.simulation.state.velocity.values(a, b));
-    }
-  }
-}
-
 void reject(IslandStep& step) {
-  goBack(step);
+  restoreStep(step);
   for (const std::int32_t block : step.blocks) {
-    BlockHistory& history = step.engine.blockHistory[static_cast<std::size_t>(block)];
+    BlockHistory& history = step.engine.memo.blockHistory[static_cast<std::size_t>(block)];
     history.lastImplicitStep_s = 0.0;
     history.lastExplicitStep_s = 0.0;
     history.explicitLast = false;
@@ -195,7 +185,7 @@ void reject(IslandStep& step) {
 // Forces and residual where the blocks are now.
 double evaluateResidual(IslandStep& step, NewtonSystem& island, double effective_s, StageClock& clock) {
   clock.lap(Stage::integration);
-  evaluateForces(step, step.simulation.state, step.engine.stepVelocity, step.drift_s, Memory::trial);
+  evaluateForces(step, step.simulation.state, step.engine.scratch.stepVelocity, step.drift_s, Memory::trial);
   clock.skip();  // it counts its own
   return findResidual(step, island, effective_s);
 }
@@ -236,9 +226,9 @@ double predict(IslandStep& step, NewtonSystem& island, double effective_s, Stage
     const auto b = static_cast<std::size_t>(block);
     for (std::size_t a = 0; a < 3; ++a) {
       const double pull = effective_s * effective_s * step.gravity[static_cast<Eigen::Index>(a)];
-      const double* v = engine.previousVelocity.values(a, b);
-      const double* history = engine.history.values(a, b);
-      const double* target = engine.target.values(a, b);
+      const double* v = engine.memo.previousVelocity.values(a, b);
+      const double* history = engine.scratch.pastPosition.values(a, b);
+      const double* target = engine.scratch.freePosition.values(a, b);
       double* x = step.simulation.state.position.values(a, b);
       for (std::size_t c = 0; c < kCorners; ++c) {
         const double change = 3.0 * ((target[c] - pull - history[c]) / effective_s - v[c]);  // of the velocity in the last step
@@ -257,7 +247,7 @@ double predict(IslandStep& step, NewtonSystem& island, double effective_s, Stage
 double beginPredicted(IslandStep& step, NewtonSystem& island, double effective_s, const NewtonOptions& how, StageClock& clock) {
   const double carried = predict(step, island, effective_s, clock);
   if (how.near == 0.0 || !(carried > how.near)) return carried;
-  goBack(step);
+  restoreStep(step);
   for (const std::int32_t block : step.blocks) updateVelocities(step, static_cast<std::size_t>(block), effective_s);
   const double still = evaluateResidual(step, island, effective_s, clock);
   return still < carried ? still : predict(step, island, effective_s, clock);
@@ -271,7 +261,7 @@ bool isCarried(const IslandStep& step, double effective_s) {
   bool moves = false;
   for (const std::int32_t block : step.blocks) {
     const auto b = static_cast<std::size_t>(block);
-    if (!(step.engine.blockHistory[b].lastImplicitStep_s > 0.0)) return false;
+    if (!(step.engine.memo.blockHistory[b].lastImplicitStep_s > 0.0)) return false;
     for (std::size_t a = 0; a < 3 && !moves; ++a) {
       const double* v = step.simulation.state.velocity.values(a, b);
       for (std::size_t c = 0; c < kCorners; ++c) moves = moves || std::abs(v[c]) > most;
@@ -288,8 +278,8 @@ double evaluateInPlace(IslandStep& step, NewtonSystem& island, double effective_
   return evaluateResidual(step, island, effective_s, clock);
 }
 
-// Newton's iteration for the state at the step's end, from engine.target and engine.history. Unless the blocks are `carried` the
-// forces are known where they are. Returns whether it converged.
+// Newton's iteration for the state at the step's end, from engine.scratch.freePosition and engine.scratch.pastPosition. Unless
+// the blocks are `carried` the forces are known where they are. Returns whether it converged.
 bool solveStep(IslandStep& step, double effective_s, bool carried, const NewtonOptions& how) {
   NewtonSystem& island = islandOf(step);
   StageClock clock(step.times);
@@ -363,13 +353,13 @@ bool stepImplicit(IslandStep& step, bool finerFollow) {
     clock.lap(Stage::candidates);
     if (met == FirstContact::impact) return finishStep(step, false);
     if (met == FirstContact::none) break;
-    goBack(step);
+    restoreStep(step);
     evaluateForces(step, step.simulation.state, step.simulation.state.velocity, 0.0, Memory::trial);
     converged = solveStep(step, effective_s, false, how);
   }
   // Where a frame begins a force or the hand may jump, which is no ringing.
-  const bool jumps =
-      step.engine.blockHistory[static_cast<std::size_t>(step.blocks.front())].forced && step.time_s == step.simulation.time_s;
+  const bool jumps = step.engine.memo.blockHistory[static_cast<std::size_t>(step.blocks.front())].forced &&
+                     step.time_s == step.simulation.time_s;
   if (converged && !jumps && step.simulation.scene.settings.method != Method::implicitEuler)
     updateFrequencyEstimate(step, effective_s);
   return finishStep(step, converged);

@@ -48,7 +48,7 @@ bool isQuiescent(const IslandStep& step) {
   for (const std::int32_t block : step.blocks) {
     // What has just been let go of has no speed yet, and what explicit steps brought here may be at a bounce's turn.
     const auto b = static_cast<std::size_t>(block);
-    if (!(simulation.restTime_s[b] > 0.0) || step.engine.blockHistory[b].explicitLast) return false;
+    if (!(simulation.restTime_s[b] > 0.0) || step.engine.memo.blockHistory[b].explicitLast) return false;
     for (std::size_t a = 0; a < 3; ++a) {
       const double* v = simulation.state.velocity.values(a, b);
       for (std::size_t c = 0; c < kCorners; ++c) {
@@ -77,7 +77,7 @@ int implicitSteps(const IslandStep& step, bool forced, bool known, bool heap) {
   if (settings.method == Method::implicitEuler) return calm ? 1 : kImplicitSteps;
   std::int32_t present = 1;
   for (const std::int32_t block : step.blocks) {
-    const BlockHistory& history = step.engine.blockHistory[static_cast<std::size_t>(block)];
+    const BlockHistory& history = step.engine.memo.blockHistory[static_cast<std::size_t>(block)];
     present = std::max(present, history.implicitSteps);
     known = known && history.lastImplicitStep_s > 0.0;
   }
@@ -86,7 +86,8 @@ int implicitSteps(const IslandStep& step, bool forced, bool known, bool heap) {
   if (!calm && !known) least = std::max(least, heap ? kHandedBackSteps : kMaxFrequencySteps);
   if (!calm && !forced) least = std::max(least, stepsForDisplacement(step));
   const int steps = std::max(least, stepsForFrequency(step, present));
-  for (const std::int32_t block : step.blocks) step.engine.blockHistory[static_cast<std::size_t>(block)].implicitSteps = steps;
+  for (const std::int32_t block : step.blocks)
+    step.engine.memo.blockHistory[static_cast<std::size_t>(block)].implicitSteps = steps;
   return steps;
 }
 
@@ -100,7 +101,8 @@ int retryStepCount(double share, int steps) {
 // Restarts BDF2 (drops the history) when an external force ends: acceleration jumps, and the history is wrong. Not when one
 // begins: friction balances it at first, so acceleration is continuous.
 void resetHistory(IslandStep& step) {
-  for (const std::int32_t block : step.blocks) step.engine.blockHistory[static_cast<std::size_t>(block)].lastImplicitStep_s = 0.0;
+  for (const std::int32_t block : step.blocks)
+    step.engine.memo.blockHistory[static_cast<std::size_t>(block)].lastImplicitStep_s = 0.0;
 }
 
 // The angular speed of a block is at most this, rad/s: how fast its mean edges change against their length.
@@ -120,20 +122,20 @@ double turningSpeed(const AffineField& place, const AffineField& motion) {
 void prepareImplicit(Simulation& simulation) {
   Engine& engine = *simulation.engine;
   const std::size_t count = simulation.model.blockCount();
-  engine.previousVelocity.resize(count);
-  engine.history.resize(count);
-  engine.target.resize(count);
-  engine.stepVelocity.resize(count);
-  engine.carriedMotion.resize(count);
-  engine.newtonSystems.resize(count);
-  engine.nodeOf.assign(count, 0);
-  if (isImplicit(simulation.scene.settings.method)) engine.rigidIslands.resize(count);
-  if (simulation.scene.settings.method == Method::implicitEigen) engine.sparseFactors.resize(count);
+  engine.memo.previousVelocity.resize(count);
+  engine.scratch.pastPosition.resize(count);
+  engine.scratch.freePosition.resize(count);
+  engine.scratch.stepVelocity.resize(count);
+  engine.memo.carriedMotion.resize(count);
+  engine.memo.newtonSystems.resize(count);
+  engine.scratch.nodeOf.assign(count, 0);
+  if (isImplicit(simulation.scene.settings.method)) engine.scratch.rigidIslands.resize(count);
+  if (simulation.scene.settings.method == Method::implicitEigen) engine.memo.sparseFactors.resize(count);
 }
 
 void setJacobians(IslandStep& step, double effective_s) {
   const BlockModel& model = step.simulation.model;
-  NewtonSystem& island = step.engine.newtonSystems[static_cast<std::size_t>(step.blocks.front())];
+  NewtonSystem& island = step.engine.memo.newtonSystems[static_cast<std::size_t>(step.blocks.front())];
   const auto fits = [&](std::size_t b, std::size_t kind) {
     return model.dimensions[b] == island.kinds[kind].dimensions && model.mass[b] == island.kinds[kind].mass;
   };
@@ -159,13 +161,12 @@ void setJacobians(IslandStep& step, double effective_s) {
 
 bool implicitStepsFit(const IslandStep& step, double step_s) {
   const Simulation& simulation = step.simulation;
-  const bool touches = std::any_of(step.pairs.begin(), step.pairs.end(), [&](std::int32_t at) {
-    return step.engine.pairs.touches(static_cast<std::size_t>(at));
-  });
+  const bool touches = std::any_of(step.pairs.begin(), step.pairs.end(),
+                                   [&](std::int32_t at) { return step.engine.pairs.touches(static_cast<std::size_t>(at)); });
   if (!touches || meetsSoon(step, step_s) || bounces(step, step_s)) return false;
   for (const std::int32_t block : step.blocks) {
     const auto b = static_cast<std::size_t>(block);
-    if (step.engine.blockHistory[b].explicitFrames > 0) return false;
+    if (step.engine.memo.blockHistory[b].explicitFrames > 0) return false;
     const double turning = turningSpeed(affineField(simulation.state.position, b), affineField(simulation.state.velocity, b));
     if (turning * step_s > kMaxTurn) return false;
   }
@@ -178,9 +179,9 @@ IslandOutcome runImplicitSteps(IslandStep& step, bool heap, double& reached_s) {
   IslandOutcome outcome;
   const double frame_s = simulation.scene.settings.frame_s;
   reached_s = 0.0;
-  NewtonSystem& island = engine.newtonSystems[static_cast<std::size_t>(step.blocks.front())];
+  NewtonSystem& island = engine.memo.newtonSystems[static_cast<std::size_t>(step.blocks.front())];
   const bool forced = holdsTether(step) || isPushed(step);
-  const bool wasForced = engine.blockHistory[static_cast<std::size_t>(step.blocks.front())].forced;
+  const bool wasForced = engine.memo.blockHistory[static_cast<std::size_t>(step.blocks.front())].forced;
   if (wasForced && !forced) resetHistory(step);
   int steps = implicitSteps(step, forced, forced == wasForced, heap);
   bool fits = implicitStepsFit(step, frame_s / steps);
@@ -189,12 +190,12 @@ IslandOutcome runImplicitSteps(IslandStep& step, bool heap, double& reached_s) {
     fits = implicitStepsFit(step, frame_s / steps);
   }
   for (const std::int32_t block : step.blocks) {
-    BlockHistory& history = engine.blockHistory[static_cast<std::size_t>(block)];
+    BlockHistory& history = engine.memo.blockHistory[static_cast<std::size_t>(block)];
     history.explicitFrames = std::max(0, history.explicitFrames - 1);
     history.forced = forced;
   }
   // Where nothing has come or gone since, the forces are those that the last frame ended with.
-  const bool known = island.forcesKnown && !engine.topologyChanged && !wasForced && !forced;
+  const bool known = island.forcesKnown && !engine.memo.topologyChanged && !wasForced && !forced;
   island.forcesKnown = false;
   if (!fits) return outcome;
   const auto takeSteps = [&](int count) {
@@ -217,7 +218,7 @@ IslandOutcome runImplicitSteps(IslandStep& step, bool heap, double& reached_s) {
         continue;
       }
       for (const std::int32_t block : step.blocks)
-        engine.blockHistory[static_cast<std::size_t>(block)].explicitFrames = heap ? kFallenFrames : kExplicitFrames;
+        engine.memo.blockHistory[static_cast<std::size_t>(block)].explicitFrames = heap ? kFallenFrames : kExplicitFrames;
       return outcome;
     }
     ++outcome.substeps;

@@ -50,16 +50,16 @@ void updateFrequencyEstimate(IslandStep& step, double effective_s) {
   const double fastest = fourthPower(kFastestTurn / frame_s);
   for (const std::int32_t block : step.blocks) {
     const auto b = static_cast<std::size_t>(block);
-    BlockHistory& past = engine.blockHistory[b];
+    BlockHistory& past = engine.memo.blockHistory[b];
     if (!(past.lastImplicitStep_s > 0.0)) continue;
     double jerk[kCorners] = {};
     double speed[kCorners] = {};
     for (std::size_t a = 0; a < 3; ++a) {
       const double pull = 3.0 * effective_s * step.gravity[static_cast<Eigen::Index>(a)];
       const double* v = velocity.values(a, b);
-      const double* before = engine.previousVelocity.values(a, b);
-      const double* history = engine.history.values(a, b);
-      const double* target = engine.target.values(a, b);
+      const double* before = engine.memo.previousVelocity.values(a, b);
+      const double* history = engine.scratch.pastPosition.values(a, b);
+      const double* target = engine.scratch.freePosition.values(a, b);
       for (std::size_t c = 0; c < kCorners; ++c) {
         // The change in this step less that in the step before, which the target tells: 3 ((target - history) / h' - pull -
         // before).
@@ -83,8 +83,8 @@ int stepsForFrequency(const IslandStep& step, int present) {
   double motion = 0.0;
   for (const std::int32_t block : step.blocks) {
     const auto b = static_cast<std::size_t>(block);
-    jerk += step.engine.blockHistory[b].jerk;
-    motion += step.engine.blockHistory[b].motion + simulation.model.mass[b] * static_cast<double>(kCorners) * calm * calm;
+    jerk += step.engine.memo.blockHistory[b].jerk;
+    motion += step.engine.memo.blockHistory[b].motion + simulation.model.mass[b] * static_cast<double>(kCorners) * calm * calm;
   }
   const double ringing = fourthPower(frame_s) * jerk / motion;  // (w T)^4
   return std::clamp(present, stepsFor(ringing, kMaxDamping), stepsFor(ringing, kLittleDamping));

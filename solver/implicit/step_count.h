@@ -11,8 +11,9 @@ inline constexpr int kMaxFrequencySteps = 8;
 double quiescentSpeed(const Simulation& simulation);
 
 /// Takes the implicit step just found into what each block's clock knows of its ringing: how much the change of velocity in a
-/// step differs from that in the step before. Blocks without a step before tell nothing. Precondition: engine.history and
-/// engine.target are the step's, of the two-step formula; `effective_s` as in `foretell`.
+/// step differs from that in the step before. Blocks without a step before tell nothing. Precondition:
+/// engine.scratch.pastPosition and engine.scratch.freePosition are the step's, of the two-step formula; `effective_s` as in
+/// `foretell`.
 void updateFrequencyEstimate(IslandStep& step, double effective_s);
 
 /// Steps of a frame that follow the island's ringing: the two-step formula damps a swing of angular frequency w by (w h)^4 / 4 of

@@ -116,8 +116,8 @@ void addManifold(const IslandStep& step, NewtonSystem& island, std::size_t at, d
   const ActiveSetBits mask = island.mask[at];
   if ((mask & 0xFFU) == 0) return;
   const auto upper = static_cast<std::size_t>(m.upper);
-  const BlockFrame& frameUpper = engine.frames[upper];
-  const BlockFrame* frameLower = m.lower < 0 ? nullptr : &engine.frames[static_cast<std::size_t>(m.lower)];
+  const BlockFrame& frameUpper = engine.memo.frames[upper];
+  const BlockFrame* frameLower = m.lower < 0 ? nullptr : &engine.memo.frames[static_cast<std::size_t>(m.lower)];
   static const AffineField kStill{};
   const PointForces points = pointForces(m, {&frameUpper, &kStill, &kStill}, {frameLower, &kStill, &kStill}, step.law);
 
@@ -125,7 +125,7 @@ void addManifold(const IslandStep& step, NewtonSystem& island, std::size_t at, d
   BlockCholesky& matrix = island.matrix;
   const auto diagonalOf = [&](std::size_t block) {
     return matrix.diagonal.data() +
-           kNodeMatrix * static_cast<std::size_t>(matrix.position[static_cast<std::size_t>(engine.nodeOf[block])]);
+           kNodeMatrix * static_cast<std::size_t>(matrix.position[static_cast<std::size_t>(engine.scratch.nodeOf[block])]);
   };
   const std::vector<std::uint8_t>& asleep = step.simulation.asleep;
   float* ofUpper = asleep[upper] == 0 ? diagonalOf(upper) : nullptr;
@@ -167,7 +167,7 @@ void addTether(const IslandStep& step, NewtonSystem& island, double step_s) {
     const Eigen::SelfAdjointEigenSolver<TetherMatrix> modes(0.5 * (resistance + resistance.transpose()));
     resistance = modes.eigenvectors() * modes.eigenvalues().cwiseMax(0.0).asDiagonal() * modes.eigenvectors().transpose();
   }
-  const auto node = static_cast<std::size_t>(step.engine.nodeOf[index(island.tether.block)]);
+  const auto node = static_cast<std::size_t>(step.engine.scratch.nodeOf[index(island.tether.block)]);
   float* diagonal = island.matrix.diagonal.data() + kNodeMatrix * static_cast<std::size_t>(island.matrix.position[node]);
   for (std::size_t i = 0; i < kNodeSize; ++i) {
     for (std::size_t k = 0; k < kNodeSize; ++k)
@@ -206,7 +206,8 @@ void findEdges(const IslandStep& step, NewtonSystem& island) {
     const ManifoldShape m = shapeOf(engine, static_cast<std::size_t>(at));
     island.touching.push_back(at);
     if (!isCoupled(step, m)) continue;
-    island.edges.push_back({engine.nodeOf[static_cast<std::size_t>(m.upper)], engine.nodeOf[static_cast<std::size_t>(m.lower)]});
+    island.edges.push_back(
+        {engine.scratch.nodeOf[static_cast<std::size_t>(m.upper)], engine.scratch.nodeOf[static_cast<std::size_t>(m.lower)]});
   }
 }
 
@@ -252,8 +253,8 @@ void findSlots(const IslandStep& step, NewtonSystem& island) {
   island.slot.clear();
   for (const std::int32_t at : island.touching) {
     const ManifoldShape m = shapeOf(engine, static_cast<std::size_t>(at));
-    island.slot.push_back(isCoupled(step, m) ? slotOf(island.matrix, engine.nodeOf[static_cast<std::size_t>(m.upper)],
-                                                      engine.nodeOf[static_cast<std::size_t>(m.lower)])
+    island.slot.push_back(isCoupled(step, m) ? slotOf(island.matrix, engine.scratch.nodeOf[static_cast<std::size_t>(m.upper)],
+                                                      engine.scratch.nodeOf[static_cast<std::size_t>(m.lower)])
                                              : BlockSlot{});
   }
 }
@@ -285,14 +286,15 @@ void layOut(IslandStep& step, NewtonSystem& island) {
   }
   // A block may have been in another island since this layout was made, so its place in it is written every time.
   const std::size_t count = step.blocks.size();
-  for (std::size_t i = 0; i < count; ++i) engine.nodeOf[static_cast<std::size_t>(step.blocks[i])] = static_cast<std::int32_t>(i);
+  for (std::size_t i = 0; i < count; ++i)
+    engine.scratch.nodeOf[static_cast<std::size_t>(step.blocks[i])] = static_cast<std::int32_t>(i);
   const std::uint64_t pattern = hash.value();
   if (pattern == island.pattern) return;
 
   findEdges(step, island);
   island.pattern = pattern;
   island.factorised = false;
-  if (!engine.sparseFactors.empty()) engine.sparseFactors[firstBlock(step)].analysed = false;
+  if (!engine.memo.sparseFactors.empty()) engine.memo.sparseFactors[firstBlock(step)].analysed = false;
   island.exceedsFill = !layOutMatrix(step, island, members);
   if (island.exceedsFill) return;
   findSlots(step, island);
@@ -312,14 +314,14 @@ TetherStiffness tetherStiffness(const IslandStep& step, double step_s) {
 }
 
 bool isTetherLimited(const IslandStep& step) {
-  const GripForce& now = step.engine.tetherNow;
+  const GripForce& now = step.engine.memo.tetherForce;
   return holdsTether(step) && (now.limited || now.acrossLimited || now.turnLimited);
 }
 
 bool assemble(IslandStep& step, NewtonSystem& island, double step_s) {
   clear(island.matrix);
   for (std::size_t i = 0; i < step.blocks.size(); ++i) {
-    island.axes[i] = axesOf(step.engine.frames[static_cast<std::size_t>(step.blocks[i])].place);
+    island.axes[i] = axesOf(step.engine.memo.frames[static_cast<std::size_t>(step.blocks[i])].place);
     addOwn(jacobianOf(island, i), island.axes[i],
            island.matrix.diagonal.data() + kNodeMatrix * static_cast<std::size_t>(island.matrix.position[i]));
   }
@@ -335,13 +337,13 @@ bool assemble(IslandStep& step, NewtonSystem& island, double step_s) {
   if (step.unforced) stiffenByRounding(island.matrix);
   island.step_s = step_s;
   ++step.counters.factorisations;
-  std::vector<SparseFactors>& sparse = step.engine.sparseFactors;
+  std::vector<SparseFactors>& sparse = step.engine.memo.sparseFactors;
   island.factorised = sparse.empty() ? factorise(island.matrix) : factorise(island.matrix, island.slot, sparse[firstBlock(step)]);
   return island.factorised;
 }
 
 void solve(IslandStep& step, NewtonSystem& island) {
-  std::vector<SparseFactors>& sparse = step.engine.sparseFactors;
+  std::vector<SparseFactors>& sparse = step.engine.memo.sparseFactors;
   if (sparse.empty()) {
     solve(island.matrix, island.affine);
   } else {

@@ -12,7 +12,7 @@ namespace springtower {
 namespace {
 
 constexpr double kMinMaxwellRatio = 1e-9;  // stands for none: no branch, no lag
-constexpr double kMinShare = 1e-30;         // of friction, left to a point that slides unpressed: that it slides must be seen
+constexpr double kMinShare = 1e-30;        // of friction, left to a point that slides unpressed: that it slides must be seen
 
 // Inverse mass of a point of a face whose four points are pushed alike, over that of the block: 4 (1 + 3), as it moves and
 // squashes.
@@ -21,12 +21,12 @@ constexpr double kFlatInverse = 16.0;
 struct LawStep {
   const ContactLaw& law;
   const ContactStep& step;
-  double stiffness;     // N/m
-  double impactFactor;  // stiffness scale per squared approach speed
-  double stiffeningKeep;     // what is left of a scale's excess after the step
+  double stiffness;       // N/m
+  double impactFactor;    // stiffness scale per squared approach speed
+  double stiffeningKeep;  // what is left of a scale's excess after the step
   double maxwellGain;     // how much of its lag the relaxing branch forgets in the step
-  double perAdvance;    // 1/s; 0 where the memory is not advanced
-  double pointMass;     // kg that a point moves at least: all four of a face that is hit flat push and squash the block
+  double perAdvance;      // 1/s; 0 where the memory is not advanced
+  double pointMass;       // kg that a point moves at least: all four of a face that is hit flat push and squash the block
 };
 
 SPRINGTOWER_INLINE LawStep lawStep(const ContactView& m, const ContactLaw& law, const ContactStep& step, double reducedMass) {
@@ -95,7 +95,8 @@ SPRINGTOWER_INLINE void frictionLaw(const LawStep& s, const PointState& state, c
   p.slipRatio = slides & touching ? (keep > kMinShare ? keep : zero + kMinShare) : zero;
   // What slips frees a little of the offset; friction's own loss pays for the work.
   Lanes displacementSize;
-  squareRoot(displacement[0] * displacement[0] + displacement[1] * displacement[1] + displacement[2] * displacement[2], displacementSize);
+  squareRoot(displacement[0] * displacement[0] + displacement[1] * displacement[1] + displacement[2] * displacement[2],
+             displacementSize);
   const Lanes freed = p.restDepth - law.restDepthPerSlip * (1.0 - keep) * displacementSize;
   p.restDepth = state.known ? (freed > zero ? freed : zero) : p.restDepth;
   for (int a = 0; a < 3; ++a) {

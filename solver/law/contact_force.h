@@ -13,20 +13,21 @@ namespace springtower {
 struct ContactLaw {
   double stiffness_n_m = 0.0;        ///< k between blocks, N/m
   double floorStiffness_n_m = 0.0;   ///< k on the floor, N/m
-  double maxwellRatio = 0.0;        ///< stiffness of the relaxing branch over k
-  double maxwellTime_s = 1.0;       ///< its relaxation time, s
+  double maxwellRatio = 0.0;         ///< stiffness of the relaxing branch over k
+  double maxwellTime_s = 1.0;        ///< its relaxation time, s
   double dampingTime_s = 0.0;        ///< dashpot over stiffness, s
   double tangentialRatio = 1.0;      ///< tangential stiffness over k
   double staticFriction = 0.0;       ///< Coulomb's coefficient while it sticks
   double kineticFriction = 0.0;      ///< and while it slides
   double impactPenetration_m = 1.0;  ///< depth aimed at in an impact; decides how much a new contact is stiffened
-  double stiffeningTime_s = 1.0;          ///< s in which that stiffening fades
-  double restDepthPerSlip = 0.0;  ///< how much of the offset fades per length of slip; its work is paid by the slip's own friction
+  double stiffeningTime_s = 1.0;     ///< s in which that stiffening fades
+  double restDepthPerSlip =
+      0.0;  ///< how much of the offset fades per length of slip; its work is paid by the slip's own friction
 };
 
 /// What changes from step to step.
 struct ContactStep {
-  double advance_s = 0.0;  ///< s by which the contact memory is behind the positions
+  double advance_s = 0.0;      ///< s by which the contact memory is behind the positions
   double maxStiffening = 1.0;  ///< most a contact that is born now may be stiffened
   /// Where a point that is reached now starts to push: at 1 from the depth it is found at, which adds no energy; at 0 from the
   /// surface, which an implicit step needs, as it looks at the step's end alone. Its dashpot then closes by its depth in the
@@ -60,8 +61,8 @@ struct PointForces {
 };
 
 /// Evaluates a manifold: advances a copy of what its points store by `step.advance_s` and returns the forces. The advanced points
-/// go to `keep`, which may be the manifold's own rows, or null where they are not wanted. `reducedMass_kg` is that of the two blocks.
-/// Precondition: the manifold is of penalty points.
+/// go to `keep`, which may be the manifold's own rows, or null where they are not wanted. `reducedMass_kg` is that of the two
+/// blocks. Precondition: the manifold is of penalty points.
 void manifoldForces(const ContactView& manifold, const ContactSide& upper, const ContactSide& lower, const ContactLaw& law,
                     const ContactStep& step, double reducedMass_kg, const PointRows* keep, PairForce& result);
 

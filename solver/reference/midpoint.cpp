@@ -9,13 +9,13 @@ namespace springtower {
 void stepMidpoint(IslandStep& step) {
   Engine& engine = step.engine;
   MotionState& state = step.simulation.state;
-  MotionState& middle = engine.stage[0];
+  MotionState& middle = engine.scratch.stage[0];
   rememberPositions(step);
-  stageAcceleration(step, state, engine.carried, step.advance_s, true, engine.stageAcceleration[0]);
-  advanceStage(step, state, state.velocity, engine.stageAcceleration[0], 0.5 * step.drift_s, middle);
-  stageAcceleration(step, middle, state.velocity, 0.5 * step.drift_s, false, engine.stageAcceleration[1]);
-  advanceStage(step, state, middle.velocity, engine.stageAcceleration[1], step.drift_s, state);
-  copyCorners(step, middle.velocity, engine.carried);
+  stageAcceleration(step, state, engine.memo.carried, step.advance_s, true, engine.scratch.stageAcceleration[0]);
+  advanceStage(step, state, state.velocity, engine.scratch.stageAcceleration[0], 0.5 * step.drift_s, middle);
+  stageAcceleration(step, middle, state.velocity, 0.5 * step.drift_s, false, engine.scratch.stageAcceleration[1]);
+  advanceStage(step, state, middle.velocity, engine.scratch.stageAcceleration[1], step.drift_s, state);
+  copyCorners(step, middle.velocity, engine.memo.carried);
 }
 
 }  // namespace springtower

@@ -266,7 +266,7 @@ void moveByVelocities(IslandStep& step) {
     for (std::size_t a = 0; a < 3; ++a) {
       double* x = state.position.values(a, b);
       const double* v = state.velocity.values(a, b);
-      double* before = step.engine.previous.values(a, b);
+      double* before = step.engine.memo.previous.values(a, b);
       for (std::size_t c = 0; c < kCorners; ++c) {
         before[c] = x[c];
         x[c] += step.drift_s * v[c];

@@ -11,7 +11,7 @@ namespace springtower {
 /// culling (block pairs alone, not the floor) and passes. Precondition: the island's lists of contacts are empty.
 void resolveCollisions(IslandStep& step);
 
-/// Accepts the next state: moves the island's blocks by their velocities. Positions they started from go to engine.previous.
+/// Accepts the next state: moves the island's blocks by their velocities. Positions they started from go to engine.memo.previous.
 void moveByVelocities(IslandStep& step);
 
 }  // namespace springtower

@@ -8,7 +8,6 @@ namespace springtower {
 void prepareReportFrame(Simulation& simulation) {
   ReportState& report = simulation.engine->report;
   report.testedAt.assign(simulation.engine->pairs.size(), {});
-  report.frameStartContacts = report.contacts;
 }
 
 void rewindReportFrame(Simulation& simulation) {
@@ -17,7 +16,6 @@ void rewindReportFrame(Simulation& simulation) {
     for (const std::int32_t block : struck) wake(simulation, static_cast<std::size_t>(block), WakeReason::reportedImpact);
     struck.clear();
   }
-  report.contacts = report.frameStartContacts;
 }
 
 bool acceptReportStep(IslandStep& step) {

@@ -29,13 +29,13 @@ double particleMass(const BlockModel& model, const ReportContact& contact) {
 void addFriction(IslandStep& step) {
   const Simulation& simulation = step.simulation;
   const Engine& engine = step.engine;
-  const std::int32_t island = engine.islands.islandOf[static_cast<std::size_t>(step.blocks.front())];
+  const std::int32_t island = engine.memo.islands.islandOf[static_cast<std::size_t>(step.blocks.front())];
   for (const std::int32_t block : step.blocks) {
     for (const ReportContact& contact : engine.report.contacts[static_cast<std::size_t>(block)]) {
       const ReportSide first = firstSide(contact);
       const ReportSide second = secondSide(contact);
       const auto elsewhere = [&](const ReportSide& side) {
-        return moves(step, side) && engine.islands.islandOf[static_cast<std::size_t>(side.block)] != island;
+        return moves(step, side) && engine.memo.islands.islandOf[static_cast<std::size_t>(side.block)] != island;
       };
       if (elsewhere(first) || elsewhere(second)) continue;  // they have parted since
       Vec3 relative = velocityOf(step, first) - velocityOf(step, second);
@@ -46,8 +46,8 @@ void addFriction(IslandStep& step) {
       const double size = simulation.scene.kineticFriction * normalForce +
                           simulation.scene.settings.reportFrictionDrag * particleMass(simulation.model, contact) * speed;
       const Vec3 force = -size / speed * relative;
-      if (moves(step, first)) addToCorners(step.engine.force, first, force);
-      if (moves(step, second)) addToCorners(step.engine.force, second, -force);
+      if (moves(step, first)) addToCorners(step.engine.memo.force, first, force);
+      if (moves(step, second)) addToCorners(step.engine.memo.force, second, -force);
     }
   }
 }

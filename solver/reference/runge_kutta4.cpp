@@ -8,11 +8,11 @@ namespace springtower {
 void stepRungeKutta4(IslandStep& step) {
   Engine& engine = step.engine;
   MotionState& state = step.simulation.state;
-  auto& stage = engine.stage;
-  auto& rate = engine.stageAcceleration;
+  auto& stage = engine.scratch.stage;
+  auto& rate = engine.scratch.stageAcceleration;
   const double half = 0.5 * step.drift_s;
   rememberPositions(step);
-  stageAcceleration(step, state, engine.carried, step.advance_s, true, rate[0]);
+  stageAcceleration(step, state, engine.memo.carried, step.advance_s, true, rate[0]);
   advanceStage(step, state, state.velocity, rate[0], half, stage[0]);
   stageAcceleration(step, stage[0], state.velocity, half, false, rate[1]);
   advanceStage(step, state, stage[0].velocity, rate[1], half, stage[1]);
@@ -25,7 +25,7 @@ void stepRungeKutta4(IslandStep& step) {
     for (std::size_t a = 0; a < 3; ++a) {
       double* x = state.position.values(a, b);
       double* v = state.velocity.values(a, b);
-      double* carried = engine.carried.values(a, b);
+      double* carried = engine.memo.carried.values(a, b);
       for (std::size_t c = 0; c < kCorners; ++c) {
         const double velocity = (v[c] + 2.0 * stage[0].velocity.values(a, b)[c] + 2.0 * stage[1].velocity.values(a, b)[c] +
                                  stage[2].velocity.values(a, b)[c]) /

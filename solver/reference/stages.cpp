@@ -51,7 +51,7 @@ void copyCorners(const IslandStep& step, const ParticleArray& from, ParticleArra
 }
 
 void rememberPositions(IslandStep& step) {
-  copyCorners(step, step.simulation.state.position, step.engine.previous);
+  copyCorners(step, step.simulation.state.position, step.engine.memo.previous);
 }
 
 }  // namespace springtower

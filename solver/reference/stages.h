@@ -19,7 +19,7 @@ void advanceStage(const IslandStep& step, const MotionState& base, const Particl
 /// Copies values of the corners of the island's blocks.
 void copyCorners(const IslandStep& step, const ParticleArray& from, ParticleArray& to);
 
-/// Notes the positions the step starts from in engine.previous.
+/// Notes the positions the step starts from in engine.memo.previous.
 void rememberPositions(IslandStep& step);
 
 }  // namespace springtower

@@ -137,7 +137,7 @@ void gatherPoints(IslandStep& step, RigidIsland& island, bool again) {
   const auto unmoved = static_cast<std::int32_t>(island.bodies.size());
   const auto mover = [&](std::int32_t block) {
     const bool moves = block >= 0 && step.simulation.asleep[static_cast<std::size_t>(block)] == 0;
-    const std::int32_t at = moves ? engine.nodeOf[static_cast<std::size_t>(block)] : unmoved;
+    const std::int32_t at = moves ? engine.scratch.nodeOf[static_cast<std::size_t>(block)] : unmoved;
     Lanes centre = {0.0, 0.0, 0.0, 0.0};
     if (moves) {
       const Vec3& place = island.bodies[static_cast<std::size_t>(at)].place;
@@ -155,8 +155,8 @@ void gatherPoints(IslandStep& step, RigidIsland& island, bool again) {
       }
       continue;
     }
-    const BlockFrame& upper = engine.frames[static_cast<std::size_t>(m.upper)];
-    const BlockFrame* lower = m.lower < 0 ? nullptr : &engine.frames[static_cast<std::size_t>(m.lower)];
+    const BlockFrame& upper = engine.memo.frames[static_cast<std::size_t>(m.upper)];
+    const BlockFrame* lower = m.lower < 0 ? nullptr : &engine.memo.frames[static_cast<std::size_t>(m.lower)];
     addPoints(m, mover(m.upper), mover(m.lower), upper, lower, step.simulation, step.drift_s, at, island.points);
   }
   island.known.reserve(island.points.capacity());  // they change places: one that lags behind would grow when frames run again

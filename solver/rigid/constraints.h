@@ -7,7 +7,7 @@ namespace springtower {
 
 // The manifolds of narrowphase/ as sequential impulses see them. Their memory as in solver/contact/rigid_contacts.h.
 
-/// Lists all points of an island's touching manifolds at the places of engine.frames, with the impulses of the step before.
+/// Lists all points of an island's touching manifolds at the places of engine.memo.frames, with the impulses of the step before.
 /// `again`: in a step taken again from the same places, where only the contacts found in it are new. Reads the movers.
 void gatherPoints(IslandStep& step, RigidIsland& island, bool again);
 

@@ -7,6 +7,7 @@
 #include "solver/contact/rigid_contacts.h"
 #include "solver/contact/update.h"
 #include "solver/rigid/methods.h"
+#include "solver/world/checkpoint.h"
 #include "solver/world/stage_clock.h"
 
 #include <Eigen/LU>
@@ -57,7 +58,7 @@ void readPoses(IslandStep& step) {
     body.moment = momentOf(simulation, b, body);
     body.inverseMoment = body.moment.inverse();
     body.inverseMass = 1.0 / simulation.model.mass[b];
-    step.engine.nodeOf[b] = static_cast<std::int32_t>(i);
+    step.engine.scratch.nodeOf[b] = static_cast<std::int32_t>(i);
   }
 }
 
@@ -85,40 +86,6 @@ void writeVelocities(IslandStep& step) {
     for (std::size_t c = 0; c < kCorners; ++c)
       state.velocity.set(b, c, body.velocity + body.spin.cross(state.position.at(b, c) - body.place));
   }
-}
-
-void saveFrameStart(IslandStep& step) {
-  RigidIsland& island = rigidIslandOf(step);
-  for (RigidBody& body : island.bodies) {
-    body.placeBefore = body.place;
-    body.axesBefore = body.axes;
-    body.velocityBefore = body.velocity;
-    body.spinBefore = body.spin;
-  }
-  for (std::size_t i = 0; i < step.blocks.size(); ++i) {
-    const auto b = static_cast<std::size_t>(step.blocks[i]);
-    island.bodies[i].travelBefore_m = step.engine.blockHistory[b].travel;
-    for (std::size_t a = 0; a < 3; ++a)
-      std::copy_n(step.simulation.state.position.values(a, b), kCorners, step.engine.previous.values(a, b));
-  }
-}
-
-void backToStart(IslandStep& step) {
-  RigidIsland& island = rigidIslandOf(step);
-  Engine& engine = step.engine;
-  for (RigidBody& body : island.bodies) {
-    body.place = body.placeBefore;
-    body.axes = body.axesBefore;
-    body.velocity = body.velocityBefore;
-    body.spin = body.spinBefore;
-  }
-  for (std::size_t i = 0; i < step.blocks.size(); ++i) {
-    const auto b = static_cast<std::size_t>(step.blocks[i]);
-    engine.blockHistory[b].travel = island.bodies[i].travelBefore_m;
-    for (std::size_t a = 0; a < 3; ++a)
-      std::copy_n(engine.previous.values(a, b), kCorners, step.simulation.state.position.values(a, b));
-  }
-  recomputeClearances(step);
 }
 
 void stepOnce(IslandStep& step, bool again) {
@@ -165,13 +132,13 @@ Eigen::Matrix3d straightAxes(const ParticleArray& position, std::size_t block) {
 }
 
 RigidIsland& rigidIslandOf(IslandStep& step) {
-  return step.engine.rigidIslands[static_cast<std::size_t>(step.blocks.front())];
+  return step.engine.scratch.rigidIslands[static_cast<std::size_t>(step.blocks.front())];
 }
 
 void prepareRigid(Simulation& simulation) {
   const std::size_t count = simulation.model.blockCount();
-  simulation.engine->rigidIslands.resize(count);
-  simulation.engine->nodeOf.assign(count, 0);
+  simulation.engine->scratch.rigidIslands.resize(count);
+  simulation.engine->scratch.nodeOf.assign(count, 0);
 }
 
 int rigidSubsteps(const Settings& settings) {
@@ -191,7 +158,7 @@ void updateInertia(RigidBody& body) {
 void applyTether(IslandStep& step) {
   Tether tether = step.simulation.tether;
   const std::size_t b = index(tether.block);
-  RigidBody& body = rigidIslandOf(step).bodies[static_cast<std::size_t>(step.engine.nodeOf[b])];
+  RigidBody& body = rigidIslandOf(step).bodies[static_cast<std::size_t>(step.engine.scratch.nodeOf[b])];
   const double h = step.drift_s;
   const double cornerInverseMass = inverseMass(step.simulation.scene.settings.inertia).own * body.inverseMass;
   const double centre = 1.0 + h * body.inverseMass * (tether.damping_n_s_m + h * tether.stiffness_n_m);
@@ -216,12 +183,12 @@ void applyForces(IslandStep& step) {
   RigidIsland& island = rigidIslandOf(step);
   if (holdsTether(step)) applyTether(step);  // first: its dashpots would brake what gravity has not done yet
   for (RigidBody& body : island.bodies) body.velocity += step.drift_s * step.gravity;
-  const std::int32_t own = step.engine.islands.islandOf[static_cast<std::size_t>(step.blocks.front())];
+  const std::int32_t own = step.engine.memo.islands.islandOf[static_cast<std::size_t>(step.blocks.front())];
   for (const UserForce& user : step.simulation.scene.forces) {
     if (step.time_s < user.start_s || step.time_s >= user.end_s) continue;
     const auto b = static_cast<std::size_t>(user.block);
-    if (step.engine.islands.islandOf[b] != own) continue;
-    RigidBody& body = island.bodies[static_cast<std::size_t>(step.engine.nodeOf[b])];
+    if (step.engine.memo.islands.islandOf[b] != own) continue;
+    RigidBody& body = island.bodies[static_cast<std::size_t>(step.engine.scratch.nodeOf[b])];
     body.velocity += step.drift_s * body.inverseMass * user.force;
     if (user.corner < 0) continue;
     const auto c = static_cast<std::size_t>(user.corner);
@@ -255,28 +222,29 @@ IslandOutcome runRigidSteps(IslandStep& step, int steps, double begin_s) {
   step.pointKind = method == Method::xpbd ? PointKind::anchor : PointKind::impulse;
   const bool sequential = method != Method::rigidLcp && method != Method::xpbd;
   readPoses(step);
-  computeFrames(simulation.state.position, step.blocks, step.engine.frames);
+  computeFrames(simulation.state.position, step.blocks, step.engine.memo.frames);
   step.usesActiveList = true;
   step.activeListSteps = 0;
   for (int substep = 0; substep < outcome.substeps && outcome.inside; ++substep) {
     step.time_s = simulation.time_s + begin_s + substep * step.drift_s;
     step.gravity = simulation.scene.gravity.at(step.time_s);
-    saveFrameStart(step);
+    saveStep(step);
     for (int repeat = 0;; ++repeat) {
       const std::uint64_t born = step.counters.contactsBorn;
       stepOnce(step, repeat > 0);
       outcome.inside = findContacts(step);
       if (!outcome.inside || born == step.counters.contactsBorn || repeat == kMaxRepeats) break;
-      backToStart(step);
+      restoreStep(step);
+      recomputeClearances(step);
     }
     if (sequential) relaxPgs(step, rigidIslandOf(step));
-    computeFrames(simulation.state.position, step.blocks, step.engine.frames);
+    computeFrames(simulation.state.position, step.blocks, step.engine.memo.frames);
     if (outcome.inside) refreshContacts(step, refreshTravelOfExplicitSteps(simulation));
   }
   writeVelocities(step);
   for (const std::int32_t block : step.blocks) {
-    step.engine.blockHistory[static_cast<std::size_t>(block)].lastExplicitStep_s = step.drift_s;
-    step.engine.blockHistory[static_cast<std::size_t>(block)].lastImplicitStep_s = 0.0;
+    step.engine.memo.blockHistory[static_cast<std::size_t>(block)].lastExplicitStep_s = step.drift_s;
+    step.engine.memo.blockHistory[static_cast<std::size_t>(block)].lastImplicitStep_s = 0.0;
   }
   return outcome;
 }

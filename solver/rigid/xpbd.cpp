@@ -93,8 +93,8 @@ void stepXpbd(IslandStep& step, RigidIsland& island) {
     step.counters.contactEvaluations += island.contacts.size();
   }
   for (RigidBody& body : island.bodies) {
-    body.place = body.placeBefore + body.moved;
-    body.axes = body.axesBefore;
+    body.place = body.before.place + body.moved;
+    body.axes = body.before.axes;
     turnAxes(body.turned, body.axes);
   }
   for (RigidContact& contact : island.contacts) {

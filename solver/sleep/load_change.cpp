@@ -38,7 +38,7 @@ ContactWrench pushOnA(const Simulation& simulation, std::size_t at) {
 void addChange(Simulation& simulation, std::size_t at, std::int32_t sleeper) {
   Engine& engine = *simulation.engine;
   const SleepLoad before = sleepLoadOf(engine, at);
-  LoadChange& change = engine.change[static_cast<std::size_t>(sleeper)];
+  LoadChange& change = engine.scratch.loadChange[static_cast<std::size_t>(sleeper)];
   const double sign = sleeper == engine.pairs.key[at].a ? 1.0 : -1.0;
   const ContactWrench now = pushOnA(simulation, at);
   const Vec3 difference = sign * (now.force - before.force);
@@ -56,18 +56,18 @@ void addChange(Simulation& simulation, std::size_t at, std::int32_t sleeper) {
 // Adds up what went through the blocks that are pushed otherwise when they fell asleep, and what holds them.
 void findLoads(Simulation& simulation) {
   Engine& engine = *simulation.engine;
-  for (const std::int32_t block : engine.pushed) {
-    LoadChange& change = engine.change[static_cast<std::size_t>(block)];
+  for (const std::int32_t block : engine.scratch.pushed) {
+    LoadChange& change = engine.scratch.loadChange[static_cast<std::size_t>(block)];
     change.load_n = 0.5 * weightOf(simulation, block);
     if (!change.side.isZero(0.0)) change.side.normalize();
-    engine.joined[static_cast<std::size_t>(block)] = 1;
+    engine.scratch.joined[static_cast<std::size_t>(block)] = 1;
   }
   for (std::size_t at = 0; at < engine.pairs.size(); ++at) {
     const BlockPair& pair = engine.pairs.key[at];
     const Vec3 restForce = sleepLoadOf(engine, at).force;
     const auto add = [&](std::int32_t block, std::int32_t partner, const Vec3& force) {
-      if (block < 0 || engine.joined[static_cast<std::size_t>(block)] == 0) return;
-      LoadChange& change = engine.change[static_cast<std::size_t>(block)];
+      if (block < 0 || engine.scratch.joined[static_cast<std::size_t>(block)] == 0) return;
+      LoadChange& change = engine.scratch.loadChange[static_cast<std::size_t>(block)];
       change.load_n += 0.5 * force.norm();
       if (sleeps(simulation, partner)) change.hold_n += simulation.scene.staticFriction * force.norm();
     };
@@ -79,7 +79,7 @@ void findLoads(Simulation& simulation) {
 // Whether a sleeping block bears what is done to it.
 bool bears(const Simulation& simulation, std::int32_t block) {
   const auto b = static_cast<std::size_t>(block);
-  const LoadChange& change = simulation.engine->change[b];
+  const LoadChange& change = simulation.engine->scratch.loadChange[b];
   if (change.begunOrLost) return false;
   if (change.force.norm() <= kChange * weightOf(simulation, block)) return true;
   const double longest = simulation.model.dimensions[b].maxCoeff();
@@ -113,7 +113,7 @@ void recordSleepLoads(Simulation& simulation, std::span<const std::uint8_t> stay
       const Vec3 force = now.force - before.force;
       const Vec3 torque = now.torque - before.torque - centre(simulation.state.position, s).cross(force);
       if (force.norm() <= most && torque.norm() <= most * simulation.model.dimensions[s].minCoeff()) continue;
-      engine.toWake.push_back({sleeper, WakeReason::unbalanced});
+      engine.scratch.toWake.push_back({sleeper, WakeReason::unbalanced});
     }
     if (engine.pairs.contact[at] >= 0) engine.contacts.sleepLoad(engine.pairs.contact[at]) = {now.force, now.torque};
   }
@@ -121,21 +121,21 @@ void recordSleepLoads(Simulation& simulation, std::span<const std::uint8_t> stay
 
 bool findWakeCandidates(Simulation& simulation) {
   Engine& engine = *simulation.engine;
-  engine.toWake.clear();
-  engine.pushed.clear();
-  engine.change.resize(simulation.asleep.size());
-  engine.joined.assign(simulation.asleep.size(), 0);
+  engine.scratch.toWake.clear();
+  engine.scratch.pushed.clear();
+  engine.scratch.loadChange.resize(simulation.asleep.size());
+  engine.scratch.joined.assign(simulation.asleep.size(), 0);
   bool changed = false;
   bool gives = false;
-  for (const std::int32_t position : engine.islandPairs) {
+  for (const std::int32_t position : engine.memo.islandPairs) {
     const auto at = static_cast<std::size_t>(position);
     const BlockPair& pair = engine.pairs.key[at];
     if (pair.b < 0 || sleeps(simulation, pair.a) == sleeps(simulation, pair.b)) continue;
     const std::int32_t sleeper = sleeps(simulation, pair.a) ? pair.a : pair.b;
-    LoadChange& change = engine.change[static_cast<std::size_t>(sleeper)];
-    if (engine.joined[static_cast<std::size_t>(sleeper)] == 0) {
-      engine.joined[static_cast<std::size_t>(sleeper)] = 1;
-      engine.pushed.push_back(sleeper);
+    LoadChange& change = engine.scratch.loadChange[static_cast<std::size_t>(sleeper)];
+    if (engine.scratch.joined[static_cast<std::size_t>(sleeper)] == 0) {
+      engine.scratch.joined[static_cast<std::size_t>(sleeper)] = 1;
+      engine.scratch.pushed.push_back(sleeper);
       change = {};
     }
     addChange(simulation, at, sleeper);
@@ -145,13 +145,14 @@ bool findWakeCandidates(Simulation& simulation) {
   }
   if (changed) {
     findLoads(simulation);
-    for (const std::int32_t block : engine.pushed) {
-      if (!bears(simulation, block)) engine.toWake.push_back({block, WakeReason::loadChange});
+    for (const std::int32_t block : engine.scratch.pushed) {
+      if (!bears(simulation, block)) engine.scratch.toWake.push_back({block, WakeReason::loadChange});
     }
     if (simulation.scene.settings.sleep == Sleep::on) gives = findFailedSupports(simulation);
   }
   // A pair that the sweep has dropped pushes no more.
-  for (const std::int32_t block : engine.lostPartner) engine.toWake.push_back({block, WakeReason::lostNeighbour});
+  for (const std::int32_t block : engine.scratch.lostPartners)
+    engine.scratch.toWake.push_back({block, WakeReason::lostNeighbour});
   return gives;
 }
 

@@ -53,7 +53,7 @@ double fastestRigidCorner(const Simulation& simulation, std::size_t b) {
 // gravity. A block that starts to tip is slow but out of balance.
 void judge(Simulation& simulation, std::size_t b) {
   const Settings& settings = simulation.scene.settings;
-  SleepWindow& window = simulation.engine->rest[b];
+  SleepWindow& window = simulation.engine->sleep.windows[b];
   const double slow = settings.restSpeed * speedScale(simulation);
   const bool ends = window.age_s + settings.frame_s >= settings.restTime * timeScale(simulation);
   if (!ends && fastestRigidCorner(simulation, b) < slow) {  // the usual case, without the rigid motion itself
@@ -79,7 +79,7 @@ void judge(Simulation& simulation, std::size_t b) {
 
 // The report's test (its appendix 2.5): how far the block's particles have moved together, compression and all, over one frame.
 void judgeAsReported(Simulation& simulation, std::size_t b) {
-  const ParticleArray& before = simulation.engine->frameStart.position;
+  const ParticleArray& before = simulation.engine->checkpoint.state.position;
   double moved = 0.0;
   for (std::size_t c = 0; c < kCorners; ++c) moved += (simulation.state.position.at(b, c) - before.at(b, c)).norm();
   simulation.restTime_s[b] = moved < simulation.scene.settings.reportDisableDistance_m ? simulation.scene.settings.frame_s : 0.0;
@@ -118,25 +118,25 @@ double restNeeded(const Simulation& simulation) {
 void fallAsleep(Simulation& simulation, std::size_t b) {
   Engine& engine = *simulation.engine;
   simulation.asleep[b] = 1;
-  engine.loadPath.known.clear();
-  BlockHistory& history = engine.blockHistory[b];
+  engine.sleep.checkedLoads.clear();
+  BlockHistory& history = engine.memo.blockHistory[b];
   history.falls = history.hasFallen = false;
   history.explicitFrames = 0;
-  --engine.awakeCount;
+  --engine.sleep.awakeCount;
   for (std::size_t a = 0; a < 3; ++a) std::fill_n(simulation.state.velocity.values(a, b), kCorners, 0.0);
-  engine.frames[b] = blockFrame(simulation.state.position, b);
-  engine.motion[b] = AffineField{};
-  if (!engine.carriedMotion.empty()) engine.carriedMotion[b] = AffineField{};
+  engine.memo.frames[b] = blockFrame(simulation.state.position, b);
+  engine.memo.motion[b] = AffineField{};
+  if (!engine.memo.carriedMotion.empty()) engine.memo.carriedMotion[b] = AffineField{};
   if (!engine.report.contacts.empty()) engine.report.contacts[b].clear();
 }
 
 void findRoots(Engine& engine) {
-  engine.wakeRoots.clear();
-  for (const WakeRequest& request : engine.toWake) engine.wakeRoots.push_back(request.block);
+  engine.scratch.wakeRoots.clear();
+  for (const WakeRequest& request : engine.scratch.toWake) engine.scratch.wakeRoots.push_back(request.block);
 }
 
 void wakeRequested(Simulation& simulation) {
-  for (const WakeRequest& request : simulation.engine->toWake)
+  for (const WakeRequest& request : simulation.engine->scratch.toWake)
     wake(simulation, static_cast<std::size_t>(request.block), request.reason);
 }
 
@@ -144,20 +144,20 @@ void wakeRequested(Simulation& simulation) {
 // Waking one row at a time would need one rest period a row.
 void wakeUnbalancedCluster(Simulation& simulation) {
   Engine& engine = *simulation.engine;
-  engine.touchingEdges.clear();
+  engine.scratch.touchingEdges.clear();
   for (std::size_t at = 0; at < engine.pairs.size(); ++at) {
     const BlockPair& pair = engine.pairs.key[at];
-    if (pair.b >= 0 && engine.pairs.touches(at)) engine.touchingEdges.push_back({pair.a, pair.b});
+    if (pair.b >= 0 && engine.pairs.touches(at)) engine.scratch.touchingEdges.push_back({pair.a, pair.b});
   }
-  engine.touched.resize(simulation.asleep.size());
+  engine.scratch.touched.resize(simulation.asleep.size());
   findRoots(engine);
-  connectedBlocks(engine.touchingEdges, engine.wakeRoots, engine.parent, engine.touched);
-  const auto touches = [&](std::int32_t block) { return engine.touched[static_cast<std::size_t>(block)] != 0; };
-  if (std::any_of(engine.restless.begin(), engine.restless.end(), touches)) return;
-  for (std::size_t b = 0; b < engine.touched.size(); ++b) {
-    if (engine.touched[b] == 0) continue;
-    engine.joined[b] = 1;
-    engine.toWake.push_back({static_cast<std::int32_t>(b), WakeReason::unbalanced});
+  connectedBlocks(engine.scratch.touchingEdges, engine.scratch.wakeRoots, engine.scratch.parent, engine.scratch.touched);
+  const auto touches = [&](std::int32_t block) { return engine.scratch.touched[static_cast<std::size_t>(block)] != 0; };
+  if (std::any_of(engine.scratch.restless.begin(), engine.scratch.restless.end(), touches)) return;
+  for (std::size_t b = 0; b < engine.scratch.touched.size(); ++b) {
+    if (engine.scratch.touched[b] == 0) continue;
+    engine.scratch.joined[b] = 1;
+    engine.scratch.toWake.push_back({static_cast<std::int32_t>(b), WakeReason::unbalanced});
   }
 }
 
@@ -177,12 +177,12 @@ void putToSleep(Simulation& simulation) {
       return user.block == block && acts(user, simulation.time_s - frame_s, frame_s);
     });
   };
-  if (std::none_of(engine.awakeBlocks.begin(), engine.awakeBlocks.end(), ready)) return;
+  if (std::none_of(engine.scratch.awakeBlocks.begin(), engine.scratch.awakeBlocks.end(), ready)) return;
 
-  engine.restless.clear();
-  engine.touchingEdges.clear();
-  for (const std::int32_t block : engine.awakeBlocks) {
-    if (!ready(block)) engine.restless.push_back(block);
+  engine.scratch.restless.clear();
+  engine.scratch.touchingEdges.clear();
+  for (const std::int32_t block : engine.scratch.awakeBlocks) {
+    if (!ready(block)) engine.scratch.restless.push_back(block);
   }
   const Settings& settings = simulation.scene.settings;
   const bool nearCounts = settings.method == Method::report;
@@ -192,23 +192,23 @@ void putToSleep(Simulation& simulation) {
       if (pair.b < 0 || (!engine.pairs.touches(at) && !nearCounts)) continue;
       const bool bothAwake =
           simulation.asleep[static_cast<std::size_t>(pair.a)] == 0 && simulation.asleep[static_cast<std::size_t>(pair.b)] == 0;
-      if (bothAwake) engine.touchingEdges.push_back({pair.a, pair.b});
+      if (bothAwake) engine.scratch.touchingEdges.push_back({pair.a, pair.b});
     }
   }
-  engine.joined.resize(simulation.asleep.size());
-  connectedBlocks(engine.touchingEdges, engine.restless, engine.parent, engine.joined);
-  for (const std::int32_t block : engine.awakeBlocks) {
+  engine.scratch.joined.resize(simulation.asleep.size());
+  connectedBlocks(engine.scratch.touchingEdges, engine.scratch.restless, engine.scratch.parent, engine.scratch.joined);
+  for (const std::int32_t block : engine.scratch.awakeBlocks) {
     const bool patient = simulation.restTime_s[static_cast<std::size_t>(block)] >= kPatience * needed;
-    if (patient && ready(block) && !nearCounts) engine.joined[static_cast<std::size_t>(block)] = 0;
+    if (patient && ready(block) && !nearCounts) engine.scratch.joined[static_cast<std::size_t>(block)] = 0;
   }
-  engine.toWake.clear();
-  recordSleepLoads(simulation, engine.joined);
-  if (!engine.toWake.empty() && settings.sleep == Sleep::on) wakeUnbalancedCluster(simulation);
-  for (const std::int32_t block : engine.awakeBlocks) {
-    if (engine.joined[static_cast<std::size_t>(block)] == 0) fallAsleep(simulation, static_cast<std::size_t>(block));
+  engine.scratch.toWake.clear();
+  recordSleepLoads(simulation, engine.scratch.joined);
+  if (!engine.scratch.toWake.empty() && settings.sleep == Sleep::on) wakeUnbalancedCluster(simulation);
+  for (const std::int32_t block : engine.scratch.awakeBlocks) {
+    if (engine.scratch.joined[static_cast<std::size_t>(block)] == 0) fallAsleep(simulation, static_cast<std::size_t>(block));
   }
   wakeRequested(simulation);
-  engine.gravitySlept = simulation.scene.gravity.at(simulation.time_s);
+  engine.sleep.gravity = simulation.scene.gravity.at(simulation.time_s);
 }
 
 }  // namespace
@@ -217,19 +217,19 @@ void wake(Simulation& simulation, std::size_t block, WakeReason reason) {
   if (simulation.asleep[block] == 0) return;
   ++simulation.wakes[static_cast<std::size_t>(reason)];
   simulation.asleep[block] = 0;
-  simulation.engine->loadPath.known.clear();
+  simulation.engine->sleep.checkedLoads.clear();
   simulation.restTime_s[block] = 0.0;
-  ++simulation.engine->awakeCount;
+  ++simulation.engine->sleep.awakeCount;
   const RigidMotion motion = rigidMotion(simulation.state, block);
-  simulation.engine->rest[block] = {motion.centre, motion.velocity, motion.spin, 0.0};
+  simulation.engine->sleep.windows[block] = {motion.centre, motion.velocity, motion.spin, 0.0};
 }
 
 void wakeForInputs(Simulation& simulation) {
   Engine& engine = *simulation.engine;
-  if (engine.awakeCount == simulation.asleep.size()) return;
+  if (engine.sleep.awakeCount == simulation.asleep.size()) return;
   const double frame_s = simulation.scene.settings.frame_s;
   const Vec3 gravity = simulation.scene.gravity.at(simulation.time_s + frame_s);
-  if ((gravity - engine.gravitySlept).norm() > kWakeGravity * simulation.scene.gravity.magnitude) {
+  if ((gravity - engine.sleep.gravity).norm() > kWakeGravity * simulation.scene.gravity.magnitude) {
     for (std::size_t b = 0; b < simulation.asleep.size(); ++b) wake(simulation, b, WakeReason::gravity);
     return;
   }
@@ -241,46 +241,46 @@ void wakeForInputs(Simulation& simulation) {
 
 bool wakeOnImpact(Simulation& simulation) {
   Engine& engine = *simulation.engine;
-  if (simulation.scene.settings.sleep != Sleep::on || engine.awakeCount == simulation.asleep.size()) return false;
+  if (simulation.scene.settings.sleep != Sleep::on || engine.sleep.awakeCount == simulation.asleep.size()) return false;
   const StageTimer timer(simulation.stageTimes, Stage::islandsAndSleep);
-  engine.toWake.clear();
-  engine.touched.assign(simulation.asleep.size(), 0);
-  for (const std::int32_t position : engine.islandPairs) {
+  engine.scratch.toWake.clear();
+  engine.scratch.touched.assign(simulation.asleep.size(), 0);
+  for (const std::int32_t position : engine.memo.islandPairs) {
     const auto at = static_cast<std::size_t>(position);
     const BlockPair& pair = engine.pairs.key[at];
     if (!anyPointTouches(contactOf(engine, at))) continue;
-    engine.touched[static_cast<std::size_t>(pair.a)] = 1;
-    if (pair.b >= 0) engine.touched[static_cast<std::size_t>(pair.b)] = 1;
+    engine.scratch.touched[static_cast<std::size_t>(pair.a)] = 1;
+    if (pair.b >= 0) engine.scratch.touched[static_cast<std::size_t>(pair.b)] = 1;
   }
-  for (const std::int32_t position : engine.islandPairs) {
+  for (const std::int32_t position : engine.memo.islandPairs) {
     const auto at = static_cast<std::size_t>(position);
     const BlockPair& pair = engine.pairs.key[at];
     if (pair.b < 0 || sleeps(simulation, pair.a) == sleeps(simulation, pair.b)) continue;
     const bool sleepsA = sleeps(simulation, pair.a);
     const std::int32_t awake = sleepsA ? pair.b : pair.a;
-    if (isStruck(simulation, at, awake, engine.touched[static_cast<std::size_t>(awake)] != 0))
-      engine.toWake.push_back({sleepsA ? pair.a : pair.b, WakeReason::impact});
+    if (isStruck(simulation, at, awake, engine.scratch.touched[static_cast<std::size_t>(awake)] != 0))
+      engine.scratch.toWake.push_back({sleepsA ? pair.a : pair.b, WakeReason::impact});
   }
-  if (engine.toWake.empty()) return false;
-  engine.touchingEdges.clear();
+  if (engine.scratch.toWake.empty()) return false;
+  engine.scratch.touchingEdges.clear();
   for (std::size_t at = 0; at < engine.pairs.size(); ++at) {
     const BlockPair& pair = engine.pairs.key[at];
     if (pair.b >= 0 && engine.pairs.touches(at) && sleeps(simulation, pair.a) && sleeps(simulation, pair.b))
-      engine.touchingEdges.push_back({pair.a, pair.b});
+      engine.scratch.touchingEdges.push_back({pair.a, pair.b});
   }
-  engine.touched.resize(simulation.asleep.size());
+  engine.scratch.touched.resize(simulation.asleep.size());
   findRoots(engine);
-  connectedBlocks(engine.touchingEdges, engine.wakeRoots, engine.parent, engine.touched);
-  for (std::size_t b = 0; b < engine.touched.size(); ++b) {
-    if (engine.touched[b] != 0) wake(simulation, b, WakeReason::impact);
+  connectedBlocks(engine.scratch.touchingEdges, engine.scratch.wakeRoots, engine.scratch.parent, engine.scratch.touched);
+  for (std::size_t b = 0; b < engine.scratch.touched.size(); ++b) {
+    if (engine.scratch.touched[b] != 0) wake(simulation, b, WakeReason::impact);
   }
   return true;
 }
 
 bool wakeFailedSupports(Simulation& simulation) {
   Engine& engine = *simulation.engine;
-  engine.toWake.clear();
-  if (engine.awakeCount == simulation.asleep.size()) return false;
+  engine.scratch.toWake.clear();
+  if (engine.sleep.awakeCount == simulation.asleep.size()) return false;
   const StageTimer timer(simulation.stageTimes, Stage::islandsAndSleep);
   if (!findWakeCandidates(simulation)) return false;
   wakeRequested(simulation);
@@ -290,7 +290,7 @@ bool wakeFailedSupports(Simulation& simulation) {
 void updateRest(Simulation& simulation) {
   Engine& engine = *simulation.engine;
   const Sleep sleep = simulation.scene.settings.sleep;
-  for (const std::int32_t block : engine.awakeBlocks) {
+  for (const std::int32_t block : engine.scratch.awakeBlocks) {
     const auto b = static_cast<std::size_t>(block);
     sleep == Sleep::report ? judgeAsReported(simulation, b) : judge(simulation, b);
   }

@@ -14,8 +14,8 @@ void wakeForInputs(Simulation& simulation);
 bool wakeOnImpact(Simulation& simulation);
 
 /// At the end of a frame: finds the sleeping blocks to wake, whose awake neighbours push them otherwise than when they fell
-/// asleep (engine.toWake). Where some of them gave way all are woken, and the frame has to be run again from its start: returns
-/// whether it has.
+/// asleep (engine.scratch.toWake). Where some of them gave way all are woken, and the frame has to be run again from its start:
+/// returns whether it has.
 bool wakeFailedSupports(Simulation& simulation);
 
 /// After that: judges the rest of every awake block by its rigid motion and its balance, wakes what wakeFailedSupports has found,

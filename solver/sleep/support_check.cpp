@@ -32,7 +32,7 @@ double heightOf(const Simulation& simulation, std::int32_t block, const Vec3& up
 // Lists the pairs of each sleeper.
 void listPairsOfSleepers(Simulation& simulation) {
   Engine& engine = *simulation.engine;
-  SupportCheckScratch& path = engine.loadPath;
+  SupportCheckScratch& path = engine.scratch.support;
   const auto forEach = [&](const auto& visit) {
     for (std::size_t p = 0; p < engine.pairs.size(); ++p) {
       if (!engine.pairs.touches(p)) continue;
@@ -45,15 +45,15 @@ void listPairsOfSleepers(Simulation& simulation) {
   forEach([&](std::size_t b, std::size_t) { ++path.start[b + 1]; });
   for (std::size_t b = 0; b < simulation.asleep.size(); ++b) path.start[b + 1] += path.start[b];
   path.pairs.resize(static_cast<std::size_t>(path.start.back()));
-  engine.cursor.assign(path.start.begin(), path.start.end());
+  engine.scratch.cursor.assign(path.start.begin(), path.start.end());
   forEach([&](std::size_t b, std::size_t p) {
-    path.pairs[static_cast<std::size_t>(engine.cursor[b]++)] = static_cast<std::int32_t>(p);
+    path.pairs[static_cast<std::size_t>(engine.scratch.cursor[b]++)] = static_cast<std::int32_t>(p);
   });
 }
 
 template <typename Visit>
 void forEachPair(const Engine& engine, std::int32_t block, const Visit& visit) {
-  const SupportCheckScratch& path = engine.loadPath;
+  const SupportCheckScratch& path = engine.scratch.support;
   const auto b = static_cast<std::size_t>(block);
   for (auto k = static_cast<std::size_t>(path.start[b]); k < static_cast<std::size_t>(path.start[b + 1]); ++k) {
     visit(path.pairs[k], engine.pairs.key[static_cast<std::size_t>(path.pairs[k])]);
@@ -64,10 +64,10 @@ void forEachPair(const Engine& engine, std::int32_t block, const Visit& visit) {
 // torques about the origin, with the margin.
 void listSleepers(Simulation& simulation, const Vec3& up) {
   Engine& engine = *simulation.engine;
-  SupportCheckScratch& path = engine.loadPath;
-  path.blocks.assign(engine.pushed.begin(), engine.pushed.end());
+  SupportCheckScratch& path = engine.scratch.support;
+  path.blocks.assign(engine.scratch.pushed.begin(), engine.scratch.pushed.end());
   for (const std::int32_t block : path.blocks) {
-    LoadChange& change = engine.change[static_cast<std::size_t>(block)];
+    LoadChange& change = engine.scratch.loadChange[static_cast<std::size_t>(block)];
     change.torque =
         kMargin * (change.torque + centre(simulation.state.position, static_cast<std::size_t>(block)).cross(change.force));
     change.force *= kMargin;
@@ -76,9 +76,9 @@ void listSleepers(Simulation& simulation, const Vec3& up) {
     const std::int32_t block = path.blocks[i];
     forEachPair(engine, block, [&](std::int32_t, const BlockPair& pair) {
       const std::int32_t other = pair.a == block ? pair.b : pair.a;
-      if (other < 0 || !sleeps(simulation, other) || engine.joined[static_cast<std::size_t>(other)] != 0) return;
-      engine.joined[static_cast<std::size_t>(other)] = 1;
-      engine.change[static_cast<std::size_t>(other)] = {};
+      if (other < 0 || !sleeps(simulation, other) || engine.scratch.joined[static_cast<std::size_t>(other)] != 0) return;
+      engine.scratch.joined[static_cast<std::size_t>(other)] = 1;
+      engine.scratch.loadChange[static_cast<std::size_t>(other)] = {};
       path.blocks.push_back(other);
     });
   }
@@ -97,7 +97,7 @@ bool bears(const SleepLoad& load, const Vec3& up) {
 // Adds a sleeper to the groups above the level: it joins those it bears, and opens the pairs below it.
 void addToGroups(Simulation& simulation, std::int32_t block, const Vec3& up) {
   Engine& engine = *simulation.engine;
-  SupportCheckScratch& path = engine.loadPath;
+  SupportCheckScratch& path = engine.scratch.support;
   path.parent[static_cast<std::size_t>(block)] = block;
   forEachPair(engine, block, [&](std::int32_t at, const BlockPair& pair) {
     const std::int32_t other = pair.a == block ? pair.b : pair.a;
@@ -110,9 +110,9 @@ void addToGroups(Simulation& simulation, std::int32_t block, const Vec3& up) {
     const std::int32_t from = findRoot(path.parent, other);
     if (into == from) return;
     path.parent[static_cast<std::size_t>(from)] = into;
-    LoadChange& sum = engine.change[static_cast<std::size_t>(into)];
-    sum.force += engine.change[static_cast<std::size_t>(from)].force;
-    sum.torque += engine.change[static_cast<std::size_t>(from)].torque;
+    LoadChange& sum = engine.scratch.loadChange[static_cast<std::size_t>(into)];
+    sum.force += engine.scratch.loadChange[static_cast<std::size_t>(from)].force;
+    sum.torque += engine.scratch.loadChange[static_cast<std::size_t>(from)].torque;
   });
 }
 
@@ -123,9 +123,9 @@ bool isAbove(const SupportCheckScratch& path, std::int32_t block) {
 // Lists the groups above the level that are pushed, and the pairs on which each may rest, group by group.
 void listPushedGroups(Simulation& simulation) {
   Engine& engine = *simulation.engine;
-  SupportCheckScratch& path = engine.loadPath;
+  SupportCheckScratch& path = engine.scratch.support;
   path.groups.clear();
-  for (const std::int32_t block : engine.pushed) {
+  for (const std::int32_t block : engine.scratch.pushed) {
     if (isAbove(path, block)) path.groups.push_back(findRoot(path.parent, block));
   }
   std::sort(path.groups.begin(), path.groups.end());
@@ -141,7 +141,7 @@ void listPushedGroups(Simulation& simulation) {
 
 // The points on which a group above the level rests, seen from their middle, which is returned.
 Vec3 findSupports(Simulation& simulation, std::span<const SupportPair> beneath, const Vec3& up) {
-  SupportCheckScratch& path = simulation.engine->loadPath;
+  SupportCheckScratch& path = simulation.engine->scratch.support;
   path.supports.clear();
   const Scene& scene = simulation.scene;
   Vec3 middle = Vec3::Zero();
@@ -177,8 +177,8 @@ Vec3 findSupports(Simulation& simulation, std::span<const SupportPair> beneath, 
 
 // Whether a group above the level stays on what bears it.
 bool supportHolds(Simulation& simulation, std::int32_t group, std::span<const SupportPair> beneath, const Vec3& up) {
-  const LoadChange& change = simulation.engine->change[static_cast<std::size_t>(group)];
-  std::vector<SupportPoint>& supports = simulation.engine->loadPath.supports;
+  const LoadChange& change = simulation.engine->scratch.loadChange[static_cast<std::size_t>(group)];
+  std::vector<SupportPoint>& supports = simulation.engine->scratch.support.supports;
   const double height = simulation.lengths.blockHeight_m;
   const Vec3 middle = findSupports(simulation, beneath, up);
   if (supports.empty()) return true;  // it rests on awake blocks alone, and was asked above them
@@ -192,19 +192,19 @@ bool supportHolds(Simulation& simulation, std::int32_t group, std::span<const Su
 // Whether the same blocks were pushed in much the same way when all stayed last; if not, that is how they are pushed now.
 bool isKnownToStay(Simulation& simulation) {
   Engine& engine = *simulation.engine;
-  std::vector<CheckedLoad>& known = engine.loadPath.known;
-  const bool same = std::equal(known.begin(), known.end(), engine.pushed.begin(), engine.pushed.end(),
+  std::vector<CheckedLoad>& known = engine.sleep.checkedLoads;
+  const bool same = std::equal(known.begin(), known.end(), engine.scratch.pushed.begin(), engine.scratch.pushed.end(),
                                [&](const CheckedLoad& before, std::int32_t block) {
                                  const auto b = static_cast<std::size_t>(block);
-                                 const LoadChange& now = engine.change[b];
+                                 const LoadChange& now = engine.scratch.loadChange[b];
                                  const double most = kSame * now.load_n;
                                  return before.block == block && (now.force - before.force).norm() <= most &&
                                         (now.torque - before.torque).norm() <= most * simulation.model.dimensions[b].minCoeff();
                                });
   if (same) return true;
   known.clear();
-  for (const std::int32_t block : engine.pushed) {
-    const LoadChange& now = engine.change[static_cast<std::size_t>(block)];
+  for (const std::int32_t block : engine.scratch.pushed) {
+    const LoadChange& now = engine.scratch.loadChange[static_cast<std::size_t>(block)];
     known.push_back({block, now.force, now.torque});
   }
   return false;
@@ -214,9 +214,9 @@ bool isKnownToStay(Simulation& simulation) {
 
 bool findFailedSupports(Simulation& simulation) {
   Engine& engine = *simulation.engine;
-  SupportCheckScratch& path = engine.loadPath;
-  if (engine.gravitySlept.isZero(0.0) || isKnownToStay(simulation)) return false;
-  const Vec3 up = -engine.gravitySlept.normalized();
+  SupportCheckScratch& path = engine.scratch.support;
+  if (engine.sleep.gravity.isZero(0.0) || isKnownToStay(simulation)) return false;
+  const Vec3 up = -engine.sleep.gravity.normalized();
   listPairsOfSleepers(simulation);
   listSleepers(simulation, up);
   path.parent.assign(simulation.asleep.size(), -1);
@@ -242,9 +242,10 @@ bool findFailedSupports(Simulation& simulation) {
     for (const std::int32_t group : path.groups) {
       if (supportHolds(simulation, group, beneathOf(group), up)) continue;
       gives = true;
-      path.known.clear();
+      engine.sleep.checkedLoads.clear();
       for (std::size_t i = 0; i < above; ++i) {
-        if (findRoot(path.parent, path.blocks[i]) == group) engine.toWake.push_back({path.blocks[i], WakeReason::failedSupport});
+        if (findRoot(path.parent, path.blocks[i]) == group)
+          engine.scratch.toWake.push_back({path.blocks[i], WakeReason::failedSupport});
       }
     }
   }

@@ -16,19 +16,19 @@ bool hasHistory(const Simulation& simulation) {
 
 void rewindBlock(Simulation& simulation, std::size_t b) {
   Engine& engine = *simulation.engine;
-  copyBlock(engine.frameStart.position, b, simulation.state.position);
-  copyBlock(engine.frameStart.velocity, b, simulation.state.velocity);
-  engine.blockHistory[b] = engine.frameStartClock[b];
+  copyBlock(engine.checkpoint.state.position, b, simulation.state.position);
+  copyBlock(engine.checkpoint.state.velocity, b, simulation.state.velocity);
+  engine.memo.blockHistory[b] = engine.checkpoint.history[b];
   if (!hasHistory(simulation)) return;
-  copyBlock(engine.frameStartPrevious, b, engine.previous);
-  copyBlock(engine.frameStartPreviousVelocity, b, engine.previousVelocity);
+  copyBlock(engine.checkpoint.previous, b, engine.memo.previous);
+  copyBlock(engine.checkpoint.previousVelocity, b, engine.memo.previousVelocity);
 }
 
 void rewindPair(Engine& engine, std::size_t at) {
   PairTable& pairs = engine.pairs;
-  const std::int32_t saved = engine.savedPair[at];
+  const std::int32_t saved = engine.checkpoint.savedPair[at];
   if (saved >= 0) {
-    const SavedPairs& page = engine.savedPairs.page(saved);
+    const SavedPairs& page = engine.checkpoint.savedPairs.page(saved);
     const std::size_t slot = PagePool<SavedPairs>::slot(saved);
     pairs.phase[at] = page.phase[slot];
     pairs.clearance[at] = page.clearance[slot];
@@ -44,29 +44,31 @@ void rewindPair(Engine& engine, std::size_t at) {
 
 void prepareFrameStart(Simulation& simulation) {
   Engine& engine = *simulation.engine;
-  if (engine.frameStart.position.blockCount() != simulation.model.blockCount()) {
-    engine.frameStart.resize(simulation.model.blockCount());
-    engine.frameStartClock.resize(simulation.model.blockCount());
+  if (engine.checkpoint.state.position.blockCount() != simulation.model.blockCount()) {
+    engine.checkpoint.state.resize(simulation.model.blockCount());
+    engine.checkpoint.history.resize(simulation.model.blockCount());
+    engine.checkpoint.stepTravel.resize(simulation.model.blockCount());
     if (hasHistory(simulation)) {
-      engine.frameStartPrevious.resize(simulation.model.blockCount());
-      engine.frameStartPreviousVelocity.resize(simulation.model.blockCount());
+      engine.checkpoint.previous.resize(simulation.model.blockCount());
+      engine.checkpoint.previousVelocity.resize(simulation.model.blockCount());
     }
   }
-  engine.savedPair.assign(engine.pairs.size(), -1);
-  engine.savedPairs.clear();
-  engine.savedPairs.reserve(kPageRows, engine.pairs.size(), false);
+  engine.checkpoint.reportContacts = engine.report.contacts;
+  engine.checkpoint.savedPair.assign(engine.pairs.size(), -1);
+  engine.checkpoint.savedPairs.clear();
+  engine.checkpoint.savedPairs.reserve(kPageRows, engine.pairs.size(), false);
 }
 
 void saveFrameStart(IslandStep& step) {
   Engine& engine = step.engine;
   for (const std::int32_t block : step.blocks) {
     const auto b = static_cast<std::size_t>(block);
-    copyBlock(step.simulation.state.position, b, engine.frameStart.position);
-    copyBlock(step.simulation.state.velocity, b, engine.frameStart.velocity);
-    engine.frameStartClock[b] = engine.blockHistory[b];
+    copyBlock(step.simulation.state.position, b, engine.checkpoint.state.position);
+    copyBlock(step.simulation.state.velocity, b, engine.checkpoint.state.velocity);
+    engine.checkpoint.history[b] = engine.memo.blockHistory[b];
     if (!hasHistory(step.simulation)) continue;
-    copyBlock(engine.previous, b, engine.frameStartPrevious);
-    copyBlock(engine.previousVelocity, b, engine.frameStartPreviousVelocity);
+    copyBlock(engine.memo.previous, b, engine.checkpoint.previous);
+    copyBlock(engine.memo.previousVelocity, b, engine.checkpoint.previousVelocity);
   }
   for (const std::int32_t pair : step.pairs) {
     const auto at = static_cast<std::size_t>(pair);
@@ -75,11 +77,11 @@ void saveFrameStart(IslandStep& step) {
 }
 
 void savePair(Engine& engine, std::size_t at) {
-  if (engine.savedPair[at] >= 0) return;
+  if (engine.checkpoint.savedPair[at] >= 0) return;
   const PairTable& pairs = engine.pairs;
-  const std::int32_t saved = engine.savedPairs.take();
-  engine.savedPair[at] = saved;
-  SavedPairs& page = engine.savedPairs.page(saved);
+  const std::int32_t saved = engine.checkpoint.savedPairs.take();
+  engine.checkpoint.savedPair[at] = saved;
+  SavedPairs& page = engine.checkpoint.savedPairs.page(saved);
   const std::size_t slot = PagePool<SavedPairs>::slot(saved);
   page.phase[slot] = pairs.phase[at];
   page.clearance[slot] = pairs.clearance[at];
@@ -90,14 +92,43 @@ void savePair(Engine& engine, std::size_t at) {
 
 void restoreFrame(Simulation& simulation) {
   Engine& engine = *simulation.engine;
-  for (const std::int32_t block : engine.islands.blocks) rewindBlock(simulation, static_cast<std::size_t>(block));
-  for (const std::int32_t at : engine.islandPairs) rewindPair(engine, static_cast<std::size_t>(at));
-  for (NewtonSystem& island : engine.newtonSystems) island.forcesKnown = false;
+  for (const std::int32_t block : engine.memo.islands.blocks) rewindBlock(simulation, static_cast<std::size_t>(block));
+  for (const std::int32_t at : engine.memo.islandPairs) rewindPair(engine, static_cast<std::size_t>(at));
+  for (NewtonSystem& island : engine.memo.newtonSystems) island.forcesKnown = false;
+  engine.report.contacts = engine.checkpoint.reportContacts;
 }
 
 void restoreIsland(IslandStep& step) {
   for (const std::int32_t block : step.blocks) rewindBlock(step.simulation, static_cast<std::size_t>(block));
   for (const std::int32_t at : step.pairs) rewindPair(step.engine, static_cast<std::size_t>(at));
+}
+
+void saveStep(IslandStep& step) {
+  Engine& engine = step.engine;
+  for (const std::int32_t block : step.blocks) {
+    const auto b = static_cast<std::size_t>(block);
+    copyBlock(step.simulation.state.position, b, engine.memo.previous);
+    engine.checkpoint.stepTravel[b] = engine.memo.blockHistory[b].travel;
+  }
+  if (step.pointKind == PointKind::penalty) return;
+  for (RigidBody& body : engine.scratch.rigidIslands[static_cast<std::size_t>(step.blocks.front())].bodies) body.before = body;
+}
+
+void restoreStep(IslandStep& step) {
+  Engine& engine = step.engine;
+  const bool rigid = step.pointKind != PointKind::penalty;
+  for (const std::int32_t block : step.blocks) {
+    const auto b = static_cast<std::size_t>(block);
+    copyBlock(engine.memo.previous, b, step.simulation.state.position);
+    if (rigid) {
+      engine.memo.blockHistory[b].travel = engine.checkpoint.stepTravel[b];
+    } else {
+      copyBlock(engine.memo.previousVelocity, b, step.simulation.state.velocity);
+    }
+  }
+  if (!rigid) return;
+  for (RigidBody& body : engine.scratch.rigidIslands[static_cast<std::size_t>(step.blocks.front())].bodies)
+    static_cast<RigidPose&>(body) = body.before;
 }
 
 }  // namespace springtower

@@ -1,6 +1,6 @@
 #include "solver/world/contact_pool.h"
 
-#include <algorithm>
+#include <cstring>
 
 namespace springtower {
 
@@ -54,47 +54,52 @@ void ContactPool::store(std::int32_t contact, const PairOfBlocks& pair, const Ma
 void ContactPool::savePoints(std::int32_t contact) {
   First& page = first_.page(contact);
   const std::size_t slot = Pool::slot(contact);
-  page.step->before[slot] = page.points[slot];
+  page.start->before[slot] = page.points[slot];
   if (rowsFor(page.shape[slot].count) < 2) return;
   Second& more = second_.page(page.shape[slot].secondRow);
   const std::size_t moreSlot = Pool::slot(page.shape[slot].secondRow);
-  more.step->before[moreSlot] = more.points[moreSlot];
+  more.start->before[moreSlot] = more.points[moreSlot];
 }
 
 void ContactPool::restorePoints(std::int32_t contact) {
   First& page = first_.page(contact);
   const std::size_t slot = Pool::slot(contact);
-  page.points[slot] = page.step->before[slot];
+  page.points[slot] = page.start->before[slot];
   if (rowsFor(page.shape[slot].count) < 2) return;
   Second& more = second_.page(page.shape[slot].secondRow);
   const std::size_t moreSlot = Pool::slot(page.shape[slot].secondRow);
-  more.points[moreSlot] = more.step->before[moreSlot];
+  more.points[moreSlot] = more.start->before[moreSlot];
 }
 
 void ContactPool::saveShape(std::int32_t contact) {
   First& page = first_.page(contact);
   const std::size_t slot = Pool::slot(contact);
-  page.step->shapeBefore[slot] = page.shape[slot];
-  page.step->placeBefore[slot] = page.place[slot];
-  page.step->poseBefore[slot] = page.pose[slot];
+  page.start->shapeBefore[slot] = page.shape[slot];
+  page.start->placeBefore[slot] = page.place[slot];
+  page.start->poseBefore[slot] = page.pose[slot];
   if (rowsFor(page.shape[slot].count) < 2) return;
   Second& more = second_.page(page.shape[slot].secondRow);
   const std::size_t moreSlot = Pool::slot(page.shape[slot].secondRow);
-  more.step->placeBefore[moreSlot] = more.place[moreSlot];
+  more.start->placeBefore[moreSlot] = more.place[moreSlot];
 }
 
 void ContactPool::restoreShape(std::int32_t contact) {
   First& page = first_.page(contact);
   const std::size_t slot = Pool::slot(contact);
   const std::int32_t second = page.shape[slot].secondRow;  // it may have got one since, which it keeps
-  page.shape[slot] = page.step->shapeBefore[slot];
+  page.shape[slot] = page.start->shapeBefore[slot];
   page.shape[slot].secondRow = second;
-  page.place[slot] = page.step->placeBefore[slot];
-  page.pose[slot] = page.step->poseBefore[slot];
+  page.place[slot] = page.start->placeBefore[slot];
+  page.pose[slot] = page.start->poseBefore[slot];
   if (rowsFor(page.shape[slot].count) < 2) return;
   Second& more = second_.page(second);
   const std::size_t moreSlot = Pool::slot(second);
-  more.place[moreSlot] = more.step->placeBefore[moreSlot];
+  more.place[moreSlot] = more.start->placeBefore[moreSlot];
+}
+
+void ContactPool::poisonStartRows() {
+  first_.forEachPage([](First& page) { std::memset(static_cast<void*>(page.start.get()), 0xFF, sizeof *page.start); });
+  second_.forEachPage([](Second& page) { std::memset(static_cast<void*>(page.start.get()), 0xFF, sizeof *page.start); });
 }
 
 std::size_t ContactPool::bytes() const {

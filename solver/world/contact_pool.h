@@ -52,7 +52,8 @@ inline ManifoldShape shapeOf(const StoredShape& stored, const PairOfBlocks& pair
 
 /// The contacts of the pairs that touch, structure of arrays: rows for touching pairs alone, four points a row and a second row
 /// for points five to eight. Beside what lasts lies what a frame or a step works with: the points as the frame began, and as an
-/// implicit step that is not yet taken ends.
+/// implicit step that is not yet taken ends. (The latter outlast the step: where the forces are known, the next begins with
+/// them.)
 class ContactPool {
  public:
   /// Bytes that a touching pair costs with up to four points, and what a second row adds; and what frames and steps add to each.
@@ -106,13 +107,13 @@ class ContactPool {
     static_cast<ManifoldShape&>(result.view) = shapeOf(stored, pair);
     result.view.place[0] = &page.place[slot];
     result.points = {&page.points[slot], nullptr};
-    result.trial = {&page.step->trial[slot], nullptr};
+    result.trial = {&page.trial[slot], nullptr};
     if (stored.count > static_cast<std::int8_t>(kRowPoints)) {
       Second& more = second_.page(stored.secondRow);
       const std::size_t moreSlot = Pool::slot(stored.secondRow);
       result.view.place[1] = &more.place[moreSlot];
       result.points[1] = &more.points[moreSlot];
-      result.trial[1] = &more.step->trial[moreSlot];
+      result.trial[1] = &more.trial[moreSlot];
     }
     result.view.points = {result.points[0], result.points[1]};
     return result;
@@ -125,7 +126,7 @@ class ContactPool {
   }
   [[nodiscard]] PointRows trial(std::int32_t contact) {
     return rows(
-        contact, [](auto& page) -> auto& { return page.step->trial; });
+        contact, [](auto& page) -> auto& { return page.trial; });
   }
   [[nodiscard]] ConstPointRows points(std::int32_t contact) const {
     return constRows(
@@ -133,7 +134,7 @@ class ContactPool {
   }
   [[nodiscard]] ConstPointRows trial(std::int32_t contact) const {
     return constRows(
-        contact, [](const auto& page) -> const auto& { return page.step->trial; });
+        contact, [](const auto& page) -> const auto& { return page.trial; });
   }
 
   [[nodiscard]] SleepLoad& sleepLoad(std::int32_t contact) { return first_.page(contact).sleepLoad[Pool::slot(contact)]; }
@@ -151,6 +152,9 @@ class ContactPool {
   /// Keeps shape, places and pose too, where they are about to change in the frame, and brings them back.
   void saveShape(std::int32_t contact);
   void restoreShape(std::int32_t contact);
+
+  /// Overwrites with NaN what is kept for rollbacks.
+  void poisonStartRows();
 
   [[nodiscard]] std::size_t inUse() const { return first_.rowsInUse(); }
   [[nodiscard]] std::size_t secondRowsInUse() const { return second_.rowsInUse(); }
@@ -172,15 +176,13 @@ class ContactPool {
     ~Working() = default;
   };
 
-  struct FirstStep {
-    Column<PointRow> trial;
+  struct FirstStart {
     Column<PointRow> before;
     Column<PlaceRow> placeBefore;
     Column<StoredShape> shapeBefore;
     Column<RelativePose> poseBefore;
   };
-  struct SecondStep {
-    Column<PointRow> trial;
+  struct SecondStart {
     Column<PointRow> before;
     Column<PlaceRow> placeBefore;
   };
@@ -190,19 +192,21 @@ class ContactPool {
     Column<PlaceRow> place;
     Column<PointRow> points;
     Column<RelativePose> pose;
-    Working<FirstStep> step;
+    Column<PointRow> trial;
+    Working<FirstStart> start;
     Working<Column<PairForce>> pairForce;
     void prepare(bool wide) {
-      if (step == nullptr) step.reset(new FirstStep);
+      if (start == nullptr) start.reset(new FirstStart);
       if (wide && pairForce == nullptr) pairForce.reset(new Column<PairForce>);
     }
   };
   struct Second {
     Column<PlaceRow> place;
     Column<PointRow> points;
-    Working<SecondStep> step;
+    Column<PointRow> trial;
+    Working<SecondStart> start;
     void prepare(bool /*wide*/) {
-      if (step == nullptr) step.reset(new SecondStep);
+      if (start == nullptr) start.reset(new SecondStart);
     }
   };
   using Pool = PagePool<First>;

@@ -22,13 +22,13 @@ struct IslandStep {
   double drift_s = 0.0;         ///< s; step of the positions
   double kick_s = 0.0;          ///< s; step of the velocities: mean of the last and this drift (leapfrog with changing steps)
   double advance_s = 0.0;       ///< s by which the contact memory is behind the positions
-  double maxStiffening = 1.0;       ///< most a contact that is born now may be stiffened
+  double maxStiffening = 1.0;   ///< most a contact that is born now may be stiffened
   /// Pairs that touch or may use up their margin soon: all, but in steps so short that it is worth listing them.
   std::span<const std::int32_t> activePairs = pairs;
-  bool usesActiveList = false;  ///< whether the steps are so short
-  int activeListSteps = 0;      ///< steps for which `watched` still holds
+  bool usesActiveList = false;               ///< whether the steps are so short
+  int activeListSteps = 0;                   ///< steps for which `watched` still holds
   PointKind pointKind = PointKind::penalty;  ///< what contacts that are made now store, by the steps that carry the island
-  bool unforced = false;        ///< neither user forces nor the hand act: the equilibrium before the first frame
+  bool unforced = false;                     ///< neither user forces nor the hand act: the equilibrium before the first frame
 };
 
 /// What came of an island's frame.

@@ -20,78 +20,118 @@ std::size_t bytesOf(const MotionState& state) {
   return bytesOf(state.position) + bytesOf(state.velocity);
 }
 
-std::size_t bytesOf(const ReportState& report);
+std::size_t bytesOf(const std::vector<std::vector<ReportContact>>& lists) {
+  std::size_t sum = 0;
+  for (const auto& contacts : lists) sum += bytesOf(contacts);
+  return sum;
+}
 
 template <class... Parts>
 std::size_t sumOf(const Parts&... parts) {
   return (bytesOf(parts) + ...);
 }
 
-std::size_t bytesOf(const ReportState& report) {
-  std::size_t sum = sumOf(report.from, report.to, report.low, report.high, report.version, report.testedAt);
-  for (const auto& contacts : report.contacts) sum += bytesOf(contacts);
-  for (const auto& contacts : report.frameStartContacts) sum += bytesOf(contacts);
+std::size_t ofReport(const ReportState& report) {
+  std::size_t sum = sumOf(report.from, report.to, report.low, report.high, report.version, report.testedAt, report.contacts);
   for (const auto& blocks : report.struck) sum += bytesOf(blocks);
   return sum;
+}
+
+std::size_t ofModel(const BlockModel& model) {
+  std::size_t sum = sumOf(model.dimensions, model.mass);
+  for (std::size_t g = 0; g < kSpringGroups; ++g)
+    sum += sumOf(model.restLength[g], model.springStiffness[g], model.springDamping[g]);
+  return sum;
+}
+
+std::size_t ofFactors(const Memo& memo) {
+  std::size_t sum = 0;
+  for (const NewtonSystem& island : memo.newtonSystems) {
+    const BlockCholesky& matrix = island.matrix;
+    sum += sumOf(matrix.position, matrix.node, matrix.columnStart, matrix.row, matrix.targetStart, matrix.target, matrix.diagonal,
+                 matrix.lower);
+  }
+  for (const SparseFactors& sparse : memo.sparseFactors) sum += bytesOf(sparse);
+  return sum;
+}
+
+std::size_t ofNewton(const NewtonSystem& island) {
+  const BlockCholesky& matrix = island.matrix;
+  std::size_t sum =
+      sizeof(NewtonSystem) + sumOf(matrix.mark, matrix.firstChild, matrix.nextChild, matrix.edgeStart, matrix.edgeRow,
+                                   matrix.work, island.touching, island.slot, island.mask, island.axes, island.residual,
+                                   island.direction, island.affine, island.factorTangents, island.tangents, island.coupled,
+                                   island.coupledAs, island.coupledMotion, island.coupledForce, island.correction, island.kinds,
+                                   island.blockClassOf, island.order.nodes, island.order.centre, island.edges);
+  for (const DissectionSpace& space : island.order.space)
+    sum += sizeof(space) +
+           sumOf(space.neighbourStart, space.neighbour, space.sorted, space.best, space.place, space.reach, space.change);
+  return sum;
+}
+
+// Without what is counted by pair.
+std::size_t ofMemo(const Memo& memo) {
+  std::size_t sum =
+      sumOf(memo.travelAtSweep, memo.pairStart, memo.blockPairStart, memo.blockPairs, memo.blockHistory, memo.previous,
+            memo.previousVelocity, memo.carried, memo.force, memo.frames, memo.motion, memo.carriedMotion);
+  sum += sumOf(memo.sweep.order, memo.sweep.place, memo.sweep.columns, memo.sweep.awake, memo.sweep.renewed, memo.sweep.ascending,
+               memo.sweep.outOfOrder);
+  for (std::size_t a = 0; a < 3; ++a) sum += sumOf(memo.boxes.lower[a], memo.boxes.upper[a]);
+  sum += sumOf(memo.islands.blocks, memo.islands.start, memo.islands.islandOf, memo.islands.edges, memo.islands.asleep,
+               memo.islands.parent);
+  for (const NewtonSystem& island : memo.newtonSystems) sum += ofNewton(island);
+  return sum;
+}
+
+std::size_t ofScratch(const Scratch& s) {
+  std::size_t sum =
+      sumOf(s.awakeBlocks, s.reach, s.cursor, s.path, s.foreseenPath, s.newContactCount, s.nodeOf, s.contactForce,
+            s.contactMetric, s.pastPosition, s.stepVelocity, s.freePosition, s.lostPartners, s.toWake, s.wakeRoots, s.pushed,
+            s.loadChange, s.support.start, s.support.pairs, s.support.blocks, s.support.parent, s.support.open, s.support.groups,
+            s.support.beneath, s.support.supports, s.touchingEdges, s.restless, s.parent, s.touched, s.joined, s.chunkCounters,
+            s.chunkTimes, s.islandCounters, s.islandTimes, s.islandOutcome);
+  for (const MotionState& stage : s.stage) sum += bytesOf(stage);
+  for (const ParticleArray& acceleration : s.stageAcceleration) sum += bytesOf(acceleration);
+  for (const RigidIsland& island : s.rigidIslands) {
+    const LcpWorkspace& lcp = island.pivoting;
+    sum += sizeof(RigidIsland) + sumOf(island.bodies, island.contacts, island.movers, island.points, island.known, lcp.matrix,
+                                       lcp.inverse, lcp.impulse, lcp.velocity, lcp.least, lcp.most, lcp.impulseChange,
+                                       lcp.velocityChange, lcp.column, lcp.clamped, lcp.placeOf);
+  }
+  return sum;
+}
+
+std::size_t ofFrameStart(const FrameStart& start) {
+  return bytesOf(start.state) +
+         sumOf(start.history, start.previous, start.previousVelocity, start.stepTravel, start.reportContacts);
+}
+
+// Columns of the pair table and all lists that have an entry a pair.
+std::size_t ofPairs(const Engine& engine) {
+  const Memo& memo = engine.memo;
+  const Scratch& scratch = engine.scratch;
+  return PairTable::kBytes * engine.pairs.size() +
+         sumOf(engine.checkpoint.savedPair, memo.islandPairs, memo.sweptPairs, scratch.watchedPairs, scratch.mergedKeys,
+               scratch.mergedFrom) +
+         sizeof(double) * engine.pairs.size();  // mergedColumn, as long as it gets
 }
 
 }  // namespace
 
 MemoryUse memoryUse(const Simulation& simulation) {
   const Engine& engine = *simulation.engine;
-  const BlockModel& model = simulation.model;
   MemoryUse use;
   use.state = bytesOf(simulation.state) + sumOf(simulation.asleep, simulation.restTime_s);
-  use.model = sumOf(model.dimensions, model.mass);
-  for (std::size_t g = 0; g < kSpringGroups; ++g) {
-    use.model += sumOf(model.restLength[g], model.springStiffness[g], model.springDamping[g]);
-  }
-  use.contacts = PairTable::kBytes * engine.pairs.size() + engine.contacts.bytes();
-  use.working = sumOf(
-      engine.reach, engine.travelAtSweep, engine.sweptPairs, engine.mergedKeys, engine.mergedFrom, engine.mergedColumn, engine.awakeBlocks,
-      engine.pairStart, engine.islandPairs, engine.watchedPairs, engine.path, engine.foreseenPath, engine.blockPairStart,
-      engine.blockPairs, engine.cursor, engine.touchingEdges, engine.force, engine.frames, engine.motion, engine.carriedMotion,
-      engine.contactForce, engine.springRadius, engine.contactMetric, engine.previous, engine.carried,
-      engine.blockHistory, engine.lostPartner, engine.toWake, engine.wakeRoots, engine.pushed, engine.change,
-      engine.loadPath.start, engine.loadPath.pairs, engine.loadPath.blocks, engine.loadPath.parent, engine.loadPath.open,
-      engine.loadPath.groups, engine.loadPath.beneath, engine.loadPath.known, engine.loadPath.supports, engine.newContactCount,
-      engine.restless, engine.parent, engine.joined, engine.touched, engine.rest, engine.report, engine.frameStart,
-      engine.frameStartClock, engine.savedPair, engine.chunkCounters,
-      engine.chunkTimes, engine.islandCounters, engine.islandTimes, engine.islandOutcome);
-  use.working += sumOf(engine.sweep.order, engine.sweep.place, engine.sweep.columns, engine.sweep.awake, engine.sweep.renewed,
-                       engine.sweep.ascending, engine.sweep.outOfOrder);
-  for (const MotionState& stage : engine.stage) use.working += bytesOf(stage);
-  for (const ParticleArray& acceleration : engine.stageAcceleration) use.working += bytesOf(acceleration);
-  for (std::size_t a = 0; a < 3; ++a) use.working += sumOf(engine.boxes.lower[a], engine.boxes.upper[a]);
-  use.working += sumOf(engine.islands.blocks, engine.islands.start, engine.islands.islandOf, engine.islands.edges,
-                       engine.islands.asleep, engine.islands.parent);
-  for (const NewtonSystem& island : engine.newtonSystems) {
-    const BlockCholesky& matrix = island.matrix;
-    use.factor += sumOf(matrix.position, matrix.node, matrix.columnStart, matrix.row, matrix.targetStart, matrix.target,
-                        matrix.diagonal, matrix.lower);
-    use.working += sizeof(NewtonSystem) + sumOf(matrix.mark, matrix.firstChild, matrix.nextChild, matrix.edgeStart,
-                                                matrix.edgeRow, matrix.work, island.touching, island.slot, island.mask,
-                                                island.axes, island.residual, island.affine, island.factorTangents,
-                                                island.tangents, island.coupled, island.coupledAs, island.coupledMotion,
-                                                island.coupledForce, island.correction, island.kinds, island.blockClassOf,
-                                                island.order.nodes, island.order.centre, island.edges, island.direction);
-  }
-  for (const NewtonSystem& island : engine.newtonSystems) {
-    for (const DissectionSpace& space : island.order.space)
-      use.working += sizeof(space) + sumOf(space.neighbourStart, space.neighbour, space.sorted, space.best, space.place,
-                                           space.reach, space.change);
-  }
-  for (const RigidIsland& island : engine.rigidIslands) {
-    const LcpWorkspace& pivoting = island.pivoting;
-    use.working += sizeof(RigidIsland) + sumOf(island.bodies, island.contacts, island.movers, island.points, island.known,
-                                               pivoting.matrix, pivoting.inverse, pivoting.impulse, pivoting.velocity,
-                                               pivoting.least, pivoting.most, pivoting.impulseChange, pivoting.velocityChange,
-                                               pivoting.column, pivoting.clamped, pivoting.placeOf);
-  }
-  for (const SparseFactors& sparse : engine.sparseFactors) use.factor += bytesOf(sparse);
-  use.working += sumOf(engine.previousVelocity, engine.history, engine.stepVelocity, engine.target, engine.nodeOf,
-                       engine.frameStartPrevious, engine.frameStartPreviousVelocity);
-  use.working += engine.contacts.stepBytes();
+  use.model = ofModel(simulation.model);
+  use.factor = ofFactors(engine.memo);
+  use.nearPairs = engine.pairs.size();
+  use.touchingPairs = engine.contacts.inUse();
+  use.pairs = ofPairs(engine);
+  use.touching = engine.contacts.bytes();
+  use.touchingSteps = engine.contacts.stepBytes();
+  use.contacts = use.pairs + use.touching;
+  use.working = use.touchingSteps + ofMemo(engine.memo) + ofScratch(engine.scratch) + ofFrameStart(engine.checkpoint) +
+                ofReport(engine.report) + sumOf(engine.springRadius, engine.sleep.windows, engine.sleep.checkedLoads);
   return use;
 }
 

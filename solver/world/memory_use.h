@@ -10,9 +10,16 @@ namespace springtower {
 struct MemoryUse {
   std::size_t state = 0;     ///< what moves: positions and velocities, sleep and rest times
   std::size_t model = 0;     ///< what does not: dimensions, masses, springs
-  std::size_t contacts = 0;  ///< near pairs with their manifolds and friction memory
+  std::size_t contacts = 0;  ///< near pairs, and the points of those that touch
   std::size_t factor = 0;    ///< matrices of the implicit method and their factors
   std::size_t working = 0;   ///< forces, frames, boxes, islands, and the copies that a frame which is run again starts from
+
+  // Of the contacts, by pair.
+  std::size_t nearPairs = 0;
+  std::size_t touchingPairs = 0;  ///< with those that have just parted
+  std::size_t pairs = 0;          ///< bytes of the pair table and of every list with an entry a pair
+  std::size_t touching = 0;       ///< bytes that touching pairs add in the contact pool
+  std::size_t touchingSteps = 0;  ///< and for the step and the frame they are in: trial points and what a rollback restores
   [[nodiscard]] std::size_t total() const { return state + model + contacts + factor + working; }
 };
 

@@ -42,9 +42,22 @@ struct TetherStiffness {
   bool operator==(const TetherStiffness&) const = default;
 };
 
+/// What Newton's iteration works with inside a step; nothing in it is read before it is written in the same step.
+struct NewtonWork {
+  std::vector<ModeVectors> residual;       ///< N, in the blocks' frames, by node
+  std::vector<ModeVectors> direction;      ///< m, the last correction, in the world's frame, by node
+  std::vector<double> affine;              ///< right-hand sides and solutions, [nodes][12]
+  AlignedVector<ContactTangent> tangents;  ///< what is to be added to what the factors know; may be empty
+  std::vector<std::int32_t> coupled;       ///< of `solveCoupled`: nodes that the tangents touch
+  std::vector<std::int32_t> coupledAs;     ///< and where each node is among them
+  std::vector<double> coupledMotion;       ///< m, [coupled][12]
+  std::vector<double> coupledForce;        ///< N, [direction][coupled][12]
+  std::vector<double> correction;          ///< m, [direction][nodes][12]
+};
+
 /// What an island keeps from implicit step to implicit step: the factors of M / step^2 + K as the contacts stood when they were
 /// last assembled, and working space of the iteration.
-struct NewtonSystem {
+struct NewtonSystem : NewtonWork {
   /// Blocks of one size and mass share their own matrix.
   struct BlockClass {
     Vec3 dimensions;  ///< m
@@ -60,25 +73,16 @@ struct NewtonSystem {
   int directions = 0;                 ///< that the last correction took beside the factors
   bool trialIsAhead = false;          ///< whether engine.trial holds a state after the step's start
   bool useConsistentTangent = false;  ///< whether the iteration is so near the solution that contacts may be taken as they stand
-  bool forcesKnown = false;           ///< engine.force holds the forces at the island's present state
+  bool forcesKnown = false;           ///< engine.memo.force holds the forces at the island's present state
   BlockCholesky matrix;
   std::vector<std::int32_t> touching;                      ///< touching pairs, as positions in engine.pairs
   std::vector<BlockSlot> slot;                             ///< of each of these; at = -1 where one side is the floor or asleep
   std::vector<ActiveSetBits> mask;                         ///< what each of these was assembled for
   std::vector<std::array<std::array<double, 3>, 3>> axes;  ///< the frames the blocks were assembled in, [node][axis][component]
-  std::vector<ModeVectors> residual;                       ///< N, in the blocks' frames, by node
-  std::vector<ModeVectors> direction;                      ///< m, the last correction, in the world's frame, by node
-  std::vector<double> affine;                              ///< right-hand sides and solutions, [nodes][12]
   std::vector<BlockClass> kinds;                           ///< of the island's blocks; maybe more than it has now
   std::vector<std::int32_t> blockClassOf;                  ///< of each node
   double jacobianStep_s = 0.0;                             ///< what step these are for
   AlignedVector<ContactTangent> factorTangents;            ///< what the factors know of pairs that slid when they were made
-  AlignedVector<ContactTangent> tangents;                  ///< what is to be added to what they know; may be empty
-  std::vector<std::int32_t> coupled;                       ///< working space of `solveCoupled`: nodes that the tangents touch
-  std::vector<std::int32_t> coupledAs;                     ///< and where each node is among them
-  std::vector<double> coupledMotion;                       ///< m, [coupled][12]
-  std::vector<double> coupledForce;                        ///< N, [direction][coupled][12]
-  std::vector<double> correction;                          ///< m, [direction][nodes][12]
   EliminationOrder order;                                  ///< in which the matrix is laid out
   std::uint64_t members = 0;                               ///< of the blocks that this order was found for
   std::size_t orderProducts = 0;                           ///< products of a factorisation then

@@ -57,7 +57,9 @@ class PagePool {
   }
 
   [[nodiscard]] Page& page(std::int32_t row) { return *table_[static_cast<std::size_t>(row) / kPageRows].load(kOrder); }
-  [[nodiscard]] const Page& page(std::int32_t row) const { return *table_[static_cast<std::size_t>(row) / kPageRows].load(kOrder); }
+  [[nodiscard]] const Page& page(std::int32_t row) const {
+    return *table_[static_cast<std::size_t>(row) / kPageRows].load(kOrder);
+  }
   static std::size_t slot(std::int32_t row) { return static_cast<std::size_t>(row) % kPageRows; }
 
   /// Takes a row, of undefined content. Any thread. Precondition: fewer rows are in use than `reserve` named as most.
@@ -101,9 +103,17 @@ class PagePool {
     }
   }
 
+  template <class Visit>
+  void forEachPage(const Visit& visit) {
+    for (std::size_t i = 0; i < tableSize_; ++i) {
+      if (Page* page = table_[i].load()) visit(*page);
+    }
+  }
+
   [[nodiscard]] std::size_t rowsInUse() const { return rows_ + taken_.load(std::memory_order_relaxed) - free_.size(); }
   [[nodiscard]] std::size_t pageCount() const {
-    return static_cast<std::size_t>(std::count_if(table_.get(), table_.get() + tableSize_, [](const auto& p) { return p.load(); }));
+    return static_cast<std::size_t>(
+        std::count_if(table_.get(), table_.get() + tableSize_, [](const auto& p) { return p.load(); }));
   }
 
  private:
@@ -158,8 +168,8 @@ class PagePool {
 
   std::unique_ptr<std::atomic<Page*>[]> table_;
   std::size_t tableSize_ = 0;
-  std::size_t rows_ = 0;             // of the pages that are settled
-  std::vector<std::int32_t> free_;   // descending where nothing has been given back; taken from the back
+  std::size_t rows_ = 0;               // of the pages that are settled
+  std::vector<std::int32_t> free_;     // descending where nothing has been given back; taken from the back
   std::atomic<std::size_t> taken_{0};  // of them since, and beyond
   bool wide_ = false;
 };

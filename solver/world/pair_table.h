@@ -16,9 +16,9 @@ namespace springtower {
 struct PairTable {
   std::vector<BlockPair> key;
   std::vector<PairPhase> phase;
-  std::vector<std::int32_t> contact;  ///< of those that touch; of those that have parted in this frame too; else -1
-  std::vector<double> clearance;      ///< m, of separated pairs: their gap along the axis when last measured
-  std::vector<double> travelAtCheck;  ///< m, sum of both blocks' travel when last looked at
+  std::vector<std::int32_t> contact;        ///< of those that touch; of those that have parted in this frame too; else -1
+  std::vector<double> clearance;            ///< m, of separated pairs: their gap along the axis when last measured
+  std::vector<double> travelAtCheck;        ///< m, sum of both blocks' travel when last looked at
   std::array<std::vector<double>, 3> axis;  ///< of separated pairs: a direction that separated them last, unit, from b to a
 
   static constexpr std::size_t kBytes =

@@ -28,7 +28,6 @@ struct ReportContact {
 struct ReportState {
   /// Collisions of the last step, [blocks]: each with an awake block of its two, so that islands never share a list.
   std::vector<std::vector<ReportContact>> contacts;
-  std::vector<std::vector<ReportContact>> frameStartContacts;  ///< what a frame that has to be run again starts from
   std::vector<std::vector<std::int32_t>> struck;  ///< disabled blocks that each awake one has hit hard in this frame, [blocks]
   ParticleArray from;  ///< m; the straight paths of the step, a little longer than the step at both ends
   ParticleArray to;
@@ -40,7 +39,6 @@ struct ReportState {
 
   void resize(std::size_t blocks) {
     contacts.resize(blocks);
-    frameStartContacts.resize(blocks);
     struck.resize(blocks);
     from.resize(blocks);
     to.resize(blocks);

@@ -11,26 +11,26 @@
 
 namespace springtower {
 
+/// Where a rigid block is and how it moves.
+struct RigidPose {
+  Vec3 place = Vec3::Zero();                           ///< m, of its centre
+  Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();  ///< its own axes in the world's, as columns; orthonormal
+  Vec3 velocity = Vec3::Zero();                        ///< m/s
+  Vec3 spin = Vec3::Zero();                            ///< rad/s, world axes
+};
+
 /// A block as the rigid methods see it, while its island is stepped through a frame. Between frames the particles are the state:
 /// poses are read from them when a frame begins, and positions written back after every step, velocities when it ends.
-struct RigidBody {
+struct RigidBody : RigidPose {
   std::array<std::array<double, kCorners>, 3> corner{};      ///< m, of its corners from its centre along its own axes
-  Vec3 place = Vec3::Zero();                                 ///< m, of its centre
-  Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();        ///< its own axes in the world's, as columns; orthonormal
-  Vec3 velocity = Vec3::Zero();                              ///< m/s
-  Vec3 spin = Vec3::Zero();                                  ///< rad/s, world axes
   Eigen::Matrix3d moment = Eigen::Matrix3d::Zero();          ///< kg m2, of inertia, own axes
   Eigen::Matrix3d inverseMoment = Eigen::Matrix3d::Zero();   ///< 1/(kg m2)
   double inverseMass = 0.0;                                  ///< 1/kg
   Eigen::Matrix3d inverseInertia = Eigen::Matrix3d::Zero();  ///< 1/(kg m2), world axes
-  Vec3 placeBefore = Vec3::Zero();                           ///< the same four when the step began
-  Eigen::Matrix3d axesBefore = Eigen::Matrix3d::Identity();
-  Vec3 velocityBefore = Vec3::Zero();
-  Vec3 spinBefore = Vec3::Zero();
-  double travelBefore_m = 0.0;  ///< of its clock, likewise
-  Vec3 moved = Vec3::Zero();    ///< m, by which the step has moved it so far
-  Vec3 turned = Vec3::Zero();   ///< rad, by which the step has turned it, to first order
-  bool pushed = false;          ///< whether a contact pushes it in this step
+  RigidPose before;                                          ///< when the step began
+  Vec3 moved = Vec3::Zero();                                 ///< m, by which the step has moved it so far
+  Vec3 turned = Vec3::Zero();                                ///< rad, by which the step has turned it, to first order
+  bool pushed = false;                                       ///< whether a contact pushes it in this step
 };
 
 /// One point of a manifold as a constraint: along its normal the blocks may part, across it they stick or slide.
@@ -39,17 +39,17 @@ struct RigidContact {
   std::int32_t lower = -1;
   std::int32_t pair = 0;  ///< position in engine.pairs
   std::int32_t point = 0;
-  std::array<Vec3, 3> direction;    ///< unit: the normal, from lower to upper, and two tangents
-  Vec3 armUpper;                    ///< m, from the body's centre to the point
-  Vec3 armLower;                    ///< m
-  double gap = 0.0;                 ///< m when the step began; negative where the blocks overlap
-  double coefficient = 0.0;         ///< of friction, static or kinetic as the point did last
-  std::array<double, 3> mass{};     ///< kg, effective along each direction
-  std::array<double, 3> impulse{};  ///< N s, accumulated along each direction
-  std::array<double, 2> anchor_m{}; ///< m, tangential displacement since the point took hold (position-based method)
-  double share = 1.0;               ///< one over the points of its manifold
-  double loadBefore = 0.0;          ///< N s2, normal push of the step before (position-based method)
-  bool sliding = false;             ///< whether friction is at its bound
+  std::array<Vec3, 3> direction;     ///< unit: the normal, from lower to upper, and two tangents
+  Vec3 armUpper;                     ///< m, from the body's centre to the point
+  Vec3 armLower;                     ///< m
+  double gap = 0.0;                  ///< m when the step began; negative where the blocks overlap
+  double coefficient = 0.0;          ///< of friction, static or kinetic as the point did last
+  std::array<double, 3> mass{};      ///< kg, effective along each direction
+  std::array<double, 3> impulse{};   ///< N s, accumulated along each direction
+  std::array<double, 2> anchor_m{};  ///< m, tangential displacement since the point took hold (position-based method)
+  double share = 1.0;                ///< one over the points of its manifold
+  double loadBefore = 0.0;           ///< N s2, normal push of the step before (position-based method)
+  bool sliding = false;              ///< whether friction is at its bound
 };
 
 /// A body as the passes over the contacts see it. Vectors fill three of four lanes.

@@ -10,41 +10,82 @@ Simulation::Simulation(Simulation&&) noexcept = default;
 Simulation& Simulation::operator=(Simulation&&) noexcept = default;
 
 const ParticleArray& carriedVelocities(const Simulation& simulation) {
-  const bool multiStage = !simulation.engine->carried.component[0].empty();
-  return multiStage ? simulation.engine->carried : simulation.state.velocity;
+  const bool multiStage = !simulation.engine->memo.carried.component[0].empty();
+  return multiStage ? simulation.engine->memo.carried : simulation.state.velocity;
 }
 
 struct Snapshot {
-  MotionState state;
+  // Inputs.
+  Gravity gravity;
+  std::vector<UserForce> forces;
+  double staticFriction;
+  double kineticFriction;
+  Sleep sleep;
   Tether tether;
+  // State.
+  MotionState state;
   double time_s;
   std::uint64_t frame;
-  int substeps;
   std::vector<std::uint8_t> asleep;
   std::vector<double> restTime_s;
+  PairTable pairs;
+  ContactPool contacts;
+  SleepState sleepState;
+  ReportState report;
+  // What else the next frame depends on, and what has been counted.
+  Memo memo;
+  int substeps;
   Counters counters;
   StageTimes stageTimes;
   WakeCounts wakes;
-  Engine engine;
 };
 
 std::shared_ptr<const Snapshot> takeSnapshot(const Simulation& s) {
-  return std::make_shared<const Snapshot>(Snapshot{s.state, s.tether, s.time_s, s.frame, s.substeps, s.asleep, s.restTime_s,
-                                                   s.counters, s.stageTimes, s.wakes, *s.engine});
+  const Engine& e = *s.engine;
+  return std::make_shared<const Snapshot>(Snapshot{s.scene.gravity,
+                                                   s.scene.forces,
+                                                   s.scene.staticFriction,
+                                                   s.scene.kineticFriction,
+                                                   s.scene.settings.sleep,
+                                                   s.tether,
+                                                   s.state,
+                                                   s.time_s,
+                                                   s.frame,
+                                                   s.asleep,
+                                                   s.restTime_s,
+                                                   e.pairs,
+                                                   e.contacts,
+                                                   e.sleep,
+                                                   e.report,
+                                                   e.memo,
+                                                   s.substeps,
+                                                   s.counters,
+                                                   s.stageTimes,
+                                                   s.wakes});
 }
 
 void restoreSnapshot(Simulation& s, const Snapshot& snapshot) {
-  s.state = snapshot.state;
+  s.scene.gravity = snapshot.gravity;
+  s.scene.forces = snapshot.forces;
+  s.scene.staticFriction = snapshot.staticFriction;
+  s.scene.kineticFriction = snapshot.kineticFriction;
+  s.scene.settings.sleep = snapshot.sleep;
   s.tether = snapshot.tether;
+  s.state = snapshot.state;
   s.time_s = snapshot.time_s;
   s.frame = snapshot.frame;
-  s.substeps = snapshot.substeps;
   s.asleep = snapshot.asleep;
   s.restTime_s = snapshot.restTime_s;
+  Engine& e = *s.engine;
+  e.pairs = snapshot.pairs;
+  e.contacts = snapshot.contacts;
+  e.sleep = snapshot.sleepState;
+  e.report = snapshot.report;
+  e.memo = snapshot.memo;
+  s.substeps = snapshot.substeps;
   s.counters = snapshot.counters;
   s.stageTimes = snapshot.stageTimes;
   s.wakes = snapshot.wakes;
-  *s.engine = snapshot.engine;
 }
 
 std::uint64_t stateHash(const Simulation& simulation) {

@@ -95,7 +95,8 @@ std::vector<ContactForce> contactForces(const Simulation& simulation);
 /// Those on one block.
 std::vector<ContactForce> contactForcesOn(const Simulation& simulation, BlockId block);
 
-/// A copy of all that the next frame depends on, and back. A restored simulation repeats its future bit for bit.
+/// A copy of all that the next frame depends on, inputs (gravity, forces, friction, sleep, hand) included, and back. A restored
+/// simulation repeats its future bit for bit.
 struct Snapshot;
 std::shared_ptr<const Snapshot> takeSnapshot(const Simulation& simulation);
 void restoreSnapshot(Simulation& simulation, const Snapshot& snapshot);

@@ -1,5 +1,7 @@
 #include "tests/pinned/pin.h"
 
+#include "solver/world/poison.h"
+
 #include <algorithm>
 #include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/task_arena.h>
@@ -10,7 +12,7 @@ int frameOfHash(std::size_t hash, int frames) {
   return std::min(frames, kFramesAPin * (static_cast<int>(hash) + 1));
 }
 
-Pin pinOf(const PinnedScene& scene, int threads) {
+Pin pinOf(const PinnedScene& scene, int threads, bool poisoned) {
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
   tbb::task_arena arena(threads);
   return arena.execute([&] {
@@ -19,6 +21,7 @@ Pin pinOf(const PinnedScene& scene, int threads) {
     Pin pin;
     for (int frame = 1; frame <= scene.frames; ++frame) {
       if (lead) lead(simulation);
+      if (poisoned) poisonScratch(*simulation.engine);
       stepFrame(simulation);
       if (frame % kFramesAPin == 0 || frame == scene.frames) pin.hashes.push_back(stateHash(simulation));
     }

@@ -179,11 +179,14 @@ void printTable(const Profile& profile) {
     for (const double value : result.stage_ms) fmt::print("{:>18.4g}", value);
     fmt::print("\n");
   }
-  fmt::print("\nbytes a block: state, contacts, all with springs and working space\n");
+  fmt::print(
+      "\nbytes a block: state, contacts, all with springs and working space; a near pair; what a touching pair adds, and\n"
+      "adds for steps and rollbacks\n");
   for (const ProfileResult& result : profile.results) {
     if (!result.failure.empty() || result.what.threads != profile.results.front().what.threads) continue;
-    fmt::print("{:<11}{:>7} {:<22}{:>9.3g}{:>9.0f}{:>9.0f}{:>9.0f}\n", nameOf(result.what.scene), sizeOf(result.what),
-               result.methodName, 1e3 * result.what.tolerance_m, result.stateBytes, result.contactBytes, result.allBytes);
+    fmt::print("{:<11}{:>7} {:<22}{:>9.3g}{:>9.0f}{:>9.0f}{:>9.0f}{:>9.0f}{:>9.0f}{:>9.0f}\n", nameOf(result.what.scene),
+               sizeOf(result.what), result.methodName, 1e3 * result.what.tolerance_m, result.stateBytes, result.contactBytes,
+               result.allBytes, result.pairBytes, result.touchingBytes, result.touchingStepBytes);
   }
 }
 

@@ -54,6 +54,8 @@ Json resultJson(const ProfileResult& result) {
   json["bottom_row_compression_mm"] = result.compression_mm;
   json["stands"] = result.stands;
   json["bytes_per_block"] = {{"state", result.stateBytes}, {"contacts", result.contactBytes}, {"all", result.allBytes}};
+  json["bytes_per_pair"] = {
+      {"near", result.pairBytes}, {"touching", result.touchingBytes}, {"touching_step", result.touchingStepBytes}};
   json["frame_ms"] = result.frame_ms;
   return json;
 }
@@ -91,6 +93,11 @@ ProfileResult profileResultFromJson(const Json& json) {
   json.at("bytes_per_block").at("state").get_to(result.stateBytes);
   json.at("bytes_per_block").at("contacts").get_to(result.contactBytes);
   json.at("bytes_per_block").at("all").get_to(result.allBytes);
+  if (json.contains("bytes_per_pair")) {  // profiles of before the tables of pairs have none
+    json.at("bytes_per_pair").at("near").get_to(result.pairBytes);
+    json.at("bytes_per_pair").at("touching").get_to(result.touchingBytes);
+    json.at("bytes_per_pair").at("touching_step").get_to(result.touchingStepBytes);
+  }
   json.at("frame_ms").get_to(result.frame_ms);
   return result;
 }
@@ -140,7 +147,8 @@ void writeProfileCsv(std::ostream& stream, const Profile& profile) {
   for (const std::string_view name : kStageNames) stream << ',' << name << "_ms";
   for (const auto& [name, member] : kCounterNames) stream << ',' << name;
   stream << ",substeps,stiffness_n_m,max_penetration_mm,bottom_row_compression_mm,stands,state_bytes_per_block,"
-            "contact_bytes_per_block,bytes_per_block,commit,compiler,flags,cpu,date\n";
+            "contact_bytes_per_block,bytes_per_block,bytes_per_near_pair,bytes_per_touching_pair,"
+            "step_bytes_per_touching_pair,commit,compiler,flags,cpu,date\n";
   const Provenance& from = profile.provenance;
   for (const ProfileResult& result : profile.results) {
     stream << fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{}", nameOf(result.what.scene), result.what.rows,
@@ -152,9 +160,9 @@ void writeProfileCsv(std::ostream& stream, const Profile& profile) {
     }
     for (const double value : result.stage_ms) stream << fmt::format(",{}", value);
     for (const double value : result.counted) stream << fmt::format(",{}", value);
-    stream << fmt::format(",{},{},{},{},{},{},{},{}", result.substeps, result.stiffness_n_m, result.penetration_mm,
+    stream << fmt::format(",{},{},{},{},{},{},{},{},{},{},{}", result.substeps, result.stiffness_n_m, result.penetration_mm,
                           result.compression_mm, result.stands ? "yes" : "no", result.stateBytes, result.contactBytes,
-                          result.allBytes);
+                          result.allBytes, result.pairBytes, result.touchingBytes, result.touchingStepBytes);
     stream << fmt::format(",{},{},{},{},{}\n", from.commit, csvText(from.compiler), csvText(from.flags), csvText(from.processor),
                           from.date);
   }

@@ -135,6 +135,12 @@ void warmUp(Measured& measured, const ProfileLimits& limits) {
   result.stateBytes = static_cast<double>(use.state) / blocks;
   result.contactBytes = static_cast<double>(use.contacts) / blocks;
   result.allBytes = static_cast<double>(use.total()) / blocks;
+  const auto each = [](std::size_t bytes, std::size_t pairs) {
+    return static_cast<double>(bytes) / std::max(1.0, static_cast<double>(pairs));
+  };
+  result.pairBytes = each(use.pairs, use.nearPairs);
+  result.touchingBytes = each(use.touching, use.touchingPairs);
+  result.touchingStepBytes = each(use.touchingSteps, use.touchingPairs);
 }
 
 // What is known of a scene as it was prepared; another case may have stepped it since.

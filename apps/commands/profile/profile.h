@@ -103,6 +103,9 @@ struct ProfileResult {
   double stateBytes = 0.0;                             ///< a block
   double contactBytes = 0.0;                           ///< a block
   double allBytes = 0.0;                               ///< a block: these, the springs, and working space
+  double pairBytes = 0.0;                              ///< a near pair, touching or not
+  double touchingBytes = 0.0;                          ///< that a touching pair adds
+  double touchingStepBytes = 0.0;                      ///< and for steps and rollbacks
   std::vector<double> frame_ms;                        ///< `cost` of each frame, least over the samples
 
   /// What a frame costs, for charts: processor time on one thread, which other programs disturb least; wall time on more.

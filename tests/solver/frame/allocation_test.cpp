@@ -105,7 +105,7 @@ TEST(MemoryUse, OfABlockOfTheTower) {
   EXPECT_GT(each(use.contacts), 500.0);
   EXPECT_LT(each(use.contacts), 3000.0);
   EXPECT_LT(each(use.factor), 3200.0);
-  EXPECT_LT(each(use.working), 11200.0);
+  EXPECT_LT(each(use.working), 7700.0);
   EXPECT_EQ(use.total(), use.state + use.model + use.contacts + use.factor + use.working);
 }
 

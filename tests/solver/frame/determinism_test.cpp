@@ -106,7 +106,7 @@ TEST(Determinism, ManyTowersAreTheSameOnAnyThreads) {
   const Scene scene = manyTowers();
   Simulation simulation(scene);
   stepFrame(simulation);
-  EXPECT_EQ(simulation.engine->islands.count(), 100U);
+  EXPECT_EQ(simulation.engine->memo.islands.count(), 100U);
   expectSameOnAnyThreads(scene, 18);
 }
 
@@ -114,7 +114,7 @@ TEST(Determinism, ManyTowersAreTheSameOnAnyThreads) {
 Counters sameInOneLargeIsland(const Scene& scene, int frames) {
   Counters counters;
   const std::uint64_t one = hashAfter(scene, frames, 1, [&](const Simulation& simulation) {
-    const Islands& islands = simulation.engine->islands;
+    const Islands& islands = simulation.engine->memo.islands;
     ASSERT_EQ(islands.count(), 1U) << "all are connected";
     EXPECT_EQ(islands.island(0).size(), scene.blocks.size());
     EXPECT_GE(scene.blocks.size(), kParallelBlocks) << "so that its kernels run on many threads";

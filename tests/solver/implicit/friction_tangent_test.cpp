@@ -28,7 +28,7 @@ struct DrawnBlock {
   DrawnBlock() {
     step.drift_s = 0.25 * simulation.scene.settings.frame_s;
     effective_s = endShare(Method::implicit) * step.drift_s;
-    evaluateForces(step, simulation.state, simulation.engine->stepVelocity, step.drift_s, Memory::trial);
+    evaluateForces(step, simulation.state, simulation.engine->scratch.stepVelocity, step.drift_s, Memory::trial);
     island().trialIsAhead = true;
     island().useConsistentTangent = true;
   }
@@ -68,45 +68,45 @@ struct DrawnBlock {
     return matrix;
   }
 
-  NewtonSystem& island() { return simulation.engine->newtonSystems[0]; }
+  NewtonSystem& island() { return simulation.engine->memo.newtonSystems[0]; }
 
   // Moves the step's end by displacements [node][12], and finds the forces there.
   void move(const std::vector<double>& displacement) {
     Simulation& s = simulation;
     for (const std::int32_t block : step.blocks) {
       const auto b = static_cast<std::size_t>(block);
-      const double* d = displacement.data() + kNodeSize * static_cast<std::size_t>(s.engine->nodeOf[b]);
+      const double* d = displacement.data() + kNodeSize * static_cast<std::size_t>(s.engine->scratch.nodeOf[b]);
       for (std::size_t a = 0; a < 3; ++a) {
         for (std::size_t c = 0; c < kCorners; ++c) {
           double moved = d[a];
           for (std::size_t side = 0; side < 3; ++side) moved += 0.5 * cornerSide(c, side) * d[3 + 3 * side + a];
           s.state.position.values(a, b)[c] += moved;
           s.state.velocity.values(a, b)[c] += moved / effective_s;
-          s.engine->stepVelocity.values(a, b)[c] += moved / step.drift_s;
+          s.engine->scratch.stepVelocity.values(a, b)[c] += moved / step.drift_s;
         }
       }
     }
-    evaluateForces(step, s.state, s.engine->stepVelocity, step.drift_s, Memory::trial);
+    evaluateForces(step, s.state, s.engine->scratch.stepVelocity, step.drift_s, Memory::trial);
   }
 
   // What contacts put on the blocks if the step's end were moved by displacements; both [node][12].
   std::vector<double> contactForcesAt(const std::vector<double>& displacement) {
     Simulation& s = simulation;
     const auto place = s.state;
-    const ParticleArray carried = s.engine->stepVelocity;
+    const ParticleArray carried = s.engine->scratch.stepVelocity;
     move(displacement);
     std::vector<double> force(displacement.size());
     for (const std::int32_t block : step.blocks) {
       const auto b = static_cast<std::size_t>(block);
-      const AffineField& on = s.engine->contactForce[b];
-      double* f = force.data() + kNodeSize * static_cast<std::size_t>(s.engine->nodeOf[b]);
+      const AffineField& on = s.engine->scratch.contactForce[b];
+      double* f = force.data() + kNodeSize * static_cast<std::size_t>(s.engine->scratch.nodeOf[b]);
       for (std::size_t a = 0; a < 3; ++a) {
         f[a] = on.centre[a];
         for (std::size_t side = 0; side < 3; ++side) f[3 + 3 * side + a] = on.side[side][a];
       }
     }
     s.state = place;
-    s.engine->stepVelocity = carried;
+    s.engine->scratch.stepVelocity = carried;
     return force;
   }
 
@@ -114,7 +114,7 @@ struct DrawnBlock {
   Counters counters;
   StageTimes times;
   IslandStep step{
-      simulation, *simulation.engine,    simulation.engine->islands.island(0), simulation.engine->islandPairs, counters,
+      simulation, *simulation.engine,    simulation.engine->memo.islands.island(0), simulation.engine->memo.islandPairs, counters,
       times,      contactLaw(simulation)};
   double effective_s = 0.0;
 };
@@ -163,7 +163,7 @@ TEST(ContactTangent, ATouchingPointThatDoesNotPushResistsNothing) {
   DrawnBlock drawn;
   const Engine& engine = *drawn.simulation.engine;
   std::vector<double> lift(kNodeSize * drawn.step.blocks.size());
-  lift[kNodeSize * static_cast<std::size_t>(engine.nodeOf[kLifted]) + 2] = kLift_m;
+  lift[kNodeSize * static_cast<std::size_t>(engine.scratch.nodeOf[kLifted]) + 2] = kLift_m;
   drawn.move(lift);
   std::ptrdiff_t unpressed = 0;
   for (const std::int32_t pair : drawn.island().touching) {
@@ -194,7 +194,7 @@ TEST(ContactTangent, APointThatIsReachedInTheStepPushesFromNothing) {
     }
   }
   std::vector<double> lift(kNodeSize * drawn.step.blocks.size());
-  lift[kNodeSize * static_cast<std::size_t>(engine.nodeOf[static_cast<std::size_t>(kLanding)]) + 2] = kLift_m;
+  lift[kNodeSize * static_cast<std::size_t>(engine.scratch.nodeOf[static_cast<std::size_t>(kLanding)]) + 2] = kLift_m;
   drawn.move(lift);
   for (std::size_t c = 0; c < kCorners; ++c) drawn.simulation.state.velocity.add(kLanding, c, Vec3(0.0, 0.0, -kSpeed_m_s));
   drawn.move(std::vector<double>(lift.size()));
@@ -213,8 +213,8 @@ TEST(ContactTangent, APointThatIsReachedInTheStepPushesFromNothing) {
     }
   }
   ASSERT_GE(pushing, 4);
-  EXPECT_GT(engine.contactForce[kLanding].centre[2], 0.5 * most);
-  EXPECT_LT(engine.contactForce[kLanding].centre[2], 1.01 * most) << "of which friction lifts by what the block leans";
+  EXPECT_GT(engine.scratch.contactForce[kLanding].centre[2], 0.5 * most);
+  EXPECT_LT(engine.scratch.contactForce[kLanding].centre[2], 1.01 * most) << "of which friction lifts by what the block leans";
   expectTangentsToBeTheDerivative(drawn, 1e-10);
 }
 

@@ -23,7 +23,7 @@ struct RingingBlock {
     step.gravity = simulation.scene.gravity.at(0.0);
   }
 
-  BlockHistory& history() { return simulation.engine->blockHistory[0]; }
+  BlockHistory& history() { return simulation.engine->memo.blockHistory[0]; }
 
   // A step that ends at time `end_s` of a swing of angular frequency `omega` along x.
   void swing(double omega, double end_s) {
@@ -36,7 +36,7 @@ struct RingingBlock {
   void push(double acceleration_m_s2) {
     const Engine& engine = *simulation.engine;
     const double before = simulation.state.velocity.values(0, 0)[0];
-    note(engine.previousVelocity.values(0, 0)[0], before, before + acceleration_m_s2 * step.drift_s);
+    note(engine.memo.previousVelocity.values(0, 0)[0], before, before + acceleration_m_s2 * step.drift_s);
   }
 
   // A step in which all goes from speed `before` to `now` along x, after one from `first`.
@@ -47,12 +47,12 @@ struct RingingBlock {
     const double last = before - first;
     for (std::size_t c = 0; c < kCorners; ++c) {
       simulation.state.velocity.values(0, 0)[c] = now;
-      engine.previousVelocity.values(0, 0)[c] = before;
+      engine.memo.previousVelocity.values(0, 0)[c] = before;
       for (std::size_t a = 0; a < 3; ++a) {
-        const double speed = engine.previousVelocity.values(a, 0)[c];
+        const double speed = engine.memo.previousVelocity.values(a, 0)[c];
         const double change = a == 0 ? last : 0.0;
-        engine.history.values(a, 0)[c] = 0.1;
-        engine.target.values(a, 0)[c] =
+        engine.scratch.pastPosition.values(a, 0)[c] = 0.1;
+        engine.scratch.freePosition.values(a, 0)[c] =
             0.1 + effective_s * (speed + change / 3.0) + effective_s * effective_s * step.gravity[static_cast<Eigen::Index>(a)];
       }
     }

@@ -130,7 +130,7 @@ TEST(WideIsland, IsEliminatedInTheOrderThatFillsInLess) {
   const auto fromBelow = [](const Scene& scene) {
     Simulation simulation(scene);
     stepFrame(simulation);
-    const EliminationOrder& order = simulation.engine->newtonSystems[0].order;
+    const EliminationOrder& order = simulation.engine->memo.newtonSystems[0].order;
     return std::is_sorted(order.nodes.begin(), order.nodes.end(), [&](std::int32_t p, std::int32_t q) {
       return order.centre[static_cast<std::size_t>(p)].z() + 1e-3 < order.centre[static_cast<std::size_t>(q)].z();
     });

@@ -16,7 +16,7 @@ namespace springtower {
 namespace {
 
 bool anyFalls(const Simulation& simulation) {
-  const std::vector<BlockHistory>& history = simulation.engine->blockHistory;
+  const std::vector<BlockHistory>& history = simulation.engine->memo.blockHistory;
   return std::any_of(history.begin(), history.end(), [](const BlockHistory& block) { return block.falls; });
 }
 

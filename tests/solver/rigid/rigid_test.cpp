@@ -259,7 +259,7 @@ TEST(RigidSteps, TakenAgainAreGoneOnce) {
   stepFrame(simulation);
   ASSERT_EQ(simulation.counters.contactsBorn, 1U);
   const double way = start - centre(simulation.state.position, 0).z();
-  EXPECT_NEAR(simulation.engine->blockHistory[0].travel, way, 1e-9);
+  EXPECT_NEAR(simulation.engine->memo.blockHistory[0].travel, way, 1e-9);
   EXPECT_EQ(simulation.counters.manifoldRefreshes, 1U);
 }
 

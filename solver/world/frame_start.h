@@ -1,0 +1,35 @@
+#pragma once
+
+#include "core/state.h"
+#include "solver/world/memo.h"
+#include "solver/world/page_pool.h"
+#include "solver/world/report_state.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace springtower {
+
+/// Rows of the pair table as the frame began.
+struct SavedPairs {
+  Column<Vec3> axis;
+  Column<double> clearance;
+  Column<double> travelAtCheck;
+  Column<PairPhase> phase;
+  void prepare(bool /*wide*/) {}
+};
+
+/// What a frame that has to be run again starts from; contacts keep their own in their pool. Written by solver/world/checkpoint.
+/// Not in snapshots.
+struct FrameStart {
+  MotionState state;
+  std::vector<BlockHistory> history;
+  ParticleArray previous;               ///< m, what implicit steps started from
+  ParticleArray previousVelocity;       ///< m/s
+  std::vector<double> stepTravel;       ///< m, of each block as a rigid step began
+  std::vector<std::int32_t> savedPair;  ///< by position in engine.pairs: where it is saved, -1 if unchanged
+  PagePool<SavedPairs> savedPairs;
+  std::vector<std::vector<ReportContact>> reportContacts;  ///< of method `report`
+};
+
+}  // namespace springtower

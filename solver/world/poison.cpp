@@ -1,0 +1,47 @@
+#include "solver/world/poison.h"
+
+#include <cstring>
+#include <type_traits>
+
+namespace springtower {
+
+namespace {
+
+// All bits set are a NaN in a double, and -1 in an integer.
+template <class T, class Allocator>
+void poison(std::vector<T, Allocator>& values) {
+  if (!values.empty()) std::memset(static_cast<void*>(values.data()), 0xFF, values.size() * sizeof(T));
+}
+
+void poison(ParticleArray& values) {
+  for (auto& component : values.component) poison(component);
+}
+
+template <class... Parts>
+void poisonAll(Parts&... parts) {
+  (poison(parts), ...);
+}
+
+}  // namespace
+
+void poisonScratch(Engine& engine) {
+  Scratch& s = engine.scratch;
+  poisonAll(s.awakeBlocks, s.reach, s.mergedKeys, s.mergedFrom, s.mergedColumn, s.cursor, s.watchedPairs, s.path, s.foreseenPath,
+            s.newContactCount, s.nodeOf, s.contactForce, s.contactMetric, s.stageAcceleration[0], s.stageAcceleration[1],
+            s.stageAcceleration[2], s.stageAcceleration[3], s.pastPosition, s.stepVelocity, s.freePosition, s.lostPartners,
+            s.toWake, s.wakeRoots, s.pushed, s.loadChange, s.support.start, s.support.pairs, s.support.blocks, s.support.parent,
+            s.support.open, s.support.groups, s.support.beneath, s.support.supports, s.touchingEdges, s.restless, s.parent,
+            s.touched, s.joined, s.chunkCounters, s.chunkTimes, s.islandCounters, s.islandTimes, s.islandOutcome);
+  for (MotionState& stage : s.stage) poisonAll(stage.position, stage.velocity);
+  for (NewtonSystem& work : engine.memo.newtonSystems)
+    poisonAll(work.residual, work.direction, work.affine, work.tangents, work.coupled, work.coupledAs, work.coupledMotion,
+              work.coupledForce, work.correction);
+  engine.contacts.poisonStartRows();
+  for (RigidIsland& island : s.rigidIslands) {
+    LcpWorkspace& lcp = island.pivoting;
+    poisonAll(island.bodies, island.contacts, island.movers, island.points, island.known, lcp.matrix, lcp.inverse, lcp.impulse,
+              lcp.velocity, lcp.least, lcp.most, lcp.impulseChange, lcp.velocityChange, lcp.column, lcp.clamped, lcp.placeOf);
+  }
+}
+
+}  // namespace springtower

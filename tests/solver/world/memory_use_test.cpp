@@ -1,0 +1,55 @@
+// What pairs of blocks cost in memory, touching or not.
+#include "solver/world/memory_use.h"
+
+#include "solver/runner/run.h"
+#include "solver/world/contact_pool.h"
+#include "tests/support/block_scenes.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+namespace springtower {
+namespace {
+
+// Blocks side by side with gaps that their swept boxes bridge: near, and apart.
+Scene blocksNearEachOther(int rows) {
+  Scene scene;
+  scene.name = "near blocks";
+  for (int i = 0; i < rows * rows; ++i) {
+    BlockSpec block;
+    block.centre =
+        Vec3((block.dimensions.x() + 1e-3) * (i % rows), (block.dimensions.y() + 1e-3) * (i / rows), 0.5 * block.dimensions.z());
+    scene.blocks.push_back(block);
+  }
+  scene.settings.sleep = Sleep::off;
+  return scene;
+}
+
+// Bytes: a key of 8, five numbers of 8, a phase and the place of its contact in the table; beside it positions in lists of 4
+// each (its island's, those watched, what is saved), and the two lists and the column that the next sweep is merged through.
+TEST(MemoryUse, ANearPairCostsAtMost96Bytes) {
+  Simulation simulation(blocksNearEachOther(8));
+  stepFor(simulation, 0.1);
+  const MemoryUse use = memoryUse(simulation);
+  ASSERT_GT(use.nearPairs, 2 * use.touchingPairs);
+  const double each = static_cast<double>(use.pairs) / static_cast<double>(use.nearPairs);
+  fmt::print("{} near pairs, {} touching, {:.1f} bytes a near pair\n", use.nearPairs, use.touchingPairs, each);
+  EXPECT_LE(each, 96.0);
+}
+
+// 376 bytes with up to four points, and a second row of 320 with more.
+TEST(MemoryUse, ATouchingPairAddsAtMost700Bytes) {
+  EXPECT_LE(ContactPool::kFirstBytes, 380U);
+  EXPECT_LE(ContactPool::kFirstBytes + ContactPool::kSecondBytes, 700U);
+  Simulation simulation(towerScene(18));
+  stepFor(simulation, 0.2);
+  const MemoryUse use = memoryUse(simulation);
+  const auto each = [&](std::size_t bytes) { return static_cast<double>(bytes) / static_cast<double>(use.touchingPairs); };
+  fmt::print("{} touching pairs, {:.0f} bytes each, and {:.0f} for steps and rollbacks\n", use.touchingPairs, each(use.touching),
+             each(use.touchingSteps));
+  EXPECT_LE(each(use.touching), 380.0);
+  EXPECT_LE(each(use.touchingSteps), 700.0);
+}
+
+}  // namespace
+}  // namespace springtower
