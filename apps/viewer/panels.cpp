@@ -168,6 +168,8 @@ void timePanel(const Viewer& viewer) {
   text(fmt::format("blocks {}, asleep {}, contacts {}", simulation.asleep.size(), asleep, viewer.session.contacts.size()));
   text(fmt::format("steps {}, cubic tests {}, hits {}", counters.steps, counters.cubicTests, counters.cubicHits));
   text(fmt::format("contacts born {}, penetrating {}", counters.contactsBorn, counters.contactsBornPenetrating));
+  const std::string woken = wakesInWords(simulation.wakes);
+  if (!woken.empty()) ImGui::TextWrapped("%s", ("woken: " + woken).c_str());
 }
 
 void helpPanel() {

@@ -26,7 +26,7 @@ struct ManifoldNow {
   PointForces points;
   PairForce force;
 
-  ManifoldNow(const Simulation& simulation, const ContactView& stored) : manifold(copyOf(stored)) {
+  ManifoldNow(const Simulation& simulation, const ContactLaw& law, const ContactView& stored) : manifold(copyOf(stored)) {
     const auto upper = static_cast<std::size_t>(stored.upper);
     const auto lower = static_cast<std::size_t>(std::max(stored.lower, 0));
     const ParticleArray& carried = carriedVelocities(simulation);
@@ -35,7 +35,6 @@ struct ManifoldNow {
     const AffineField carriedBy[2] = {affineField(carried, upper), affineField(carried, lower)};
     const ContactSide up{&frames[0], &motion[0], &carriedBy[0]};
     const ContactSide low{&frames[1], &motion[1], &carriedBy[1]};
-    const ContactLaw law = contactLaw(simulation);
     const double behind = simulation.engine->memo.blockHistory[upper].lastExplicitStep_s;
     const double kick = isLeapfrog(simulation.scene.settings.method) ? behind : 0.0;
     const PointRows rows{manifold.points.data(), manifold.points.data() + 1};
@@ -72,9 +71,10 @@ double energyOf(const Simulation& simulation, const ManifoldNow& now, const Cont
 }
 
 // Appends what the points of a manifold that push do.
-void addContactForces(const Simulation& simulation, const ContactView& m, std::vector<ContactForce>& forces) {
+void addContactForces(const Simulation& simulation, const ContactLaw& law, const ContactView& m,
+                      std::vector<ContactForce>& forces) {
   if (m.phase == PairPhase::separated) return;
-  const ManifoldNow now(simulation, m);
+  const ManifoldNow now(simulation, law, m);
   const PointForces& points = now.points;
   for (std::size_t i = 0; i < static_cast<std::size_t>(m.count); ++i) {
     if (points.normal[i] <= 0.0) continue;
@@ -106,7 +106,7 @@ ContactLaw contactLaw(const Simulation& simulation) {
 
 PointForces forcesNow(const Simulation& simulation, const ContactView& manifold) {
   if (manifold.phase == PairPhase::separated) return {};
-  return ManifoldNow(simulation, manifold).points;
+  return ManifoldNow(simulation, contactLaw(simulation), manifold).points;
 }
 
 ContactWrench contactWrenchOnUpper(const Simulation& simulation, const ContactView& manifold) {
@@ -126,7 +126,8 @@ ContactWrench contactWrenchOnUpper(const Simulation& simulation, const ContactVi
 std::vector<ContactForce> contactForces(const Simulation& simulation) {
   std::vector<ContactForce> forces;
   const Engine& engine = *simulation.engine;
-  for (std::size_t at = 0; at < engine.pairs.size(); ++at) addContactForces(simulation, contactOf(engine, at), forces);
+  const ContactLaw law = contactLaw(simulation);
+  for (std::size_t at = 0; at < engine.pairs.size(); ++at) addContactForces(simulation, law, contactOf(engine, at), forces);
   return forces;
 }
 
@@ -134,9 +135,10 @@ std::vector<ContactForce> contactForcesOn(const Simulation& simulation, BlockId 
   const auto on = static_cast<std::int32_t>(block);
   std::vector<ContactForce> forces;
   const Engine& engine = *simulation.engine;
+  const ContactLaw law = contactLaw(simulation);
   for (std::size_t at = 0; at < engine.pairs.size(); ++at) {
     const ContactView contact = contactOf(engine, at);
-    if (contact.upper == on || contact.lower == on) addContactForces(simulation, contact, forces);
+    if (contact.upper == on || contact.lower == on) addContactForces(simulation, law, contact, forces);
   }
   return forces;
 }
@@ -158,7 +160,7 @@ Energy energy(const Simulation& simulation) {
   for (std::size_t at = 0; at < simulation.engine->pairs.size(); ++at) {
     const ContactView contact = contactOf(*simulation.engine, at);
     if (contact.phase == PairPhase::separated) continue;
-    const ManifoldNow now(simulation, contact);
+    const ManifoldNow now(simulation, law, contact);
     energy.contacts += energyOf(simulation, now, law);
     addForce(now.force.upper, contactForce[static_cast<std::size_t>(contact.upper)]);
     if (contact.lower >= 0) addForce(now.force.lower, contactForce[static_cast<std::size_t>(contact.lower)]);

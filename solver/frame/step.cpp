@@ -328,9 +328,6 @@ void stepFrame(Simulation& simulation) {
     }
     for (const Counters& island : engine.scratch.islandCounters) simulation.counters += island;
     simulation.counters.steps += static_cast<std::uint64_t>(simulation.substeps);
-    simulation.time_s += simulation.scene.settings.frame_s;
-    checkShapes(simulation, engine.scratch.awakeBlocks);
-    if (simulation.scene.plane) keepInPlane(simulation);
   } else {
     simulation.substeps = 0;
   }
@@ -338,6 +335,8 @@ void stepFrame(Simulation& simulation) {
   ++simulation.counters.frames;
   simulation.time_s = static_cast<double>(simulation.frame) * simulation.scene.settings.frame_s;
   if (engine.sleep.awakeCount > 0) {
+    checkShapes(simulation, engine.scratch.awakeBlocks);
+    if (simulation.scene.plane) keepInPlane(simulation);
     const StageTimer timer(simulation.stageTimes, Stage::islandsAndSleep);
     updateRest(simulation);
   }

@@ -91,7 +91,7 @@ bool isStruck(const Simulation& simulation, std::size_t at, std::int32_t awake, 
   const BlockPair& pair = simulation.engine->pairs.key[at];
   const auto block = static_cast<std::size_t>(awake);
   const double scale = speedScale(simulation);
-  const bool held = block == index(simulation.tether.block);
+  const bool held = simulation.tether.block == blockId(block);
   const double speed =
       std::max(fastestCorner(simulation.state.velocity, block, Vec3::Zero()), held ? simulation.tether.velocity.norm() : 0.0);
   if (anyPointTouches(contactOf(*simulation.engine, at))) return speed > kRush * scale;

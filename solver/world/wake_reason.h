@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <string_view>
 
 namespace springtower {
@@ -30,5 +31,16 @@ inline constexpr std::array<std::string_view, kWakeReasons> kWakeReasonNames = {
 
 /// How many blocks have woken for each reason.
 using WakeCounts = std::array<std::uint64_t, kWakeReasons>;
+
+/// For people: "force 1, load_change 4"; empty where no block has woken.
+inline std::string wakesInWords(const WakeCounts& wakes) {
+  std::string words;
+  for (std::size_t i = 0; i < kWakeReasons; ++i) {
+    if (wakes[i] == 0) continue;
+    if (!words.empty()) words += ", ";
+    words += std::string(kWakeReasonNames[i]) + ' ' + std::to_string(wakes[i]);
+  }
+  return words;
+}
 
 }  // namespace springtower

@@ -138,15 +138,6 @@ Json reportJson(const Simulation& simulation, const RunResult& result, int threa
   return report;
 }
 
-// "force 1, load_change 4"; empty where no block has woken.
-std::string wakesInWords(const WakeCounts& wakes) {
-  std::string words;
-  for (std::size_t i = 0; i < kWakeReasons; ++i) {
-    if (wakes[i] != 0) words += fmt::format("{}{} {}", words.empty() ? "" : ", ", kWakeReasonNames[i], wakes[i]);
-  }
-  return words;
-}
-
 void printResult(const Simulation& simulation, const RunResult& result, int threads) {
   const Settings& settings = simulation.scene.settings;
   const FrameTimes& times = result.frameTimes;
