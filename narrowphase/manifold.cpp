@@ -1,5 +1,7 @@
 #include "narrowphase/manifold.h"
 
+#include "core/tuning.h"
+
 #include <algorithm>
 #include <array>
 #include <limits>
@@ -39,9 +41,6 @@ std::size_t clip(const Polygon& in, std::size_t count, double ClipPoint::*coordi
   }
   return kept;
 }
-
-// An edge that bends by no more than this share of the radius in which points are one is straight.
-constexpr double kStraight = 0.05;
 
 // Lengths of the incident face's sides, m.
 struct Lengths {
@@ -167,7 +166,7 @@ void buildFaceManifold(const CornerView& upper, const CornerView& lower, int inc
     for (std::size_t j = 0; j < kept && !known; ++j) known = squaredDistance(p, other[j], other[j], lengths) < merged;
     if (!known) other[kept++] = p;
   }
-  kept = dropStraight(kStraight * limits.mergeRadius, lengths, kept, other);
+  kept = dropStraight(tuning::kStraightEdgeBend * limits.mergeRadius, lengths, kept, other);
   for (std::size_t i = 0; i < kept; ++i) {
     manifold.place[rowOf(i)].u[laneOf(i)] = other[i].u;
     manifold.place[rowOf(i)].v[laneOf(i)] = other[i].v;

@@ -1,6 +1,7 @@
 #include "narrowphase/separation.h"
 
 #include "core/lanes.h"
+#include "core/tuning.h"
 
 #include <algorithm>
 #include <array>
@@ -78,9 +79,6 @@ double gapAlong(const Vec3& normal, const CornerView& upper, const CornerView& l
 SPRINGTOWER_KERNEL
 Separation findSeparation(const CornerView& a, const CornerView& b) {
   constexpr double kNothing = -std::numeric_limits<double>::infinity();
-  // Any direction that separates is a proof, so near parallel edges are asked too, as long as rounding leaves their common normal
-  // some digits: two blocks side by side, twisted by half a degree, are kept apart by nothing else.
-  constexpr double kMinCross = 1e-5;
 
   const Frame frameA = frameOf(a);
   const Frame frameB = frameOf(b);
@@ -112,7 +110,7 @@ Separation findSeparation(const CornerView& a, const CornerView& b) {
     for (std::size_t j = 0; j < 3; ++j) {
       Vec3 normal = frameA.axis[i].cross(frameB.axis[j]);
       const double length = normal.norm();
-      if (length < kMinCross) continue;
+      if (length < tuning::kMinEdgeCross) continue;
       normal /= normal.dot(between) >= 0.0 ? length : -length;
       const double gap = gapOf(normal, a, b);
       if (gap > result.edge) {

@@ -3,6 +3,7 @@
 #include "apps/commands/chart/command.h"
 #include "apps/commands/profile/command.h"
 #include "apps/commands/run/command.h"
+#include "apps/commands/settings/command.h"
 #include "apps/commands/statics/command.h"
 #include "apps/commands/validate/command.h"
 #include "apps/commands/verdict/verdict.h"
@@ -30,6 +31,7 @@ constexpr std::string_view kFooter = R"help(examples:
   springtower statics tower:18                      whether it can stand at all, and by what margin
   springtower chart --quick                         speed against accuracy, every method
   springtower validate --out validation             every claim about it, measured
+  springtower settings --all                        what can be set, and the engine's own constants
   springtower run --help                            all options of a command
 exit codes: 0 done, 1 an answer differs (--check), 2 bad input, 3 the simulation diverged)help";
 
@@ -43,8 +45,9 @@ int complainAboutArguments(const CLI::App& program, const CLI::ParseError& error
   std::string hint = "springtower --help";
   for (const CLI::App* command : program.get_subcommands()) hint = fmt::format("springtower {} --help", command->get_name());
   const bool noCommand = program.get_subcommands().empty() && error.get_name() == "RequiredError";
-  complain(noCommand ? "found no command, allowed are run, verdict, profile, statics, chart and validate" : error.what(),
-           kBadInput);
+  complain(
+      noCommand ? "found no command, allowed are run, verdict, profile, statics, chart, validate and settings" : error.what(),
+      kBadInput);
   fmt::print(stderr, "Try '{}'.\n", hint);
   return kBadInput;
 }
@@ -70,6 +73,8 @@ int run(int argc, char** argv) {
   ChartCommand chartCommand;
   const CLI::App* chartApp = defineChart(program, chartCommand);
   const CLI::App* validateApp = defineValidate(program, validateCommand);
+  SettingsCommand settingsCommand;
+  const CLI::App* settingsApp = defineSettings(program, settingsCommand);
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -80,6 +85,7 @@ int run(int argc, char** argv) {
   if (staticsApp->parsed()) return executeStatics(staticsCommand);
   if (chartApp->parsed()) return executeChart(chartCommand);
   if (validateApp->parsed()) return executeValidate(validateCommand);
+  if (settingsApp->parsed()) return executeSettings(settingsCommand);
   return runApp->parsed() ? executeRun(runCommand) : executeVerdict(verdictCommand);
 }
 

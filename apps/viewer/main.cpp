@@ -6,6 +6,7 @@
 #include "apps/viewer/window.h"
 #include "core/error.h"
 #include "core/limits.h"
+#include "core/tuning.h"
 #include "core/version.h"
 
 #include <CLI/CLI.hpp>
@@ -161,7 +162,7 @@ Viewer viewerOf(const Command& command) {
   viewer.arrows = command.arrows;
   viewer.paused = command.paused;
   viewer.panels = !command.noPanels;
-  viewer.limit_n = command.grip_n.value_or(kGripForce_n);
+  viewer.limit_n = command.grip_n.value_or(tuning::kGripForce_n);
   viewer.watch.measures = command.files.report.has_value();
   placeCamera(command, viewer.controls.camera);
   return viewer;

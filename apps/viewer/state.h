@@ -4,6 +4,7 @@
 #include "apps/viewer/overlays.h"
 #include "apps/viewer/recording.h"
 #include "apps/viewer/render.h"
+#include "core/tuning.h"
 #include "solver/metrics/penetration.h"
 
 #include <array>
@@ -46,7 +47,7 @@ struct Viewer {
   Overlay overlay = Overlay::wood;
   bool arrows = false;
   bool panels = true;
-  double limit_n = kGripForce_n;
+  double limit_n = tuning::kGripForce_n;
   std::optional<Replay> replay;
   std::string message;  ///< what the user should know, until something else is
   std::array<FrameBar, kBars> bars{};

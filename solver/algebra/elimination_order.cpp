@@ -1,5 +1,7 @@
 #include "solver/algebra/elimination_order.h"
 
+#include "core/tuning.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,11 +11,6 @@
 namespace springtower {
 
 namespace {
-
-// Sets of so few nodes are not cut: what fills in is as much in any order.
-constexpr std::size_t kUncut = 6;
-// Share of a set on the smaller side of a cut, at least: cuts that balance less make the recursion deep.
-constexpr double kMinSide = 0.3;
 
 // A cut of a sorted set: nodes before `at` that have no neighbour behind it, those that have one, and those behind.
 struct Cut {
@@ -77,7 +74,7 @@ Cut bestCut(std::span<const std::int32_t> sorted, DissectionSpace& space) {
   for (std::size_t k = 0; k < count; ++k) {
     separator += space.change[k];
     const double share = static_cast<double>(k) / size;
-    if (share < kMinSide || share > 1.0 - kMinSide) continue;
+    if (share < tuning::kMinDissectionShare || share > 1.0 - tuning::kMinDissectionShare) continue;
     const double cost = (separator + 0.5) * (1.0 + std::abs(2.0 * share - 1.0));
     if (cost < best.cost) best = {k, cost};
   }
@@ -88,7 +85,7 @@ Cut bestCut(std::span<const std::int32_t> sorted, DissectionSpace& space) {
 // Orders a set of nodes in place: what lies before the best cut, what lies behind it, and between them, last, what couples the
 // two.
 void dissect(std::span<std::int32_t> nodes, std::span<const Vec3> centre, DissectionSpace& space) {
-  if (nodes.size() <= kUncut) return;
+  if (nodes.size() <= tuning::kMaxUncutNodes) return;
   Cut best;
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     space.sorted.assign(nodes.begin(), nodes.end());

@@ -1,5 +1,6 @@
 #include "solver/contact/approach.h"
 
+#include "core/tuning.h"
 #include "solver/contact/births.h"
 #include "solver/world/checkpoint.h"
 
@@ -10,11 +11,6 @@
 namespace springtower {
 
 namespace {
-
-// Distance that blocks may be about to close in an implicit step that makes them meet, in tolerances.
-constexpr double kMaxClosing = 0.5;
-// By how much blocks may overlap at the end of a step that knew of no contact between them, in tolerances.
-constexpr double kMaxOverlap = 0.5;
 
 // Gap of a pair along a direction from b to a, m; to the floor along its normal.
 double gapOf(const BlockPair& pair, const Vec3& direction, const ParticleArray& position) {
@@ -103,7 +99,7 @@ double bearableClosing(const IslandStep& step, const BlockPair& pair) {
   const double massB = pair.b < 0 ? 0.0 : mass[static_cast<std::size_t>(pair.b)];
   const double reduced = pair.b < 0 ? massA : massA * massB / (massA + massB);
   const double stiffness = pair.b < 0 ? step.law.floorStiffness_n_m : step.law.stiffness_n_m;
-  return 0.25 * step.law.impactPenetration_m * std::sqrt(stiffness / reduced) * step.drift_s;
+  return tuning::kMaxFirstClosingShare * step.law.impactPenetration_m * std::sqrt(stiffness / reduced) * step.drift_s;
 }
 
 // How a pair that was apart has met in the step just found: by how much its blocks overlap now, m, negative where they do not,
@@ -220,7 +216,7 @@ double fastestCorner(const ParticleArray& velocity, std::size_t block, const Vec
 }
 
 bool bounces(const IslandStep& step, double step_s) {
-  const double most = kMaxClosing * step.simulation.tolerance_m / step_s;
+  const double most = tuning::kMaxImplicitClosing * step.simulation.tolerance_m / step_s;
   double fastest = 0.0;
   for (const std::int32_t block : step.blocks) fastest = std::max(fastest, speedOf(step, block));
   if (2.0 * fastest <= most) return false;
@@ -238,7 +234,7 @@ bool meetsSoon(const IslandStep& step, double step_s) {
   const double frame_s = simulation.scene.settings.frame_s;
   const auto soon = [&](const Closing& closing) {
     const double reach = frame_s * (std::max(0.0, closing.speed) + 0.5 * frame_s * simulation.scene.gravity.magnitude);
-    return closing.gap < reach && closing.speed * step_s > kMaxClosing * simulation.tolerance_m;
+    return closing.gap < reach && closing.speed * step_s > tuning::kMaxImplicitClosing * simulation.tolerance_m;
   };
   return std::any_of(step.pairs.begin(), step.pairs.end(), [&](std::int32_t pair) {
     const auto at = static_cast<std::size_t>(pair);
@@ -249,7 +245,7 @@ bool meetsSoon(const IslandStep& step, double step_s) {
 }
 
 FirstContact meetingsIn(IslandStep& step) {
-  const double most = kMaxOverlap * step.simulation.tolerance_m;
+  const double most = tuning::kMaxFirstOverlap * step.simulation.tolerance_m;
   double longest = 0.0;
   for (const std::int32_t block : step.blocks) longest = std::max(longest, wayOf(step, block));
   if (2.0 * longest <= most) return FirstContact::none;

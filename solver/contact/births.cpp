@@ -1,5 +1,6 @@
 #include "solver/contact/births.h"
 
+#include "core/tuning.h"
 #include "narrowphase/turning_face.h"
 #include "solver/contact/persistence.h"
 #include "solver/contact/update.h"
@@ -15,17 +16,13 @@ namespace springtower {
 
 namespace {
 
-// Faces within this of parallel touch as such: an edge direction that separates slightly tilted crossed blocks a little better
-// would turn four points into one (cosine of 18 degrees).
-constexpr double kFaceCosine = 0.951;
-
 ManifoldLimits limitsOf(const Simulation& simulation) {
   const double h = simulation.lengths.blockHeight_m;
-  return {kMergeRadius * h, kManifoldReach * h};
+  return {tuning::kMergeRadius * h, tuning::kManifoldReach * h};
 }
 
 double edgeSlackOf(const Simulation& simulation) {
-  return kEdgeSlack * simulation.lengths.blockHeight_m;
+  return tuning::kEdgeSlack * simulation.lengths.blockHeight_m;
 }
 
 // The overlap of the faces along the normal of one of them: b's if `referenceIsB`, else a's.
@@ -79,7 +76,7 @@ bool sharesOutline(const Separation& separation, double face, const CornerView& 
   if (deepest.count < 2 || deepest.depth > slack - separation.edge) return false;
   const Vec3 incident = faceFrame(upper, fresh.incidentFace).normal;
   const Vec3 reference = faceFrame(lower, fresh.referenceFace).normal;
-  return std::abs(incident.dot(reference)) >= kFaceCosine ||
+  return std::abs(incident.dot(reference)) >= tuning::kFaceCosine ||
          (face > separation.edge - slack && deepest.depth > -separation.edge - slack);
 }
 
@@ -181,17 +178,17 @@ bool turnsApart(const Vec3& normal, const MovingBlock& a, const MovingBlock& b, 
 }  // namespace
 
 double refreshTravel(const Simulation& simulation) {
-  return kRefreshTravel * simulation.lengths.blockHeight_m;
+  return tuning::kRefreshTravel * simulation.lengths.blockHeight_m;
 }
 
 RefreshTravel refreshTravelOfExplicitSteps(const Simulation& simulation) {
   const double travel_m = refreshTravel(simulation);
-  return {travel_m, travel_m, kRollingRefreshTravel * simulation.lengths.blockHeight_m};
+  return {travel_m, travel_m, tuning::kRollingRefreshTravel * simulation.lengths.blockHeight_m};
 }
 
 RefreshTravel refreshTravelOfImplicitSteps(const Simulation& simulation) {
   const double travel_m = refreshTravel(simulation);
-  return {travel_m, kSlidingRefreshTravel * simulation.lengths.blockHeight_m, travel_m};
+  return {travel_m, tuning::kSlidingRefreshTravel * simulation.lengths.blockHeight_m, travel_m};
 }
 
 void updateSeparated(IslandStep& step, std::size_t at, Counters& counters, StageTimes& times) {
@@ -263,7 +260,7 @@ void refreshManifold(IslandStep& step, std::size_t at, Counters& counters) {
   const ParticleArray& position = simulation.state.position;
   const ManifoldLimits limits = limitsOf(simulation);
   const double partingGap = simulation.lengths.partingGap_m;
-  const double radius = kCarryRadius * simulation.lengths.blockHeight_m;
+  const double radius = tuning::kPointMatchRadius * simulation.lengths.blockHeight_m;
   ++counters.manifoldRefreshes;
   Manifold fresh;
   if (pair.b < 0) {
@@ -283,8 +280,8 @@ void refreshManifold(IslandStep& step, std::size_t at, Counters& counters) {
       part(pairs, at, separation.bestNormal(), separation.best());
       return;
     }
-    chooseManifold(separation, a, b, limits, kReferenceSlack * simulation.lengths.blockHeight_m, edgeSlackOf(simulation), pair,
-                   old, fresh);
+    chooseManifold(separation, a, b, limits, tuning::kReferenceFaceSlack * simulation.lengths.blockHeight_m,
+                   edgeSlackOf(simulation), pair, old, fresh);
     if (fresh.count == 0) {
       part(pairs, at, separation.bestNormal(), std::max(0.0, separation.best()));
       return;

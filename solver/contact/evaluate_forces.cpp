@@ -1,5 +1,6 @@
 #include "solver/contact/evaluate_forces.h"
 
+#include "core/tuning.h"
 #include "solver/block/inertia.h"
 #include "solver/block/springs.h"
 #include "solver/world/island_step.h"
@@ -15,9 +16,6 @@ namespace {
 
 using Range = tbb::blocked_range<std::size_t>;
 
-constexpr std::size_t kBlockGrain = 64;
-constexpr std::size_t kPairGrain = 128;
-
 // Runs a kernel over the island's blocks: at once, or in ranges on many threads.
 template <class Kernel>
 void overBlocks(const IslandStep& step, bool parallel, const Kernel& kernel) {
@@ -25,7 +23,7 @@ void overBlocks(const IslandStep& step, bool parallel, const Kernel& kernel) {
     kernel(step.blocks);
     return;
   }
-  tbb::parallel_for(Range(0, step.blocks.size(), kBlockGrain),
+  tbb::parallel_for(Range(0, step.blocks.size(), tuning::kBlockGrain),
                     [&](const Range& range) { kernel(step.blocks.subspan(range.begin(), range.size())); });
 }
 
@@ -80,7 +78,7 @@ std::uint64_t contactsInOrder(IslandStep& step, const Evaluation& evaluation) {
 // The same sums in the same order: first all pairs, then each block gathers its own.
 std::uint64_t contactsInParallel(IslandStep& step, const Evaluation& evaluation) {
   Engine& engine = step.engine;
-  tbb::parallel_for(Range(0, step.activePairs.size(), kPairGrain), [&](const Range& range) {
+  tbb::parallel_for(Range(0, step.activePairs.size(), tuning::kPairGrain), [&](const Range& range) {
     for (std::size_t i = range.begin(); i < range.end(); ++i) {
       const auto at = static_cast<std::size_t>(step.activePairs[i]);
       if (!engine.pairs.touches(at)) continue;
@@ -88,7 +86,7 @@ std::uint64_t contactsInParallel(IslandStep& step, const Evaluation& evaluation)
       evaluatePair(step, evaluation, engine.contacts.edit(contact, engine.pairs[at]), engine.contacts.pairForce(contact));
     }
   });
-  tbb::parallel_for(Range(0, step.blocks.size(), kBlockGrain), [&](const Range& range) {
+  tbb::parallel_for(Range(0, step.blocks.size(), tuning::kBlockGrain), [&](const Range& range) {
     for (std::size_t i = range.begin(); i < range.end(); ++i) {
       const std::int32_t block = step.blocks[i];
       const auto b = static_cast<std::size_t>(block);
@@ -138,7 +136,7 @@ void addTether(IslandStep& step, const MotionState& state, double time_s) {
 void evaluateForces(IslandStep& step, const MotionState& state, const ParticleArray& carried, double advance_s, Memory memory) {
   StageClock clock(step.times);
   Engine& engine = step.engine;
-  const bool parallel = step.blocks.size() >= kParallelBlocks;
+  const bool parallel = step.blocks.size() >= tuning::kParallelBlocks;
   const bool sameMotion = &carried == &state.velocity;
   const double kick_s = sameMotion && memory == Memory::advance ? step.kick_s : 0.0;
   const Evaluation evaluation{{advance_s, step.maxStiffening, memory == Memory::trial ? 0.0 : 1.0, kick_s}, sameMotion, memory};

@@ -1,5 +1,6 @@
 #include "solver/contact/query.h"
 
+#include "core/tuning.h"
 #include "solver/block/inertia.h"
 #include "solver/block/springs.h"
 #include "solver/contact/rigid_contacts.h"
@@ -11,9 +12,6 @@
 namespace springtower {
 
 namespace {
-
-// In which the stiffening of a contact that is hit fades, in sqrt(h / g); lowering a stiffness only takes energy out.
-constexpr double kStiffeningTime = 0.2322;
 
 // Whether explicit steps of this method have velocities half a step behind.
 bool isLeapfrog(Method method) {
@@ -95,12 +93,12 @@ ContactLaw contactLaw(const Simulation& simulation) {
   law.maxwellRatio = settings.viscoelasticRatio;
   law.maxwellTime_s = settings.viscoelasticTime * simulation.lengths.fallTime_s;
   law.dampingTime_s = simulation.dampingTime_s;
-  law.stiffeningTime_s = kStiffeningTime * simulation.lengths.fallTime_s;
+  law.stiffeningTime_s = tuning::kImpactStiffeningTime * simulation.lengths.fallTime_s;
   law.tangentialRatio = settings.tangentialRatio;
   law.staticFriction = simulation.scene.staticFriction;
   law.kineticFriction = simulation.scene.kineticFriction;
   law.impactPenetration_m = impactDepth_m(settings, simulation.tolerance_m, simulation.lengths.blockHeight_m);
-  law.restDepthPerSlip = 0.1 * simulation.scene.kineticFriction;
+  law.restDepthPerSlip = tuning::kRestDepthPerSlip * simulation.scene.kineticFriction;
   return law;
 }
 

@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 #include "core/lanes.h"
+#include "core/tuning.h"
 #include "solver/contact/births.h"
 #include "solver/world/checkpoint.h"
 #include "solver/world/island_step.h"
@@ -54,10 +55,6 @@ bool isInSweptBox(const IslandStep& step, std::size_t block) {
   return true;
 }
 
-// Steps for which a list of watched pairs is made, and by how much faster than in the last step a block may become meanwhile.
-constexpr int kListedSteps = 16;
-constexpr double kFaster = 1.5;
-
 // Adds up the path of each block's fastest corner; `inside` tells whether all are in their swept boxes. A block whose corners
 // move apart by half its least side in one step has diverged: free flight is as fast as it likes, but nothing sound deforms like
 // that. NaN fails every comparison, so what is sound is asked for. Returns the first block that has diverged, or -1.
@@ -67,7 +64,7 @@ std::int32_t addPaths(IslandStep& step, bool& inside) {
   for (const std::int32_t block : step.blocks) {
     const auto b = static_cast<std::size_t>(block);
     const auto [path, deformed] = blockTravel(step.simulation.state.position, step.engine.memo.previous, b);
-    const double most = kMaxTravelPerStep * step.simulation.model.dimensions[b].minCoeff();
+    const double most = tuning::kMaxDeformationPerStep * step.simulation.model.dimensions[b].minCoeff();
     if (!(deformed < static_cast<double>(kCorners) * most * most)) return block;
     BlockHistory& history = step.engine.memo.blockHistory[b];
     history.travel += path;
@@ -125,9 +122,6 @@ double renewalTravel(const ContactView& manifold, const RefreshTravel& travel) {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
-// Share of the path to a renewal by which blocks have stayed where they are to one another.
-constexpr double kStayed = 0.9;
-
 // How one block of a pair lies to the other: b's centre and sides along a's edges, or a's own where b is the floor, m.
 RelativePose poseOf(const IslandStep& step, const BlockPair& pair) {
   const auto a = static_cast<std::size_t>(pair.a);
@@ -175,7 +169,7 @@ bool hasStayed(IslandStep& step, std::size_t at, double travel, double most) {
   RelativePose& known = step.engine.contacts.pose(pairs.contact[at]);
   const RelativePose pose = poseOf(step, pairs.key[at]);
   const double moved = movedBetween(known, pose);
-  if (moved < kStayed * most) {
+  if (moved < tuning::kUnchangedPoseShare * most) {
     pairs.travelAtCheck[at] = travel - moved;
     return true;
   }
@@ -223,10 +217,10 @@ void updatePair(IslandStep& step, std::size_t at, const RefreshTravel& renewal, 
 // foreseen here.
 void listWatched(IslandStep& step) {
   Engine& engine = step.engine;
-  const double falling_m = kListedSteps * step.simulation.scene.gravity.magnitude * step.drift_s * step.drift_s;
+  const double falling_m = tuning::kActiveListSteps * step.simulation.scene.gravity.magnitude * step.drift_s * step.drift_s;
   for (const std::int32_t block : step.blocks) {
     const auto b = static_cast<std::size_t>(block);
-    engine.scratch.foreseenPath[b] = kFaster * (engine.scratch.path[b] + falling_m);
+    engine.scratch.foreseenPath[b] = tuning::kActiveListSpeedGrowth * (engine.scratch.path[b] + falling_m);
   }
   const auto pathOf = [&](std::int32_t block) {
     return block < 0 || sleeps(step.simulation, block) ? 0.0 : engine.scratch.foreseenPath[static_cast<std::size_t>(block)];
@@ -237,11 +231,11 @@ void listWatched(IslandStep& step) {
     const auto at = static_cast<std::size_t>(pair);
     const BlockPair& key = engine.pairs.key[at];
     const double left = engine.pairs.clearance[at] - (travelOf(engine, at) - engine.pairs.travelAtCheck[at]);
-    if (!engine.pairs.touches(at) && left > kListedSteps * (pathOf(key.a) + pathOf(key.b))) continue;
+    if (!engine.pairs.touches(at) && left > tuning::kActiveListSteps * (pathOf(key.a) + pathOf(key.b))) continue;
     engine.scratch.watchedPairs[first + count++] = pair;
   }
   step.activePairs = std::span<const std::int32_t>(engine.scratch.watchedPairs).subspan(first, count);
-  step.activeListSteps = kListedSteps;
+  step.activeListSteps = tuning::kActiveListSteps;
 }
 
 }  // namespace
@@ -259,7 +253,7 @@ bool findContacts(IslandStep& step) {
 }
 
 void recomputeClearances(IslandStep& step) {
-  const bool listed = step.activeListSteps == kListedSteps;
+  const bool listed = step.activeListSteps == tuning::kActiveListSteps;
   PairTable& pairs = step.engine.pairs;
   for (const std::int32_t pair : listed ? step.pairs : step.activePairs) {
     const auto at = static_cast<std::size_t>(pair);
@@ -291,7 +285,7 @@ bool updateContacts(IslandStep& step, const RefreshTravel& renewal) {
   const bool list = step.usesActiveList && step.activeListSteps == 0;
   if (step.activeListSteps == 0) step.activePairs = step.pairs;
   const double least = leastRenewalOf(renewal);
-  if (step.blocks.size() < kParallelBlocks) {
+  if (step.blocks.size() < tuning::kParallelBlocks) {
     for (const std::int32_t pair : step.activePairs) {
       const auto at = static_cast<std::size_t>(pair);
       if (isDue(step.engine, at, least)) updatePair(step, at, renewal, step.counters, step.times);
@@ -302,8 +296,7 @@ bool updateContacts(IslandStep& step, const RefreshTravel& renewal) {
     return inside;
   }
 
-  constexpr std::size_t kChunk = 256;
-  const std::size_t chunks = (step.activePairs.size() + kChunk - 1) / kChunk;
+  const std::size_t chunks = (step.activePairs.size() + tuning::kPairChunk - 1) / tuning::kPairChunk;
   std::vector<Counters>& counted = step.engine.scratch.chunkCounters;
   std::vector<StageTimes>& timed = step.engine.scratch.chunkTimes;
   if (counted.size() < chunks) counted.resize(chunks);
@@ -312,8 +305,8 @@ bool updateContacts(IslandStep& step, const RefreshTravel& renewal) {
     counted[chunk] = Counters{};
     timed[chunk] = StageTimes{};
     StageClock all(timed[chunk]);
-    const std::size_t last = std::min(step.activePairs.size(), (chunk + 1) * kChunk);
-    for (std::size_t i = chunk * kChunk; i < last; ++i) {
+    const std::size_t last = std::min(step.activePairs.size(), (chunk + 1) * tuning::kPairChunk);
+    for (std::size_t i = chunk * tuning::kPairChunk; i < last; ++i) {
       const auto at = static_cast<std::size_t>(step.activePairs[i]);
       if (isDue(step.engine, at, least)) updatePair(step, at, renewal, counted[chunk], timed[chunk]);
     }

@@ -1,5 +1,6 @@
 #include "solver/explicit/leapfrog.h"
 
+#include "core/tuning.h"
 #include "solver/contact/evaluate_forces.h"
 #include "solver/world/island_step.h"
 #include "solver/world/stage_clock.h"
@@ -34,7 +35,7 @@ void stepSemiImplicitEuler(IslandStep& step) {
       }
     }
   };
-  if (step.blocks.size() >= kParallelBlocks) {
+  if (step.blocks.size() >= tuning::kParallelBlocks) {
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, step.blocks.size(), 128),
                       [&](const tbb::blocked_range<std::size_t>& range) { integrate(range.begin(), range.end()); });
   } else {

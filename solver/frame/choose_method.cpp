@@ -1,5 +1,6 @@
 #include "solver/frame/choose_method.h"
 
+#include "core/tuning.h"
 #include "solver/frame/island_modes.h"
 #include "solver/world/stiffness.h"
 
@@ -8,13 +9,6 @@
 
 namespace springtower {
 namespace {
-
-// A block that comes down askew or is thrown rocks: it hits again and again, and each hit asks springs for explicit steps that
-// grow with its speed. From this stiffening on, against what rest needs, rigid blocks cost less; they take a hit in the step that
-// it falls into. So do implicit methods where several blocks fall (solver/frame/island_modes), and lay them down faster then.
-constexpr double kHardImpact = 4.0;
-// Rigid blocks sink into one another by what gravity does in a step: this many times g dt^2 for each layer above.
-constexpr double kRigidSag = 2.4;
 
 // The most that a block differs in its velocity from all of them on average, or that it goes down, m/s: with that it will meet
 // others or the floor. A block alone that slides meets nothing.
@@ -43,7 +37,7 @@ Settings chooseMethod(const Scene& scene) {
   const double thrown = meetingSpeed(scene);
   const double squaredSpeed = 2.0 * gravity * loads.askewFall_m + thrown * thrown;
   const double stiffening = mass * squaredSpeed / (depth * depth * stiffness);
-  if (stiffening < kHardImpact || mayFall(scene.blocks.size())) {
+  if (stiffening < tuning::kRigidMethodStiffening || mayFall(scene.blocks.size())) {
     settings.method = Method::implicit;
     return settings;
   }
@@ -51,7 +45,7 @@ Settings chooseMethod(const Scene& scene) {
   if (settings.substeps == 0) {
     // Without gravity nothing sinks; hits are then taken as finely as on Earth.
     const double pull = gravity > 0.0 ? gravity : kStandardGravity_m_s2;
-    const double step_s = std::sqrt(tolerance_m / (kRigidSag * pull * std::max(1, loads.layers)));
+    const double step_s = std::sqrt(tolerance_m / (tuning::kRigidSagPerLayer * pull * std::max(1, loads.layers)));
     settings.substeps = static_cast<int>(std::ceil(settings.frame_s / step_s));
   }
   return settings;

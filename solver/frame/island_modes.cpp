@@ -1,5 +1,6 @@
 #include "solver/frame/island_modes.h"
 
+#include "core/tuning.h"
 #include "solver/contact/approach.h"
 #include "solver/contact/evaluate_forces.h"
 #include "solver/contact/query.h"
@@ -14,16 +15,6 @@
 namespace springtower {
 
 namespace {
-
-// Speed at which an island begins to fall, and below which implicit steps are tried again, in sqrt(g h).
-constexpr double kFallSpeed = 0.45;
-constexpr double kFallenSpeed = 0.05;
-// Blocks of an island that begins to fall, at least.
-constexpr std::size_t kFewest = 3;
-// Steps of a frame, at least; and farthest that a corner may go in one, in block heights.
-constexpr int kFallSteps = 20;
-constexpr double kMaxFallDisplacement = 0.06;
-constexpr int kMaxFallSteps = 6000;
 
 // How an island moves on the whole.
 struct Motion {
@@ -53,7 +44,7 @@ Motion motionOf(const IslandStep& step) {
 }
 
 bool isLeftAlone(const IslandStep& step) {
-  return step.blocks.size() < kParallelBlocks && !holdsTether(step) && !isPushed(step);
+  return step.blocks.size() < tuning::kParallelBlocks && !holdsTether(step) && !isPushed(step);
 }
 
 // What a point's springs do becomes the force that its impulses start from.
@@ -98,7 +89,7 @@ void impulseToPenalty(const IslandStep& step, std::int32_t contact, const Contac
 }  // namespace
 
 bool mayFall(std::size_t blocks) {
-  return blocks >= kFewest && blocks < kParallelBlocks;
+  return blocks >= tuning::kMinRigidModeBlocks && blocks < tuning::kParallelBlocks;
 }
 
 IslandFacts islandFacts(const IslandStep& step) {
@@ -116,8 +107,8 @@ IslandFacts islandFacts(const IslandStep& step) {
   facts.mostlyFallen = 2 * fallen > facts.blocks;
   if (!facts.rigidBefore && !mayFall(facts.blocks)) return facts;
   const Motion motion = motionOf(step);
-  facts.fast = motion.isFasterThan(kFallSpeed);
-  facts.moving = motion.isFasterThan(kFallenSpeed);
+  facts.fast = motion.isFasterThan(tuning::kRigidEntrySpeed);
+  facts.moving = motion.isFasterThan(tuning::kRigidExitSpeed);
   return facts;
 }
 
@@ -161,9 +152,10 @@ IslandOutcome runFall(IslandStep& step, double begin_s) {
   double fastest = 0.0;
   for (const std::int32_t block : step.blocks)
     fastest = std::max(fastest, fastestCorner(simulation.state.velocity, static_cast<std::size_t>(block), Vec3::Zero()));
-  const double steps = fastest * simulation.scene.settings.frame_s / (kMaxFallDisplacement * simulation.lengths.blockHeight_m);
-  const IslandOutcome outcome =
-      runRigidSteps(step, std::clamp(static_cast<int>(std::ceil(steps)), kFallSteps, kMaxFallSteps), begin_s);
+  const double steps =
+      fastest * simulation.scene.settings.frame_s / (tuning::kMaxRigidModeDisplacement * simulation.lengths.blockHeight_m);
+  const IslandOutcome outcome = runRigidSteps(
+      step, std::clamp(static_cast<int>(std::ceil(steps)), tuning::kMinRigidModeSteps, tuning::kMaxRigidModeSteps), begin_s);
   for (const std::int32_t block : step.blocks) {
     BlockHistory& history = step.engine.memo.blockHistory[static_cast<std::size_t>(block)];
     history.lastExplicitStep_s = 0.0;

@@ -1,5 +1,7 @@
 #include "solver/frame/pairs.h"
 
+#include "core/tuning.h"
+
 #include <algorithm>
 #include <cstddef>
 #include <cstring>
@@ -132,7 +134,8 @@ void listIslandPairs(Simulation& simulation) {
   }
 
   bool parallel = false;
-  for (std::size_t i = 0; i < islands && !parallel; ++i) parallel = engine.memo.islands.island(i).size() >= kParallelBlocks;
+  for (std::size_t i = 0; i < islands && !parallel; ++i)
+    parallel = engine.memo.islands.island(i).size() >= tuning::kParallelBlocks;
   if (!parallel) return;
   const std::size_t blocks = simulation.model.blockCount();
   engine.memo.blockPairStart.assign(blocks + 1, 0);

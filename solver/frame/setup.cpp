@@ -1,4 +1,5 @@
 #include "core/error.h"
+#include "core/tuning.h"
 #include "solver/block/inertia.h"
 #include "solver/block/springs.h"
 #include "solver/explicit/stable_step.h"
@@ -48,11 +49,10 @@ double foreseenSpectralRadius(const Simulation& simulation, const Stiffness& sti
     setSprings(model, b, stiffness.spring_n_m, simulation.lengths.blockHeight_m, 0.0);
     springs = std::max(springs, blockSpectralRadius(model, settings.inertia, b));
   }
-  constexpr double kPointsPerSide = 12.0;  // three neighbours of four points
   const double compressionMass =
       inverseMass(settings.inertia).own / 2.0;  // 1/m times this, of the mode that presses a block flat
   const double contact =
-      std::max(2.0 * kPointsPerSide * stiffness.contact_n_m, 4.0 * stiffness.floor_n_m) / 4.0 * 2.0 * compressionMass;
+      std::max(2.0 * tuning::kPointsPerSide * stiffness.contact_n_m, 4.0 * stiffness.floor_n_m) / 4.0 * 2.0 * compressionMass;
   return springs + (1.0 + settings.viscoelasticRatio) * contact / lightest;
 }
 
@@ -139,8 +139,8 @@ Simulation::Simulation(const Scene& given) : scene(given), engine(std::make_uniq
   lengths.fallTime_s =
       std::sqrt(lengths.blockHeight_m / (scene.gravity.magnitude > 0.0 ? scene.gravity.magnitude : kStandardGravity_m_s2));
   dampingTime_s = scene.settings.dampingTime * lengths.fallTime_s;
-  lengths.contactError_m = kBornError * lengths.blockHeight_m;
-  lengths.partingGap_m = kPartingGap * lengths.blockHeight_m;
+  lengths.contactError_m = tuning::kFirstContactError * lengths.blockHeight_m;
+  lengths.partingGap_m = tuning::kPartingGap * lengths.blockHeight_m;
   chooseStiffness(*this);
   for (std::size_t b = 0; b < count; ++b) setSprings(model, b, springStiffness_n_m, lengths.blockHeight_m, dampingTime_s);
 
@@ -164,7 +164,7 @@ Simulation::Simulation(const Scene& given) : scene(given), engine(std::make_uniq
 void kick(Simulation& simulation, std::size_t block, const Vec3& velocity) {
   for (std::size_t c = 0; c < kCorners; ++c) simulation.state.velocity.add(block, c, velocity);
   simulation.engine->memo.blockHistory[block].lastImplicitStep_s = 0.0;
-  simulation.engine->memo.blockHistory[block].explicitFrames = kExplicitFrames;
+  simulation.engine->memo.blockHistory[block].explicitFrames = tuning::kExplicitFallbackFrames;
   simulation.restTime_s[block] = 0.0;
   wake(simulation, block, WakeReason::kick);
 }

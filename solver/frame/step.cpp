@@ -1,4 +1,5 @@
 #include "core/error.h"
+#include "core/tuning.h"
 #include "solver/block/inertia.h"
 #include "solver/contact/approach.h"
 #include "solver/contact/evaluate_forces.h"
@@ -32,13 +33,6 @@
 namespace springtower {
 
 namespace {
-
-// Steps of a frame at most: for what stands and begins to push, and for impacts, which are softer where that is not enough.
-constexpr int kMaxSubsteps = 100000;
-constexpr int kMaxImpactSubsteps = 6000;
-// Share of the usual margin for method `report`: near the springs' limit what semi-implicit Euler conserves is far from the
-// energy, and impulses that take energy add to it. At 0.7 a tower of six rows bursts, at 0.5 it stands and jitters.
-constexpr double kImpulseMargin = 0.5;
 
 // What may meet in an island during this frame.
 struct ApproachEstimate {
@@ -150,13 +144,13 @@ int chooseSubsteps(IslandStep& step) {
     const TetherRates held = tetherRates(step);
     const double begun = standing + (approach.meeting || wanted > 1.0 ? together * born : 0.0);
     const double needed = std::max(begun, standing + (wanted > 1.0 ? wanted * born : 0.0));
-    const double margin = settings.stepMargin * (settings.method == Method::report ? kImpulseMargin : 1.0);
+    const double margin = settings.stepMargin * (settings.method == Method::report ? tuning::kReportStepMargin : 1.0);
     const auto stepsFor = [&](double radius) {
       const double dt = stableStep(settings.method, radius + held.stiffness, simulation.dampingTime_s, margin) *
                         shortening(radius + held.stiffness, simulation.dampingTime_s, held.damping);
-      return std::clamp(std::ceil(settings.frame_s / dt), 1.0, static_cast<double>(kMaxSubsteps));
+      return std::clamp(std::ceil(settings.frame_s / dt), 1.0, static_cast<double>(tuning::kMaxExplicitSubsteps));
     };
-    substeps = static_cast<int>(std::min(stepsFor(needed), std::max<double>(kMaxImpactSubsteps, stepsFor(begun))));
+    substeps = static_cast<int>(std::min(stepsFor(needed), std::max<double>(tuning::kMaxImpactSubsteps, stepsFor(begun))));
     allowed = stableSpectralRadius(settings.method, settings.frame_s / substeps, simulation.dampingTime_s, settings.stepMargin);
     if (held.stiffness > 0.0) allowed = std::min(allowed, needed);
   }
@@ -246,13 +240,12 @@ IslandOutcome runIsland(IslandStep& step) {
 
 // Block turned inside out or flattened: the mean edges' volume against that of its dimensions.
 void checkShapes(const Simulation& simulation, std::span<const std::int32_t> blocks) {
-  constexpr double kMinVolume = 0.2;
   for (const std::int32_t block : blocks) {
     const auto b = static_cast<std::size_t>(block);
     const ParticleArray& x = simulation.state.position;
     const double volume =
         meanEdge(x, b, 0).cross(meanEdge(x, b, 1)).dot(meanEdge(x, b, 2)) / simulation.model.dimensions[b].prod();
-    if (volume > kMinVolume) continue;
+    if (volume > tuning::kMinVolumeRatio) continue;
     throw DivergenceError(fmt::format("block {} diverged at {:.6f} s: it was turned inside out (volume {:.3g} of its own)", block,
                                       simulation.time_s, volume),
                           block, simulation.time_s);
@@ -270,7 +263,7 @@ bool runIslands(Simulation& simulation) {
   prepareFrameStart(simulation);
   if (simulation.scene.settings.method == Method::report) prepareReportFrame(simulation);
   bool wide = false;
-  for (std::size_t i = 0; i < islands; ++i) wide = wide || engine.memo.islands.island(i).size() >= kParallelBlocks;
+  for (std::size_t i = 0; i < islands; ++i) wide = wide || engine.memo.islands.island(i).size() >= tuning::kParallelBlocks;
   engine.contacts.reserve(engine.pairs.size(), wide);
   if (engine.memo.topologyChanged) {
     for (const std::int32_t contact : engine.pairs.contact) {
@@ -311,7 +304,7 @@ void stepFrame(Simulation& simulation) {
   wakeForInputs(simulation);
   engine.scratch.lostPartners.clear();
   if (engine.sleep.awakeCount > 0) {
-    double margin = kSweepMargin * simulation.lengths.blockHeight_m;
+    double margin = tuning::kSweepMargin * simulation.lengths.blockHeight_m;
     findNearPairs(simulation, margin);
     while (true) {
       // The frame is run again where something was hit and left its swept box, with a wider one, so that no meeting is missed;
@@ -321,7 +314,7 @@ void stepFrame(Simulation& simulation) {
       const bool gaveWay = inside && wakeFailedSupports(simulation);
       if (inside && !gaveWay) break;
       ++simulation.counters.replayedFrames;
-      if (!inside) margin *= 4.0;
+      if (!inside) margin *= tuning::kReplayMarginGrowth;
       restoreFrame(simulation);
       if (simulation.scene.settings.method == Method::report) rewindReportFrame(simulation);
       findNearPairs(simulation, margin);

@@ -1,5 +1,6 @@
 #include "solver/hand/grip.h"
 
+#include "core/tuning.h"
 #include "solver/block/inertia.h"
 
 #include <Eigen/Geometry>
@@ -10,30 +11,12 @@
 namespace springtower {
 namespace {
 
-// How fast the hand takes up or hands over the weight; a few frames, so that a sudden loss of support does not jerk.
-constexpr double kCarryTime_s = 0.03;
-// Most force across its line that a hand which draws has, in the block's weights, and most torque, in what holds the block level
-// by its end.
-constexpr double kSteady = 1.5;
-// How fast a hand that draws gives in to the height at which its block lies.
-constexpr double kGiveIn_s = 0.05;
-// Way on which a hand comes to its speed, m: one that is there at once starts the tower swaying, by up to twice as much as it
-// asks of it.
-constexpr double kSettingOut_m = 0.002;
-// How far inside what it lies on such a hand keeps the centre of its block from tipping, in heights of the block.
-constexpr double kInside = 0.75;
-// Contacts that push upwards rather than aside, by the cosine.
-constexpr double kUpwards = 0.5;
-// Below this the block counts as free.
-constexpr double kTouch_n = 1e-4;
-
 // The stiffest follow that the scene's steps bear: explicit ones that a user has fixed leave little beyond the blocks' own
 // springs.
 double bearable(double rate_rad_s, const Simulation& simulation) {
-  constexpr double kShare = 0.1;  // of an angle a step: with critical damping a tenth of what is stable
   const Settings& settings = simulation.scene.settings;
   if (simulation.fixedSubsteps == 0 || isRigid(settings.method) || isImplicit(settings.method)) return rate_rad_s;
-  return std::min(rate_rad_s, kShare * simulation.fixedSubsteps / settings.frame_s);
+  return std::min(rate_rad_s, tuning::kMaxFollowAngle * simulation.fixedSubsteps / settings.frame_s);
 }
 
 // What lies under a block: how it lifts the block, N, and from where to where it reaches along a line from the block's centre, m.
@@ -48,7 +31,7 @@ Support supportOf(std::span<const ContactForce> contacts, BlockId block, const V
   for (const ContactForce& contact : contacts) {
     if (contact.upper != block && contact.lower != block) continue;
     const double sense = contact.upper == block ? 1.0 : -1.0;
-    if (!(contact.normalForce > 0.0) || sense * contact.normal.z() < kUpwards) continue;
+    if (!(contact.normalForce > 0.0) || sense * contact.normal.z() < tuning::kUpwardCosine) continue;
     const double along = (contact.point - middle).dot(line);
     support.from_m = std::min(support.from_m, along);
     support.to_m = std::max(support.to_m, along);
@@ -83,10 +66,10 @@ void turnOn(const Eigen::Quaterniond& wanted, double time_s, Grip& grip) {
   if (off.w() < 0.0) off.coeffs() *= -1.0;  // the shorter way round
   const Eigen::AngleAxisd angle(off);
   const Vec3 start = angle.angle() * angle.axis();
-  const Vec3 slope = grip.spin + kFollow_rad_s * start;
-  const double fade = std::exp(-kFollow_rad_s * time_s);
+  const Vec3 slope = grip.spin + tuning::kFollowFrequency_rad_s * start;
+  const double fade = std::exp(-tuning::kFollowFrequency_rad_s * time_s);
   const Vec3 left = fade * (start + time_s * slope);
-  grip.spin = fade * (slope - kFollow_rad_s * (start + time_s * slope));
+  grip.spin = fade * (slope - tuning::kFollowFrequency_rad_s * (start + time_s * slope));
   grip.turn = (rotation(left) * wanted).normalized();
 }
 
@@ -121,7 +104,7 @@ void hold(const Hand& hand, std::span<const ContactForce> contacts, Grip& grip, 
   if (grip.block != hand.block) {
     grip = {hand.block, missing, orientationOf(simulation.state.position, b), Vec3::Zero()};
   } else {
-    grip.carried += (1.0 - std::exp(-frame_s / kCarryTime_s)) * (missing - grip.carried);
+    grip.carried += (1.0 - std::exp(-frame_s / tuning::kWeightTransferTime_s)) * (missing - grip.carried);
   }
   const Eigen::Quaterniond before = grip.turn;
   turnOn(hand.turn, frame_s, grip);
@@ -139,18 +122,19 @@ void hold(const Hand& hand, std::span<const ContactForce> contacts, Grip& grip, 
   // Critically damped, both: a free mass on a spring, and the turn of a block held by its corners.
   const double cornerMass = mass / inverseMass(simulation.scene.settings.inertia).own;
   const double rate = bearable(hand.rate_rad_s, simulation);
-  const double level = bearable(kLevel_rad_s, simulation);
+  const double level = bearable(tuning::kOrientationFrequency_rad_s, simulation);
   tether.stiffness_n_m = mass * rate * rate;
   tether.damping_n_s_m = 2.0 * mass * rate;
   tether.cornerStiffness_n_m = cornerMass * level * level;
   tether.cornerDamping_n_s_m = 2.0 * cornerMass * level;
-  const double tilt = draws ? std::min(level, kTilt_rad_s) : level;
+  const double tilt = draws ? std::min(level, tuning::kDrawTiltFrequency_rad_s) : level;
   tether.tiltStiffness_n_m = cornerMass * tilt * tilt;
   tether.tiltDamping_n_s_m = 2.0 * cornerMass * tilt;
   tether.carried_n = -grip.carried * mass * gravity;
   tether.carriedOnEdges_n.setZero();
   if (draws && support.lift_n > 0.0) {
-    const double inside = std::min(kInside * simulation.model.dimensions[b].minCoeff(), 0.5 * (support.to_m - support.from_m));
+    const double inside =
+        std::min(tuning::kTippingMargin * simulation.model.dimensions[b].minCoeff(), 0.5 * (support.to_m - support.from_m));
     const double over = std::max(0.0, inside - support.to_m);
     tether.carriedOnEdges_n = forcesOnEdges(-over * mass * hand.line.cross(gravity), meanEdges(simulation.state.position, b));
   }
@@ -158,11 +142,13 @@ void hold(const Hand& hand, std::span<const ContactForce> contacts, Grip& grip, 
   std::sort(sides.data(), sides.data() + 3);
   tether.limit_n = hand.limit_n;
   tether.line = hand.line;
-  tether.acrossLimit_n = kSteady * weight;
+  tether.acrossLimit_n = tuning::kMaxTransverseForce * weight;
   // What two fingers on its sides can give, and no more than it takes to turn it by a radian as fast as it follows.
   const double moment = mass * sides[2] * sides[2] / 12.0;
-  tether.torqueLimit_n_m = std::min(0.5 * sides[1] * hand.limit_n, moment * kFollow_rad_s * kFollow_rad_s);
-  if (!hand.line.isZero(0.0)) tether.torqueLimit_n_m = std::min(tether.torqueLimit_n_m, 0.5 * kSteady * sides[2] * weight);
+  tether.torqueLimit_n_m =
+      std::min(0.5 * sides[1] * hand.limit_n, moment * tuning::kFollowFrequency_rad_s * tuning::kFollowFrequency_rad_s);
+  if (!hand.line.isZero(0.0))
+    tether.torqueLimit_n_m = std::min(tether.torqueLimit_n_m, 0.5 * tuning::kMaxTransverseForce * sides[2] * weight);
 }
 
 void letGo(Simulation& simulation) {
@@ -181,18 +167,18 @@ void advancePull(Draw& draw, std::span<const ContactForce> contacts, Simulation&
   const double reach = hand.limit_n / (simulation.model.mass[b] * hand.rate_rad_s * hand.rate_rad_s);
   const double ahead = (hand.place - centre(simulation.state.position, b)).dot(hand.line);
   const double frame_s = simulation.scene.settings.frame_s;
-  const double gained = draw.speed_m_s * draw.speed_m_s / (2.0 * kSettingOut_m) * (draw.drawn_s + 0.5 * frame_s);
+  const double gained = draw.speed_m_s * draw.speed_m_s / (2.0 * tuning::kDrawRampLength_m) * (draw.drawn_s + 0.5 * frame_s);
   draw.drawn_s += frame_s;
   hand.velocity = (ahead < reach ? std::min(draw.speed_m_s, gained) : 0.0) * hand.line;
   hand.place += frame_s * hand.velocity;
-  const double give = (1.0 - draw.grip.carried) * (1.0 - std::exp(-frame_s / kGiveIn_s));
+  const double give = (1.0 - draw.grip.carried) * (1.0 - std::exp(-frame_s / tuning::kHeightFollowTime_s));
   hand.place.z() += give * (centre(simulation.state.position, b).z() - hand.place.z());
   hold(hand, contacts, draw.grip, simulation);
 }
 
 Draw drawingFrom(const Simulation& simulation, BlockId block, const Vec3& direction, double speed_m_s, double limit_n) {
   Draw draw{handOn(simulation, block, limit_n), {}, speed_m_s};
-  draw.hand.rate_rad_s = kLead_rad_s;
+  draw.hand.rate_rad_s = tuning::kDrawFrequency_rad_s;
   draw.hand.line = direction;
   return draw;
 }
@@ -215,7 +201,7 @@ Hold holdOf(std::span<const ContactForce> contacts, BlockId block) {
     all += contact.normalForce;
     if (contact.sliding) sliding += contact.normalForce;
   }
-  if (all < kTouch_n) return Hold::free;
+  if (all < tuning::kFreeForce_n) return Hold::free;
   return sliding > 0.5 * all ? Hold::slips : Hold::sticks;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/tuning.h"
 #include "solver/world/simulation.h"
 
 #include <span>
@@ -10,22 +11,17 @@ namespace springtower {
 // of bounded force that are solved with all others. Nothing overwrites a velocity, so the hand is never stronger than
 // its limit (report 5.6 had to choose between a block that swings round the cursor and a hand with "super strength").
 
-inline constexpr double kGripForce_n = 5.0;     ///< N, the default limit
-inline constexpr double kFollow_rad_s = 50.0;   ///< natural frequency of the follow of a free block, 1/s
-inline constexpr double kLead_rad_s = 300.0;    ///< the same of a hand that leads its block along a line
-inline constexpr double kLevel_rad_s = 3000.0;  ///< and of its hold on the block's orientation
-inline constexpr double kTilt_rad_s = 100.0;    ///< but where it draws, on how the block leans: a hand that is as stiff as above
-                                                ///< presses it against rows that lean as the tower sways, and lifts what is light
+///< presses it against rows that lean as the tower sways, and lifts what is light
 
 /// What the hand wants in one frame.
 struct Hand {
   BlockId block = kFloor;                                    ///< kFloor: it holds nothing
   Vec3 place = Vec3::Zero();                                 ///< m, where the block's centre should be at the frame's end
   Eigen::Quaterniond turn = Eigen::Quaterniond::Identity();  ///< from the block's axes to the world's; unit
-  double limit_n = kGripForce_n;                             ///< N, most force; the torque is at most this times half the
+  double limit_n = tuning::kGripForce_n;                     ///< N, most force; the torque is at most this times half the
                                                              ///< block's middle side, what two fingers on its sides can give
   Vec3 velocity = Vec3::Zero();                              ///< m/s, of the place during the frame
-  double rate_rad_s = kFollow_rad_s;                         ///< how stiffly its place is followed
+  double rate_rad_s = tuning::kFollowFrequency_rad_s;        ///< how stiffly its place is followed
   Vec3 line = Vec3::Zero();                                  ///< unit where it draws along a line: it then lets the block lie as
                                                              ///< its supports do, and carries what hangs over them, so that its
                                                              ///< other end does not lift what lies on it; all by no more than
@@ -78,10 +74,10 @@ void advancePull(Draw& draw, std::span<const ContactForce> contacts, Simulation&
 
 /// A hand that will draw a block along a line from where it lies, at a speed.
 Draw drawingFrom(const Simulation& simulation, BlockId block, const Vec3& direction, double speed_m_s,
-                 double limit_n = kGripForce_n);
+                 double limit_n = tuning::kGripForce_n);
 
 /// A hand that takes a block as it lies.
-Hand handOn(const Simulation& simulation, BlockId block, double limit_n = kGripForce_n);
+Hand handOn(const Simulation& simulation, BlockId block, double limit_n = tuning::kGripForce_n);
 
 /// Whether the block is free, or held by its contacts, or slides: it slips when more than half of the normal force on it is on
 /// points that slide.

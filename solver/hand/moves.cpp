@@ -1,5 +1,6 @@
 #include "solver/hand/moves.h"
 
+#include "core/tuning.h"
 #include "solver/block/inertia.h"
 #include "solver/metrics/measures.h"
 
@@ -12,27 +13,11 @@
 namespace springtower {
 namespace {
 
-constexpr double kClear_m = 0.005;   // that a block is drawn out beyond its own length
-constexpr double kAbove_m = 0.03;    // of the tower's top, at which blocks are carried
-constexpr double kCarry_m_s = 0.25;  // speed of the hand
-constexpr double kTurn_rad_s = 4.0;  // and how fast it turns
-constexpr double kLower_m_s = 0.1;   // towards a place
-constexpr double kLay_m_s = 0.01;    // over its last part
-constexpr double kLayFrom_m = 0.004;
-constexpr double kThere_m = 2e-4;  // off its goal, and slower than the next, a block is there
-constexpr double kThere_m_s = 2e-3;
-constexpr double kPress_s = 0.15;    // from the first touch until the hand lets go
-constexpr double kStill_s = 0.3;     // before a drop
-constexpr double kLongest_s = 20.0;  // of any phase but drawing, which may take three times its length over its speed more
-constexpr double kAside_m = 0.25;    // from the tower's axis, where blocks are put aside
-constexpr double kAsideSpacing_m = 0.04;
 // From the middle of a row to its outer places.
 constexpr double kPitch_m = 0.5 * (kBlockLength_m - kBlockWidth_m);
-constexpr double kBeside_m = 2e-4;   // between a block that is laid down and its neighbours, at least
-constexpr double kInside_m = 0.001;  // outlines that overlap by less are side by side
 
 double longest(const Move& move, const MoveRun& run, const Vec3& size) {
-  return kLongest_s + (run.phase == MovePhase::draw ? 3.0 * size.maxCoeff() / move.speed_m_s : 0.0);
+  return tuning::kMaxPhaseTime_s + (run.phase == MovePhase::draw ? 3.0 * size.maxCoeff() / move.speed_m_s : 0.0);
 }
 
 void enter(MoveRun& run, MovePhase phase) {
@@ -95,8 +80,8 @@ double topBelow(const Simulation& simulation, BlockId but, const Vec3& middle, c
       least = least.cwiseMin(simulation.state.position.at(b, c));
       most = most.cwiseMax(simulation.state.position.at(b, c));
     }
-    const bool over =
-        (most - (middle - half)).head<2>().minCoeff() > kInside_m && (middle + half - least).head<2>().minCoeff() > kInside_m;
+    const bool over = (most - (middle - half)).head<2>().minCoeff() > tuning::kMinOutlineOverlap_m &&
+                      (middle + half - least).head<2>().minCoeff() > tuning::kMinOutlineOverlap_m;
     if (over) top = std::max(top, most.z());
   }
   return top;
@@ -132,8 +117,8 @@ void makeRoom(MoveRun& run, const Simulation& simulation, const Move& move, cons
     if (run.rigid[b].row != move.row) continue;
     for (std::size_t c = 0; c < kCorners; ++c) {
       const double at = simulation.state.position.at(b, c)[along];
-      if (run.rigid[b].position < move.position) least = std::max(least, at + half[along] + kBeside_m);
-      if (run.rigid[b].position > move.position) most = std::min(most, at - half[along] - kBeside_m);
+      if (run.rigid[b].position < move.position) least = std::max(least, at + half[along] + tuning::kPlaceGap_m);
+      if (run.rigid[b].position > move.position) most = std::min(most, at - half[along] - tuning::kPlaceGap_m);
     }
   }
   double& goal = run.goal[along];
@@ -150,7 +135,7 @@ void aim(MoveRun& run, const Simulation& simulation, const Move& move) {
   Ground ground;
   if (move.kind == MoveKind::putAside) {
     const auto count = static_cast<double>(std::count(run.leftOut.begin(), run.leftOut.end(), 1) - 1);
-    run.goal = {kAside_m, kAsideSpacing_m * count, 0.0};
+    run.goal = {tuning::kAsideDistance_m, tuning::kAsideSpacing_m * count, 0.0};
   } else {
     const bool across = move.row % 2 != 0;
     const double off = (move.position - 2) * kPitch_m;
@@ -180,7 +165,7 @@ bool leadTo(Hand& hand, const Vec3& goal, double speed_m_s, double frame_s) {
 
 bool isThere(const Simulation& simulation, BlockId block, const Vec3& goal) {
   const RigidMotion motion = rigidMotion(simulation.state, index(block));
-  return (motion.centre - goal).norm() < kThere_m && motion.velocity.norm() < kThere_m_s;
+  return (motion.centre - goal).norm() < tuning::kGoalDistance_m && motion.velocity.norm() < tuning::kGoalSpeed_m_s;
 }
 
 // Whether a block touches another; the floor does not keep it in the tower.
@@ -290,32 +275,36 @@ void follow(MoveRun& run, const Simulation& simulation, std::span<const ContactF
       break;
     case MovePhase::draw: {
       const double moved = (centre(simulation.state.position, b) - centre(run.before, b)).dot(hand.line);
-      if (moved < extentAlong(simulation, b, hand.line) + kClear_m || touchesBlocks(contacts, hand.block)) break;
+      if (moved < extentAlong(simulation, b, hand.line) + tuning::kDrawClearance_m || touchesBlocks(contacts, hand.block)) break;
       hand.line = Vec3::Zero();
       enter(run, MovePhase::lift);
       break;
     }
     case MovePhase::lift: {
-      const double top = topBelow(simulation, hand.block, Vec3::Zero(), Vec3::Constant(kAside_m - kBlockLength_m));
-      const Vec3 over{hand.place.x(), hand.place.y(), top + kAbove_m + move.drop_m};
-      if (!leadTo(hand, over, kCarry_m_s, frame_s) || !isThere(simulation, hand.block, over)) break;
+      const double top =
+          topBelow(simulation, hand.block, Vec3::Zero(), Vec3::Constant(tuning::kAsideDistance_m - kBlockLength_m));
+      const Vec3 over{hand.place.x(), hand.place.y(), top + tuning::kCarryClearance_m + move.drop_m};
+      if (!leadTo(hand, over, tuning::kCarrySpeed_m_s, frame_s) || !isThere(simulation, hand.block, over)) break;
       enter(run, move.kind == MoveKind::take ? MovePhase::rest : MovePhase::carry);
       break;
     }
     case MovePhase::carry: {
       const double left = hand.turn.angularDistance(run.goalTurn);
-      hand.turn = left > kTurn_rad_s * frame_s ? hand.turn.slerp(kTurn_rad_s * frame_s / left, run.goalTurn) : run.goalTurn;
+      hand.turn = left > tuning::kCarryTurnRate_rad_s * frame_s
+                      ? hand.turn.slerp(tuning::kCarryTurnRate_rad_s * frame_s / left, run.goalTurn)
+                      : run.goalTurn;
       const Vec3 over{run.goal.x(), run.goal.y(), hand.place.z()};
-      if (leadTo(hand, over, kCarry_m_s, frame_s) && left <= kTurn_rad_s * frame_s && isThere(simulation, hand.block, over)) {
+      if (leadTo(hand, over, tuning::kCarrySpeed_m_s, frame_s) && left <= tuning::kCarryTurnRate_rad_s * frame_s &&
+          isThere(simulation, hand.block, over)) {
         enter(run, MovePhase::lower);
       }
       break;
     }
     case MovePhase::lower: {
       const bool drops = move.kind == MoveKind::put && move.drop_m > 0.0;
-      const bool last = !drops && hand.place.z() < run.goal.z() + kLayFrom_m;
-      const Vec3 below = drops ? run.goal : Vec3(run.goal - kLayFrom_m * Vec3::UnitZ());
-      const bool there = leadTo(hand, below, last ? kLay_m_s : kLower_m_s, frame_s);
+      const bool last = !drops && hand.place.z() < run.goal.z() + tuning::kPlaceHeight_m;
+      const Vec3 below = drops ? run.goal : Vec3(run.goal - tuning::kPlaceHeight_m * Vec3::UnitZ());
+      const bool there = leadTo(hand, below, last ? tuning::kPlaceSpeed_m_s : tuning::kLowerSpeed_m_s, frame_s);
       // A block that bounces may be off the ground whenever a frame ends.
       if (!drops && (there || holdOf(contacts, hand.block) != Hold::free)) enter(run, MovePhase::press);
       if (drops && there && isThere(simulation, hand.block, below)) enter(run, MovePhase::still);
@@ -323,7 +312,7 @@ void follow(MoveRun& run, const Simulation& simulation, std::span<const ContactF
     }
     case MovePhase::press:
     case MovePhase::still:
-      if (run.phase_s < (run.phase == MovePhase::press ? kPress_s : kStill_s)) break;
+      if (run.phase_s < (run.phase == MovePhase::press ? tuning::kPressTime_s : tuning::kPreDropTime_s)) break;
       run.release = centre(simulation.state.position, b);
       hand.block = kFloor;
       enter(run, MovePhase::rest);
@@ -354,7 +343,7 @@ void guideHand(MoveRun& run, Simulation& simulation) {
   letGo(simulation);
   if (run.finished) return;
   if (run.phase == MovePhase::settle) {
-    if (simulation.frame == 0 || !(othersRest(run, simulation) || run.phase_s > kLongest_s)) {
+    if (simulation.frame == 0 || !(othersRest(run, simulation) || run.phase_s > tuning::kMaxPhaseTime_s)) {
       run.phase_s += simulation.scene.settings.frame_s;
       return;
     }

@@ -1,5 +1,6 @@
 #include "solver/implicit/equilibrium.h"
 
+#include "core/tuning.h"
 #include "solver/block/inertia.h"
 #include "solver/contact/births.h"
 #include "solver/contact/update.h"
@@ -14,24 +15,6 @@
 namespace springtower {
 
 namespace {
-
-// The first and the last step, in sqrt(h / g); in the last a block without support falls by 20 times its height.
-constexpr double kFirstStep = 0.012;
-constexpr double kLastStep = 4.6;
-constexpr double kGrowth = 2.0;
-constexpr int kMaxSteps = 60;
-// How often in a row a step is tried again, shorter.
-constexpr int kMaxRetries = 6;
-// Dashpots of contacts in these steps, in sqrt(h / g): they only hold up what comes to rest, and ones that last as long as a step
-// keep it from converging.
-constexpr double kMaxDamping = 1e-3;
-// Farthest that a corner may go in one of these steps, in tolerances; what goes farther is falling.
-constexpr double kFarthest = 20.0;
-// Farthest that a corner still goes in the last one, in tolerances.
-constexpr double kSettled = 1e-3;
-
-// Share of gravity's tilt up to which that at which an island stands is looked for.
-constexpr double kLeanStep = 0.01;
 
 // Whether all blocks touch something and none moves.
 bool mayRest(const IslandStep& step) {
@@ -71,20 +54,22 @@ bool settle(IslandStep& step) {
   const double tolerance = step.simulation.tolerance_m;
   const double fallTime_s = step.simulation.lengths.fallTime_s;
   const double travel_m = refreshTravel(step.simulation);  // blocks slide by tolerances at most here
-  double effective_s = kFirstStep * fallTime_s;
+  double effective_s = tuning::kFirstEquilibriumStep * fallTime_s;
   int retries = 0;
-  for (int i = 0; i < kMaxSteps; ++i) {
+  for (int i = 0; i < tuning::kMaxEquilibriumSteps; ++i) {
     setJacobians(step, effective_s);
     if (!stepFromRest(step, effective_s)) {
-      if (++retries > kMaxRetries) return false;
-      effective_s /= kGrowth * kGrowth;
+      if (++retries > tuning::kMaxEquilibriumRetries) return false;
+      effective_s /= tuning::kEquilibriumStepGrowth * tuning::kEquilibriumStepGrowth;
       continue;
     }
     retries = 0;
     const double farthest = stop(step);
-    if (!(farthest < kFarthest * tolerance) || !updateContacts(step, {travel_m, travel_m, travel_m})) return false;
-    if (effective_s >= kLastStep * fallTime_s && farthest < kSettled * tolerance) return true;
-    effective_s = std::min(kLastStep * fallTime_s, kGrowth * effective_s);
+    if (!(farthest < tuning::kMaxEquilibriumDisplacement * tolerance) || !updateContacts(step, {travel_m, travel_m, travel_m}))
+      return false;
+    if (effective_s >= tuning::kLastEquilibriumStep * fallTime_s && farthest < tuning::kEquilibriumTolerance * tolerance)
+      return true;
+    effective_s = std::min(tuning::kLastEquilibriumStep * fallTime_s, tuning::kEquilibriumStepGrowth * effective_s);
   }
   return false;
 }
@@ -97,7 +82,7 @@ bool startInEquilibrium(IslandStep& step) {
   step.maxStiffening = 1.0;
   step.unforced = true;
   const double damping_s = step.law.dampingTime_s;
-  step.law.dampingTime_s = std::min(damping_s, kMaxDamping * step.simulation.lengths.fallTime_s);
+  step.law.dampingTime_s = std::min(damping_s, tuning::kMaxEquilibriumDamping * step.simulation.lengths.fallTime_s);
   Gravity gravity = step.simulation.scene.gravity;
   const double tilt_deg = gravity.tilt_deg;
   const auto startAgain = [&] {
@@ -123,7 +108,7 @@ bool startInEquilibrium(IslandStep& step) {
   // to its foot keeps implicit steps from converging; a block alone feels none, and explicit steps bear it.
   if (!rests && tilt_deg != 0.0 && step.blocks.size() > 1 && isImplicit(step.simulation.scene.settings.method)) {
     double most = 0.0;
-    for (double least = 1.0; least - most > kLeanStep;) {
+    for (double least = 1.0; least - most > tuning::kTiltBisectionWidth;) {
       const double middle = 0.5 * (least + most);
       if (stands(middle)) {
         most = middle;

@@ -1,6 +1,7 @@
 #include "solver/implicit/gmres.h"
 
 #include "core/lanes.h"
+#include "core/tuning.h"
 #include "solver/implicit/friction_tangent.h"
 #include "solver/implicit/system.h"
 
@@ -10,15 +11,6 @@
 namespace springtower {
 
 namespace {
-
-// Directions tried for one correction, in narrow islands and at most.
-constexpr std::size_t kFewDirections = 6;
-constexpr std::size_t kMaxDirections = 30;
-// Half of what new factors cost may go into directions, and a product of a factorisation costs four times what a block of the
-// factors costs in a solution (measured: 3 to 4 from 200 to 1800 blocks).
-constexpr std::size_t kDirectionsPerProduct = 2;
-// Relative tolerance of the inner solve: the next Newton iteration sees what is left over.
-constexpr double kLeftOver = 0.002;
 
 // Low-rank structure: the tangent correction acts on few blocks, and right preconditioning makes the residual zero elsewhere, so
 // Krylov vectors of the residual are stored for those blocks only.
@@ -69,17 +61,17 @@ SPRINGTOWER_INLINE void applyTangents(NewtonSystem& island, double* force) {
 // Room for direction j and the forces that are left after it.
 void makeRoom(std::size_t j, std::size_t count, NewtonSystem& island) {
   const std::size_t all = island.affine.size();
-  const std::size_t room = std::max(kFewDirections, j + 1);
+  const std::size_t room = std::max(tuning::kMinGmresDirections, j + 1);
   if (island.coupledForce.size() < (room + 1) * count) island.coupledForce.resize((room + 1) * count);
   if (island.correction.size() < (room + 1) * all) island.correction.resize((room + 1) * all);
 }
 
 // Turns column j of the Hessenberg matrix into one of a triangle (Givens), and the right-hand side with it.
 struct LeastSquares {
-  double column[kMaxDirections][kMaxDirections + 1];
-  double cosine[kMaxDirections];
-  double sine[kMaxDirections];
-  double right[kMaxDirections + 1];
+  double column[tuning::kMaxGmresDirections][tuning::kMaxGmresDirections + 1];
+  double cosine[tuning::kMaxGmresDirections];
+  double sine[tuning::kMaxGmresDirections];
+  double right[tuning::kMaxGmresDirections + 1];
 
   void turn(std::size_t j) {
     double* h = column[j];
@@ -106,9 +98,10 @@ struct LeastSquares {
 }  // namespace
 
 std::size_t mostDirections(const NewtonSystem& island) {
-  if (island.residual.size() <= kNarrowBlocks) return kFewDirections;
+  if (island.residual.size() <= tuning::kNarrowBlocks) return tuning::kMinGmresDirections;
   const std::size_t blocks = std::max<std::size_t>(1, island.matrix.blockCount());
-  return std::clamp(kDirectionsPerProduct * island.matrix.products / blocks, kFewDirections, kMaxDirections);
+  return std::clamp(tuning::kGmresDirectionsPerProduct * island.matrix.products / blocks, tuning::kMinGmresDirections,
+                    tuning::kMaxGmresDirections);
 }
 
 bool solveCoupled(IslandStep& step, NewtonSystem& island, double allowed_n) {
@@ -118,7 +111,8 @@ bool solveCoupled(IslandStep& step, NewtonSystem& island, double allowed_n) {
     return true;
   }
   const std::size_t all = island.affine.size();
-  const double allowed = std::max(allowed_n, kLeftOver * std::sqrt(dot(island.affine.data(), island.affine.data(), all)));
+  const double allowed =
+      std::max(allowed_n, tuning::kGmresRelativeTolerance * std::sqrt(dot(island.affine.data(), island.affine.data(), all)));
   solve(step, island);
   findCoupledNodes(island);
   const std::size_t count = kNodeSize * island.coupled.size();

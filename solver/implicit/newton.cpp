@@ -1,4 +1,5 @@
 #include "core/lanes.h"
+#include "core/tuning.h"
 #include "solver/block/inertia.h"
 #include "solver/block/modes.h"
 #include "solver/contact/approach.h"
@@ -21,17 +22,6 @@ namespace springtower {
 
 namespace {
 
-constexpr int kMaxIterations = 12;
-// How often a step is solved again with contacts that it turned out to make.
-constexpr int kMaxMeetings = 4;
-// Residual force at which a step is taken, in weights of the block; in metres it is this share of the compression under its own
-// weight. Displacements are no measure: a sliding block hardly moves and is still wrong by a tenth of its friction.
-constexpr double kResidual = 1e-5;
-constexpr double kTolerance = 1.0;  // of residuals, which are in units of kResidual
-// Tolerance of the inner GMRES solve, in units of kResidual. It bounds the 2-norm over all blocks, Newton's test the largest
-// block. Smaller: wasted inner solves. Larger: more Newton iterations.
-constexpr double kSolved = 2.0;
-
 // When Newton's iteration stops, and from where on it uses the consistent tangent.
 struct NewtonOptions {
   int mostContactIterations;  // while the active set changes: a load front takes one iteration a row
@@ -40,35 +30,21 @@ struct NewtonOptions {
   double enough;              // relative tolerance, of the initial residual
 };
 
-// Newton settings in motion. 1e5 kResidual is one block weight: farther away than that, points are marked as slipping that will
-// stick, and Newton with the coupled friction cone diverges. A share of the initial residual may remain, up to kMaxLeft: a
+// Newton settings in motion. A share of the initial residual may remain, up to tuning::kMaxMotionResidual: a
 // ten-thousandth of a weight changes a speed by 4 micrometres a second, and the next step corrects it.
-constexpr NewtonOptions kInMotion{40, 1e5, 0.005};
-constexpr double kMaxLeft = 10.0;
+constexpr NewtonOptions kInMotion{tuning::kMaxActiveSetIterations, tuning::kConsistentTangentResidual, tuning::kRelativeResidual};
 // What does not converge in a few iterations does so in fewer with finer steps.
-constexpr NewtonOptions kBeforeFiner{kMaxIterations, 1e5, 0.005};
+constexpr NewtonOptions kBeforeFiner{tuning::kMaxNewtonIterations, tuning::kConsistentTangentResidual, tuning::kRelativeResidual};
 // In steps from rest the weight reaches the foot of a tower row by row, starting far from the solution. In a wide island the last
 // iterations have thousands of slipping points: without the consistent tangent each reduces the residual by only three
 // tenths, and rounding decides whether that suffices within the iteration limit (so a pyramid of 40 rows of cubes found its
 // equilibrium or did not).
-constexpr NewtonOptions kFromRest{40, 0.0, 0.0};
-constexpr NewtonOptions kWideFromRest{40, 1e5, 0.0};
+constexpr NewtonOptions kFromRest{tuning::kMaxActiveSetIterations, 0.0, 0.0};
+constexpr NewtonOptions kWideFromRest{tuning::kMaxActiveSetIterations, tuning::kConsistentTangentResidual, 0.0};
 
 NewtonSystem& islandOf(IslandStep& step) {
   return step.engine.memo.newtonSystems[static_cast<std::size_t>(step.blocks.front())];
 }
-
-// The line search accepts a share s of the direction d when |r(x + s d) . d| <= 0.5 |r(x) . d| (curvature condition; Nocedal &
-// Wright 2006, section 3.1).
-constexpr double kOvershoot = 0.5;
-constexpr int kMaxShares = 6;
-// Refactorise when the residual drops to no less than this share: friction directions have rotated away from those in the
-// factors.
-constexpr double kSlow = 0.3;
-// Share of the directions that are tried beside the factors from which on new ones cost less.
-constexpr double kOldDirections = 0.6;
-// A residual from which a step begins where the blocks are carried, not where they are: something moves.
-constexpr double kPredicted = 1.0;
 
 // The present active set. Before the first iteration nothing has moved yet, so points slip as they did in the step before.
 struct ActiveSet {
@@ -115,7 +91,7 @@ double findResidual(IslandStep& step, NewtonSystem& island, double effective_s) 
         largest = std::max(largest, std::abs(r));
       }
     }
-    worst = std::max(worst, largest / (kResidual * step.simulation.model.mass[b] * gravity));
+    worst = std::max(worst, largest / (tuning::kNewtonResidual * step.simulation.model.mass[b] * gravity));
   }
   return worst;
 }
@@ -201,17 +177,17 @@ double searchLine(IslandStep& step, NewtonSystem& island, double effective_s, do
   double residual = evaluateResidual(step, island, effective_s, clock);
   if (!std::isfinite(residual) || residual <= enough) return residual;
   double far = directionalDerivative(island);
-  if (far >= -kOvershoot * work) return residual;
+  if (far >= -tuning::kCurvatureCondition * work) return residual;
   double least = 0.0;  // share at which it still works forwards, and where it does no more
   double most = 1.0;
   double near = work;
-  for (int trial = 0; trial < kMaxShares; ++trial) {
+  for (int trial = 0; trial < tuning::kMaxLineSearchSteps; ++trial) {
     const double next = least + (most - least) * std::clamp(near / (near - far), 0.1, 0.9);
     applyStep(step, island, next - share, effective_s);
     share = next;
     residual = evaluateResidual(step, island, effective_s, clock);
     const double here = directionalDerivative(island);
-    if (std::abs(here) <= kOvershoot * work || residual <= enough) break;
+    if (std::abs(here) <= tuning::kCurvatureCondition * work || residual <= enough) break;
     (here > 0.0 ? least : most) = share;
     (here > 0.0 ? near : far) = here;
   }
@@ -257,7 +233,7 @@ double beginPredicted(IslandStep& step, NewtonSystem& island, double effective_s
 // so fast that its inertia alone asks for it.
 bool isCarried(const IslandStep& step, double effective_s) {
   const double gravity = std::max(step.simulation.scene.gravity.magnitude, 1.0);
-  const double most = kPredicted * kResidual * gravity * effective_s * effective_s / step.drift_s;
+  const double most = tuning::kPredictorResidual * tuning::kNewtonResidual * gravity * effective_s * effective_s / step.drift_s;
   bool moves = false;
   for (const std::int32_t block : step.blocks) {
     const auto b = static_cast<std::size_t>(block);
@@ -287,29 +263,32 @@ bool solveStep(IslandStep& step, double effective_s, bool carried, const NewtonO
   island.trialIsAhead = false;
   if (island.step_s != effective_s || tetherStiffness(step, effective_s) != island.tether) island.factorised = false;
   double residual = island.exceedsFill || carried ? 0.0 : findResidual(step, island, effective_s);
-  if (!island.exceedsFill && (carried || residual > kPredicted)) residual = beginPredicted(step, island, effective_s, how, clock);
-  const double enough = std::clamp(how.enough * residual, kTolerance, kMaxLeft);
-  const bool wide = step.blocks.size() > kNarrowBlocks && !island.exceedsFill;
+  if (!island.exceedsFill && (carried || residual > tuning::kPredictorResidual))
+    residual = beginPredicted(step, island, effective_s, how, clock);
+  const double enough = std::clamp(how.enough * residual, tuning::kNewtonTolerance, tuning::kMaxMotionResidual);
+  const bool wide = step.blocks.size() > tuning::kNarrowBlocks && !island.exceedsFill;
   if (wide && !island.trialIsAhead) residual = evaluateInPlace(step, island, effective_s, clock);
-  bool converged = wide && residual <= kTolerance;
-  int most = island.exceedsFill || converged ? 0 : kMaxIterations;
+  bool converged = wide && residual <= tuning::kNewtonTolerance;
+  int most = island.exceedsFill || converged ? 0 : tuning::kMaxNewtonIterations;
   bool slow = false;
   for (int iteration = 0; iteration < most; ++iteration) {
     island.useConsistentTangent = residual < how.near;
     const ActiveSet now = activeSetNow(step, island);
-    if (now.changed) most = std::min(how.mostContactIterations, iteration + kMaxIterations);
-    const bool old = iteration == 0 && island.directions >= kOldDirections * static_cast<double>(mostDirections(island));
+    if (now.changed) most = std::min(how.mostContactIterations, iteration + tuning::kMaxNewtonIterations);
+    const bool old =
+        iteration == 0 && island.directions >= tuning::kRefactorDirectionShare * static_cast<double>(mostDirections(island));
     const bool stale = (slow || old) && (now.changed || now.slides || now.limited);
     const bool renewed = stale || !island.factorised;
     if (renewed && !refactorise(step, island, effective_s)) break;
     const double before = residual;
     const bool differs = island.useConsistentTangent && (now.changed || now.slides || !island.factorTangents.empty());
-    if (!findCorrection(step, island, effective_s, kSolved * kResidual, differs) && !renewed) {
+    if (!findCorrection(step, island, effective_s, tuning::kGmresAbsoluteTolerance * tuning::kNewtonResidual, differs) &&
+        !renewed) {
       if (!refactorise(step, island, effective_s)) break;
-      findCorrection(step, island, effective_s, kSolved * kResidual, differs);
+      findCorrection(step, island, effective_s, tuning::kGmresAbsoluteTolerance * tuning::kNewtonResidual, differs);
     }
     residual = searchLine(step, island, effective_s, enough, clock);
-    slow = residual > kSlow * before;
+    slow = residual > tuning::kSlowConvergence * before;
     ++step.counters.implicitIterations;
     converged = residual <= enough;
     if (converged || !std::isfinite(residual)) break;
@@ -347,7 +326,7 @@ bool stepImplicit(IslandStep& step, bool finerFollow) {
   }
   const NewtonOptions& how = finerFollow ? kBeforeFiner : kInMotion;
   bool converged = solveStep(step, effective_s, carried, how);
-  for (int trial = 0; converged && trial < kMaxMeetings; ++trial) {
+  for (int trial = 0; converged && trial < tuning::kMaxNewContactSolves; ++trial) {
     StageClock clock(step.times);
     const FirstContact met = meetingsIn(step);
     clock.lap(Stage::candidates);
@@ -369,7 +348,7 @@ bool stepFromRest(IslandStep& step, double effective_s) {
   step.drift_s = effective_s / kBdf2;
   evaluateForces(step, step.simulation.state, step.simulation.state.velocity, 0.0, Memory::trial);
   predictEuler(step, effective_s);
-  NewtonOptions how = step.blocks.size() > kNarrowBlocks ? kWideFromRest : kFromRest;
+  NewtonOptions how = step.blocks.size() > tuning::kNarrowBlocks ? kWideFromRest : kFromRest;
   how.mostContactIterations = std::max(how.mostContactIterations, static_cast<int>(step.blocks.size()));
   return finishStep(step, solveStep(step, effective_s, false, how));
 }

@@ -1,5 +1,6 @@
 #include "solver/implicit/run.h"
 
+#include "core/tuning.h"
 #include "solver/contact/approach.h"
 #include "solver/contact/evaluate_forces.h"
 #include "solver/contact/update.h"
@@ -12,20 +13,6 @@ namespace springtower {
 
 namespace {
 
-// Steps of a frame where the user names none: where fewer do not do, and where a hand or a force moves something, at least.
-constexpr int kImplicitSteps = 4;
-constexpr int kForcedSteps = 2;
-// And where rigid steps have just handed a heap back, at least: it hardly moves, and has no swing that steps could damp.
-constexpr int kHandedBackSteps = 2;
-// Frames that rigid steps carry what has fallen before implicit ones are tried again.
-constexpr int kFallenFrames = 30;
-// Angle by which a block may turn in an implicit step, rad: the two-step formula turns along chords.
-constexpr double kMaxTurn = 0.01;
-
-// Farthest that a corner may go in a step, in block heights: the energy of what goes over, faster and faster, grows in longer
-// ones. A block alone that glides gains none: only as far as its corners would go about an edge counts.
-constexpr double kMaxDisplacementPerStep = 0.04;
-
 // Steps of a frame in which no corner goes farther than that.
 int stepsForDisplacement(const IslandStep& step) {
   const Simulation& simulation = step.simulation;
@@ -36,9 +23,9 @@ int stepsForDisplacement(const IslandStep& step) {
   for (const std::int32_t block : step.blocks)
     fastest = std::max(fastest, fastestCorner(velocity, static_cast<std::size_t>(block), glide));
   if (alone) fastest *= 2.0;
-  const double steps =
-      std::ceil(fastest * simulation.scene.settings.frame_s / (kMaxDisplacementPerStep * simulation.lengths.blockHeight_m));
-  return static_cast<int>(std::clamp(steps, 1.0, static_cast<double>(kMaxFrequencySteps)));
+  const double steps = std::ceil(fastest * simulation.scene.settings.frame_s /
+                                 (tuning::kMaxDisplacementPerStep * simulation.lengths.blockHeight_m));
+  return static_cast<int>(std::clamp(steps, 1.0, static_cast<double>(tuning::kMaxFrequencySteps)));
 }
 
 // Whether the island does so little that one step tells it as well as many.
@@ -59,8 +46,8 @@ bool isQuiescent(const IslandStep& step) {
   return true;
 }
 
-// Whether the island touches a sleeping block. Sleepers wake on a change of contact force; with fewer than kImplicitSteps steps,
-// numerical damping would filter out the vibration that should wake them.
+// Whether the island touches a sleeping block. Sleepers wake on a change of contact force; with fewer than
+// tuning::kStandardImplicitSteps steps, numerical damping would filter out the vibration that should wake them.
 bool touchesSleeping(const IslandStep& step) {
   return std::any_of(step.pairs.begin(), step.pairs.end(), [&](std::int32_t pair) {
     const auto at = static_cast<std::size_t>(pair);
@@ -74,16 +61,16 @@ int implicitSteps(const IslandStep& step, bool forced, bool known, bool heap) {
   const Settings& settings = step.simulation.scene.settings;
   if (settings.substeps > 0) return settings.substeps;
   const bool calm = isQuiescent(step) && !forced;
-  if (settings.method == Method::implicitEuler) return calm ? 1 : kImplicitSteps;
+  if (settings.method == Method::implicitEuler) return calm ? 1 : tuning::kStandardImplicitSteps;
   std::int32_t present = 1;
   for (const std::int32_t block : step.blocks) {
     const BlockHistory& history = step.engine.memo.blockHistory[static_cast<std::size_t>(block)];
     present = std::max(present, history.implicitSteps);
     known = known && history.lastImplicitStep_s > 0.0;
   }
-  int least = forced ? kForcedSteps : 1;
-  if (!calm && touchesSleeping(step)) least = kImplicitSteps;
-  if (!calm && !known) least = std::max(least, heap ? kHandedBackSteps : kMaxFrequencySteps);
+  int least = forced ? tuning::kMinForcedSteps : 1;
+  if (!calm && touchesSleeping(step)) least = tuning::kStandardImplicitSteps;
+  if (!calm && !known) least = std::max(least, heap ? tuning::kMinStepsAfterRigid : tuning::kMaxFrequencySteps);
   if (!calm && !forced) least = std::max(least, stepsForDisplacement(step));
   const int steps = std::max(least, stepsForFrequency(step, present));
   for (const std::int32_t block : step.blocks)
@@ -95,7 +82,7 @@ int implicitSteps(const IslandStep& step, bool forced, bool known, bool heap) {
 // whole face starts to slip at once.
 int retryStepCount(double share, int steps) {
   const auto of = [&](int frame) { return static_cast<int>(std::lround(share * frame)); };
-  return of(kImplicitSteps) > steps ? of(kImplicitSteps) : of(kMaxFrequencySteps);
+  return of(tuning::kStandardImplicitSteps) > steps ? of(tuning::kStandardImplicitSteps) : of(tuning::kMaxFrequencySteps);
 }
 
 // Restarts BDF2 (drops the history) when an external force ends: acceleration jumps, and the history is wrong. Not when one
@@ -168,7 +155,7 @@ bool implicitStepsFit(const IslandStep& step, double step_s) {
     const auto b = static_cast<std::size_t>(block);
     if (step.engine.memo.blockHistory[b].explicitFrames > 0) return false;
     const double turning = turningSpeed(affineField(simulation.state.position, b), affineField(simulation.state.velocity, b));
-    if (turning * step_s > kMaxTurn) return false;
+    if (turning * step_s > tuning::kMaxTurnPerStep) return false;
   }
   return true;
 }
@@ -185,8 +172,8 @@ IslandOutcome runImplicitSteps(IslandStep& step, bool heap, double& reached_s) {
   if (wasForced && !forced) resetHistory(step);
   int steps = implicitSteps(step, forced, forced == wasForced, heap);
   bool fits = implicitStepsFit(step, frame_s / steps);
-  if (!fits && steps < kImplicitSteps && simulation.scene.settings.substeps == 0) {
-    steps = kImplicitSteps;
+  if (!fits && steps < tuning::kStandardImplicitSteps && simulation.scene.settings.substeps == 0) {
+    steps = tuning::kStandardImplicitSteps;
     fits = implicitStepsFit(step, frame_s / steps);
   }
   for (const std::int32_t block : step.blocks) {
@@ -218,7 +205,8 @@ IslandOutcome runImplicitSteps(IslandStep& step, bool heap, double& reached_s) {
         continue;
       }
       for (const std::int32_t block : step.blocks)
-        engine.memo.blockHistory[static_cast<std::size_t>(block)].explicitFrames = heap ? kFallenFrames : kExplicitFrames;
+        engine.memo.blockHistory[static_cast<std::size_t>(block)].explicitFrames =
+            heap ? tuning::kRigidRetryFrames : tuning::kExplicitFallbackFrames;
       return outcome;
     }
     ++outcome.substeps;

@@ -12,9 +12,6 @@ constexpr double endShare(Method method) {
   return method == Method::implicitEuler ? 1.0 : kBdf2;
 }
 
-/// Frames that an island is stepped explicitly after an implicit step did not converge, or after a blow.
-inline constexpr int kExplicitFrames = 6;
-
 /// Sizes what method `implicit` needs: histories, factors, and each block's own matrix.
 void prepareImplicit(Simulation& simulation);
 

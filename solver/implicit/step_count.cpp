@@ -1,6 +1,7 @@
 #include "solver/implicit/step_count.h"
 
 #include "core/lanes.h"
+#include "core/tuning.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,33 +11,19 @@ namespace springtower {
 
 namespace {
 
-// Share of a swing's amplitude that the steps of a frame may take away. A kicked tower at 0.01 mm then keeps after 2 s within 13
-// % of what explicit steps leave it; with a hundredth within 27 %. At less than half of it fewer steps will do.
-constexpr double kMaxDamping = 1.0 / 150.0;
-constexpr double kLittleDamping = 1.0 / 300.0;
-// Frames over which ringing is looked at: more than a quarter of a swing that asks for more than one step.
-constexpr double kFrames = 5.0;
-
-// Angle, rad, by which the fastest ringing turns in a frame that is followed: that of the most steps. A jump of the acceleration
-// in one step, as of a force that a user sets each frame, counts for no more: it looks the faster the finer the steps are.
-constexpr double kFastestTurn = 1.9;
-
 double fourthPower(double value) {
   return value * value * value * value;
 }
 
 int stepsFor(double ringing, double damping) {
   const double steps = std::cbrt(ringing / (4.0 * damping));
-  return static_cast<int>(std::ceil(std::clamp(steps, 1.0, static_cast<double>(kMaxFrequencySteps))));
+  return static_cast<int>(std::ceil(std::clamp(steps, 1.0, static_cast<double>(tuning::kMaxFrequencySteps))));
 }
-
-// Distance that a calm block's corners go in a frame, in tolerances.
-constexpr double kCalm = 0.1;
 
 }  // namespace
 
 double quiescentSpeed(const Simulation& simulation) {
-  return kCalm * simulation.tolerance_m / simulation.scene.settings.frame_s;
+  return tuning::kQuiescentDisplacement * simulation.tolerance_m / simulation.scene.settings.frame_s;
 }
 
 SPRINGTOWER_KERNEL
@@ -44,10 +31,10 @@ void updateFrequencyEstimate(IslandStep& step, double effective_s) {
   Engine& engine = step.engine;
   const ParticleArray& velocity = step.simulation.state.velocity;
   const double frame_s = step.simulation.scene.settings.frame_s;
-  const double share = step.drift_s / (kFrames * frame_s);
+  const double share = step.drift_s / (tuning::kFrequencyWindowFrames * frame_s);
   const double rate = 1.0 / (step.drift_s * step.drift_s);
   const double ofVelocity = 3.0 / effective_s;
-  const double fastest = fourthPower(kFastestTurn / frame_s);
+  const double fastest = fourthPower(tuning::kMaxVibrationAngle / frame_s);
   for (const std::int32_t block : step.blocks) {
     const auto b = static_cast<std::size_t>(block);
     BlockHistory& past = engine.memo.blockHistory[b];
@@ -87,7 +74,7 @@ int stepsForFrequency(const IslandStep& step, int present) {
     motion += step.engine.memo.blockHistory[b].motion + simulation.model.mass[b] * static_cast<double>(kCorners) * calm * calm;
   }
   const double ringing = fourthPower(frame_s) * jerk / motion;  // (w T)^4
-  return std::clamp(present, stepsFor(ringing, kMaxDamping), stepsFor(ringing, kLittleDamping));
+  return std::clamp(present, stepsFor(ringing, tuning::kMaxStepDamping), stepsFor(ringing, tuning::kMinStepDamping));
 }
 
 }  // namespace springtower

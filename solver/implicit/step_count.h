@@ -4,9 +4,6 @@
 
 namespace springtower {
 
-/// Most implicit steps of a frame that ringing asks for.
-inline constexpr int kMaxFrequencySteps = 8;
-
 /// Speed of a block's corners, m/s, up to which one step a frame tells what they do as well as four.
 double quiescentSpeed(const Simulation& simulation);
 

@@ -2,6 +2,7 @@
 
 #include "core/hash.h"
 #include "core/lanes.h"
+#include "core/tuning.h"
 #include "solver/contact/evaluate_forces.h"
 #include "solver/implicit/friction_tangent.h"
 #include "solver/world/island_step.h"
@@ -14,12 +15,6 @@
 namespace springtower {
 
 namespace {
-
-// Products of 12 x 12 blocks that a factorisation may take: some 3 s of one thread, and a list of 120 MB. A tower of 18 rows
-// takes 800, a wall of 5000 blocks 340,000, a hundred layers deep solid of 5000 blocks 6 million.
-constexpr std::size_t kMaxFillProducts = 30'000'000;
-// Products, over those that it was found for, from which on an order of elimination is found anew.
-constexpr double kWorseOrder = 1.25;
 
 using Axes = std::array<std::array<double, 3>, 3>;
 using Weights = std::array<double, kAffine>;
@@ -179,10 +174,9 @@ void addTether(const IslandStep& step, NewtonSystem& island, double step_s) {
 // inertia is less than that beside the stiff contacts of 144 rows, and whether such a matrix is positive definite would else be
 // chance: with contact laws that differed by little, 144 rows took from 2 s to for ever to find where they rest.
 void stiffenByRounding(BlockCholesky& matrix) {
-  constexpr float kRounded = 1.0F + 64.0F * std::numeric_limits<float>::epsilon();
   for (std::size_t j = 0; j < matrix.nodeCount(); ++j) {
     float* block = matrix.diagonal.data() + kNodeMatrix * j;
-    for (std::size_t i = 0; i < kNodeSize; ++i) block[(kNodeSize + 1) * i] *= kRounded;
+    for (std::size_t i = 0; i < kNodeSize; ++i) block[(kNodeSize + 1) * i] *= tuning::kDiagonalRounding;
   }
 }
 
@@ -218,13 +212,13 @@ bool findOrder(NewtonSystem& island) {
     return findPattern(island.order.nodes, island.edges, mostProducts, island.matrix);
   };
   orderBottomUp(island.order);
-  const bool bandFits = fits(kMaxFillProducts);
-  if (island.order.centre.size() <= kNarrowBlocks) return bandFits;
-  const std::size_t products = bandFits ? island.matrix.products : kMaxFillProducts;
+  const bool bandFits = fits(tuning::kMaxFillProducts);
+  if (island.order.centre.size() <= tuning::kNarrowBlocks) return bandFits;
+  const std::size_t products = bandFits ? island.matrix.products : tuning::kMaxFillProducts;
   orderByDissection(island.edges, island.order);
   if (fits(products)) return true;
   orderBottomUp(island.order);
-  return bandFits && fits(kMaxFillProducts);
+  return bandFits && fits(tuning::kMaxFillProducts);
 }
 
 // Lays out the matrix for island.edges; false where it would take too many products. A wide island keeps its order of elimination
@@ -232,10 +226,10 @@ bool findOrder(NewtonSystem& island) {
 // and go far more often than the best order changes. `members` is a hash of the blocks.
 bool layOutMatrix(const IslandStep& step, NewtonSystem& island, std::uint64_t members) {
   BlockCholesky& matrix = island.matrix;
-  const bool known = island.members == members && step.blocks.size() > kNarrowBlocks;
+  const bool known = island.members == members && step.blocks.size() > tuning::kNarrowBlocks;
   if (known && holds(matrix, island.edges)) return true;
-  if (known && analyse(island.order.nodes, island.edges, kMaxFillProducts, matrix) &&
-      static_cast<double>(matrix.products) <= kWorseOrder * static_cast<double>(island.orderProducts))
+  if (known && analyse(island.order.nodes, island.edges, tuning::kMaxFillProducts, matrix) &&
+      static_cast<double>(matrix.products) <= tuning::kMaxFillGrowth * static_cast<double>(island.orderProducts))
     return true;
   island.members = 0;
   island.order.centre.clear();

@@ -1,6 +1,7 @@
 #include "solver/law/contact_force.h"
 
 #include "core/lanes.h"
+#include "core/tuning.h"
 #include "solver/law/pair_geometry.h"
 #include "solver/law/point_lanes.h"
 
@@ -10,13 +11,6 @@
 namespace springtower {
 
 namespace {
-
-constexpr double kMinMaxwellRatio = 1e-9;  // stands for none: no branch, no lag
-constexpr double kMinShare = 1e-30;        // of friction, left to a point that slides unpressed: that it slides must be seen
-
-// Inverse mass of a point of a face whose four points are pushed alike, over that of the block: 4 (1 + 3), as it moves and
-// squashes.
-constexpr double kFlatInverse = 16.0;
 
 struct LawStep {
   const ContactLaw& law;
@@ -39,7 +33,7 @@ SPRINGTOWER_INLINE LawStep lawStep(const ContactView& m, const ContactLaw& law, 
           1.0 / (1.0 + step.advance_s / law.stiffeningTime_s),
           step.advance_s / (law.maxwellTime_s + step.advance_s),
           step.advance_s > 0.0 ? 1.0 / step.advance_s : 0.0,
-          reducedMass / kFlatInverse};
+          reducedMass / tuning::kFlatImpactInverseMass};
 }
 
 SPRINGTOWER_INLINE bool any(const LaneMask& mask) {
@@ -92,7 +86,7 @@ SPRINGTOWER_INLINE void frictionLaw(const LawStep& s, const PointState& state, c
   Lanes size;
   squareRoot(squared, size);
   const Lanes keep = slides ? law.kineticFriction * push / size : one;
-  p.slipRatio = slides & touching ? (keep > kMinShare ? keep : zero + kMinShare) : zero;
+  p.slipRatio = slides & touching ? (keep > tuning::kMinSlipRatio ? keep : zero + tuning::kMinSlipRatio) : zero;
   // What slips frees a little of the offset; friction's own loss pays for the work.
   Lanes displacementSize;
   squareRoot(displacement[0] * displacement[0] + displacement[1] * displacement[1] + displacement[2] * displacement[2],
@@ -129,7 +123,7 @@ SPRINGTOWER_INLINE void pointLaw(const LawStep& s, const Lanes& depth, const Lan
   const Lanes elastic = depth - p.restDepth;
   const Lanes maxwell = p.maxwellDepth + (elastic - p.maxwellDepth) * s.maxwellGain;
   const Lanes pushedOut =
-      elastic * (1.0 + 1.0 / std::max(law.maxwellRatio, kMinMaxwellRatio));  // beyond this the branch would pull
+      elastic * (1.0 + 1.0 / std::max(law.maxwellRatio, tuning::kMinMaxwellRatio));  // beyond this the branch would pull
   p.maxwellDepth = known ? (maxwell < pushedOut ? maxwell : pushedOut) : zero;
   const Lanes stiffness = s.stiffness * p.stiffening;
   // Implicit steps only: a point that makes contact inside the step has been closing for a part of it. Its damping velocity is

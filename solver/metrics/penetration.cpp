@@ -1,5 +1,7 @@
 #include "solver/metrics/penetration.h"
 
+#include "core/tuning.h"
+
 #include <algorithm>
 #include <array>
 #include <limits>
@@ -11,9 +13,6 @@ namespace {
 using Corners = Eigen::Array<double, kCorners, 1>;
 using Bounds = PenetrationWorkspace::Bounds;
 using Pair = PenetrationWorkspace::Pair;
-
-// Cross products of edges closer to parallel than this (sine of the angle) have no direction worth testing.
-constexpr double kParallelSine = 1e-6;
 
 Corners corners(const ParticleArray& position, std::size_t block, std::size_t axis) {
   return Eigen::Map<const Corners>(position.values(axis, block));
@@ -126,7 +125,7 @@ double overlapDepth(const ParticleArray& position, std::size_t first, std::size_
     for (const Vec3& edgeB : boxB.axis) {
       const Vec3 axis = edgeA.cross(edgeB);
       const double sine = axis.norm();
-      if (sine > kParallelSine && !stillDeep(axis / sine)) return std::max(depth, 0.0);
+      if (sine > tuning::kPenetrationParallelSine && !stillDeep(axis / sine)) return std::max(depth, 0.0);
     }
   }
   return depth;

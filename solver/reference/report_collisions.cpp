@@ -1,5 +1,6 @@
 #include "solver/reference/report_collisions.h"
 
+#include "core/tuning.h"
 #include "narrowphase/exact/cubic.h"
 #include "narrowphase/exact/time_of_impact.h"
 #include "narrowphase/separation.h"
@@ -12,8 +13,6 @@ namespace springtower {
 
 namespace {
 
-// Edges whose directions are nearer to parallel than this (sine of the angle) do not collide; their ends do, with faces.
-constexpr double kParallelEdgeSine = 0.01;
 // The straight paths of one block's corners. A disabled block does not move.
 struct Path {
   std::int32_t block;
@@ -163,7 +162,7 @@ bool collideEdges(IslandStep& step, const Path& a, const Path& b, const Vec3& fr
       const MovingPoint b1 = b.corner(edgeB[1]);
       // Two lines have no front. Here it lies where the first block is from the second, as for any two convex bodies that touch.
       const Vec3 across = (a1.start - a0.start).cross(b1.start - b0.start);
-      const double parallel = kParallelEdgeSine * (a1.start - a0.start).norm() * (b1.start - b0.start).norm();
+      const double parallel = tuning::kReportParallelSine * (a1.start - a0.start).norm() * (b1.start - b0.start).norm();
       if (across.squaredNorm() < parallel * parallel) continue;
       const bool forwards = across.dot(fromBToA) >= 0.0;
       if (!passesToBack(forwards ? coplanarityCubic(a0, a1, b0, b1) : coplanarityCubic(a1, a0, b0, b1))) continue;

@@ -1,5 +1,6 @@
 #include "solver/reference/report_response.h"
 
+#include "core/tuning.h"
 #include "solver/block/inertia.h"
 
 #include <algorithm>
@@ -9,13 +10,6 @@
 namespace springtower {
 
 namespace {
-
-// The report accepts roots of its cubic this far outside the step (its appendix 2.7): what touches as the step begins, give or
-// take a rounding, still collides. Paths are tested that much longer at both ends.
-constexpr double kTimeThreshold = 0.01;
-// A disabled block is enabled by an impulse that would give one of its particles this speed, in sqrt(g h) (report 4.7 leaves the
-// threshold open): a collision at a few block heights a second, while what rests on it gives less.
-constexpr double kEnablingSpeed = 0.2;
 
 // Inverse mass of a weighted point: (own sum of w^2 - shared) / m; with equal corner masses the sum of w_i^2 / m_i.
 double inverseMassOf(const IslandStep& step, const ReportSide& side) {
@@ -62,7 +56,8 @@ void note(IslandStep& step, const ReportContact& contact) {
   if (!firstSleeps && !sleeps(contact.second)) return;
   const std::int32_t sleeper = firstSleeps ? contact.first : contact.second;
   const double particle = simulation.model.mass[static_cast<std::size_t>(sleeper)] / static_cast<double>(kCorners);
-  const double speed = kEnablingSpeed * std::sqrt(simulation.scene.gravity.magnitude * simulation.lengths.blockHeight_m);
+  const double speed =
+      tuning::kReportEnablingSpeed * std::sqrt(simulation.scene.gravity.magnitude * simulation.lengths.blockHeight_m);
   if (contact.impulse > speed * particle) report.struck[owner].push_back(sleeper);
 }
 
@@ -105,8 +100,8 @@ void layPath(IslandStep& step, std::size_t b) {
     double* high = report.high.values(a, b);
     for (std::size_t c = 0; c < kCorners; ++c) {
       const double move = step.drift_s * v[c];
-      from[c] = x[c] - kTimeThreshold * move;
-      to[c] = x[c] + (1.0 + kTimeThreshold) * move;
+      from[c] = x[c] - tuning::kReportTimeThreshold * move;
+      to[c] = x[c] + (1.0 + tuning::kReportTimeThreshold) * move;
       low[c] = std::min(from[c], to[c]);
       high[c] = std::max(from[c], to[c]);
     }

@@ -1,3 +1,4 @@
+#include "core/tuning.h"
 #include "solver/contact/rigid_contacts.h"
 #include "solver/rigid/methods.h"
 #include "solver/rigid/run.h"
@@ -10,15 +11,6 @@ namespace springtower {
 
 namespace {
 
-// Share of an overlap that a step pushes out.
-constexpr double kPush = 0.2;
-// Softness that keeps the matrix regular where four points carry what three could, as a share of its diagonal.
-constexpr double kSoftness = 1e-6;
-// Velocities below this count as zero, m/s.
-constexpr double kStill = 1e-12;
-// Pivots for each row before the solution is taken as it stands.
-constexpr std::size_t kMaxPivots = 20;
-
 // A linear complementarity problem with bounds: velocity = matrix impulse + velocity0, each row either clamped (velocity 0) or
 // at a bound of its impulse. Rows enter one by one, as Baraff (1994) has it: a new row's impulse grows from zero, the clamped
 // rows keep their velocities at zero, and whatever reaches a bound on the way changes sides.
@@ -28,9 +20,9 @@ class Pivoting {
 
   // Brings row `row` in. Where that takes too many pivots the row is left as it stands: the method cycles.
   void drive(std::size_t row) {
-    if (s_.least[row] == 0.0 && s_.velocity[row] >= -kStill) return;
-    for (std::size_t pivot = 0; pivot < kMaxPivots * rows_; ++pivot) {
-      if (std::abs(s_.velocity[row]) <= kStill) {
+    if (s_.least[row] == 0.0 && s_.velocity[row] >= -tuning::kLcpZeroSpeed_m_s) return;
+    for (std::size_t pivot = 0; pivot < tuning::kMaxLcpPivotsPerRow * rows_; ++pivot) {
+      if (std::abs(s_.velocity[row]) <= tuning::kLcpZeroSpeed_m_s) {
         clamp(row);
         return;
       }
@@ -198,7 +190,7 @@ void assemble(IslandStep& step, RigidIsland& island) {
     const RigidContact& contact = island.contacts[row.contact];
     s.velocity[i] = relativeVelocity(island, contact).dot(contact.direction[row.direction]);
     if (row.direction == 0) {
-      s.velocity[i] += (contact.gap > 0.0 ? 1.0 : kPush) * contact.gap / step.drift_s;
+      s.velocity[i] += (contact.gap > 0.0 ? 1.0 : tuning::kLcpBaumgarte) * contact.gap / step.drift_s;
       s.most[i] = std::numeric_limits<double>::infinity();
     }
     for (std::size_t j = 0; j <= i; ++j) {
@@ -207,7 +199,7 @@ void assemble(IslandStep& step, RigidIsland& island) {
           coupling(island, contact, contact.direction[row.direction], island.contacts[column.contact],
                    island.contacts[column.contact].direction[column.direction]);
     }
-    s.matrix[i * rows + i] *= 1.0 + kSoftness;
+    s.matrix[i * rows + i] *= 1.0 + tuning::kLcpSoftness;
   }
 }
 

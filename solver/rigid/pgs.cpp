@@ -1,3 +1,4 @@
+#include "core/tuning.h"
 #include "solver/contact/rigid_contacts.h"
 #include "solver/rigid/constraints.h"
 #include "solver/rigid/methods.h"
@@ -11,19 +12,6 @@ namespace springtower {
 
 namespace {
 
-// Contacts push back like overdamped springs of an eighth of the step's rate: firm enough to hold, and what the passes have not
-// yet settled is forgotten little by little rather than kept as jitter.
-constexpr double kContactRate = 0.125;  // in steps
-constexpr double kDampingRatio = 10.0;  // of the critical
-// Share of their overlap by which blocks that fall are pushed apart in a step: the weight of what lies on one another sinks into
-// no softness, to come up again.
-constexpr double kFallPush = 0.05;
-// Overlap, in heights, from which on a pass is too little for a fall: a blow then goes through several blocks at once.
-constexpr double kDeep = 0.005;
-constexpr int kDeepPasses = 3;
-// Speed that blocks are pushed apart with at most, in sqrt(g h).
-constexpr double kPushSpeed = 0.86;
-
 // A soft constraint: `rate` of the gap is closed in a second, `mass` and `impulse` are the shares of the rigid answer and of the
 // impulse so far.
 struct Softness {
@@ -33,8 +21,8 @@ struct Softness {
 };
 
 Softness softness(double step_s) {
-  const double omega = 2.0 * std::numbers::pi * kContactRate / step_s;
-  const double a = 2.0 * kDampingRatio + step_s * omega;
+  const double omega = 2.0 * std::numbers::pi * tuning::kSoftContactRate / step_s;
+  const double a = 2.0 * tuning::kSoftDampingRatio + step_s * omega;
   const double b = step_s * omega * a;
   return {omega / a, b / (1.0 + b), 1.0 / (1.0 + b)};
 }
@@ -156,7 +144,7 @@ bool notePushed(RigidIsland& island) {
 
 // Whether any two blocks overlap by much.
 bool isDeep(const IslandStep& step, const RigidIsland& island) {
-  const double deep = -kDeep * step.simulation.lengths.blockHeight_m;
+  const double deep = -tuning::kDeepOverlap * step.simulation.lengths.blockHeight_m;
   return std::any_of(island.points.begin(), island.points.end(), [&](const ContactConstraint& p) { return p.gap < deep; });
 }
 
@@ -172,10 +160,9 @@ double kineticEnergy(const std::vector<RigidBody>& bodies) {
 // Energy clamp: if push-out or unconverged passes raised kinetic energy beyond the work of gravity, scales all velocities down by
 // the excess, at most 1 % of the energy a step.
 void removeAddedEnergy(std::vector<RigidBody>& bodies, double added) {
-  constexpr double kMaxShare = 0.01;
   if (added <= 0.0) return;
   const double kinetic = kineticEnergy(bodies);
-  const double left = std::sqrt(1.0 - std::min(kMaxShare, added / kinetic));
+  const double left = std::sqrt(1.0 - std::min(tuning::kMaxEnergyRemoval, added / kinetic));
   for (RigidBody& body : bodies) {
     body.velocity *= left;
     body.spin *= left;
@@ -188,8 +175,8 @@ void runPasses(IslandStep& step, RigidIsland& island, int passes, bool push) {
   Pass pass;
   pass.step_s = step.drift_s;
   pass.kinetic = scene.kineticFriction;
-  pass.most = kPushSpeed * step.simulation.lengths.blockHeight_m / step.simulation.lengths.fallTime_s;
-  pass.soft = isRigid(scene.settings.method) ? softness(step.drift_s) : Softness{kFallPush / step.drift_s};
+  pass.most = tuning::kMaxPushSpeed * step.simulation.lengths.blockHeight_m / step.simulation.lengths.fallTime_s;
+  pass.soft = isRigid(scene.settings.method) ? softness(step.drift_s) : Softness{tuning::kRigidModeBaumgarte / step.drift_s};
   pass.push = push;
   if (push) applyKnown(island.movers, island.points);
   for (int i = 0; i < passes; ++i) solvePoints(pass, island.movers, island.points);
@@ -208,7 +195,7 @@ void solveAndIntegratePgs(IslandStep& step, RigidIsland& island, bool again) {
   applyForces(step);
   gatherPoints(step, island, again);
   int passes = step.simulation.scene.settings.iterations;
-  if (falls && isDeep(step, island)) passes = std::max(passes, kDeepPasses);
+  if (falls && isDeep(step, island)) passes = std::max(passes, tuning::kDeepOverlapPasses);
   runPasses(step, island, passes, true);
   island.touches = notePushed(island);
   for (RigidBody& body : island.bodies) {

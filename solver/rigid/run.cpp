@@ -1,6 +1,7 @@
 #include "solver/rigid/run.h"
 
 #include "core/lanes.h"
+#include "core/tuning.h"
 #include "solver/block/affine.h"
 #include "solver/block/inertia.h"
 #include "solver/contact/evaluate_forces.h"
@@ -17,13 +18,6 @@
 namespace springtower {
 
 namespace {
-
-// Steps of a frame where the user names none: as many as keep the game's tower of 18 rows within the default tolerance.
-constexpr int kRigidSubsteps = 64;
-// The pivoting method solves its contacts exactly, and slowly.
-constexpr int kPivotingSubsteps = 4;
-// How often a step is taken again because of contacts found in it.
-constexpr int kMaxRepeats = 4;
 
 // Of a cuboid m (b^2 + c^2) / 12; with the mass in eight corners three times as much.
 Eigen::Matrix3d momentOf(const Simulation& simulation, std::size_t block, const RigidBody& body) {
@@ -143,7 +137,7 @@ void prepareRigid(Simulation& simulation) {
 
 int rigidSubsteps(const Settings& settings) {
   if (settings.substeps > 0) return settings.substeps;
-  return settings.method == Method::rigidLcp ? kPivotingSubsteps : kRigidSubsteps;
+  return settings.method == Method::rigidLcp ? tuning::kLcpSubsteps : tuning::kRigidSubsteps;
 }
 
 void turnAxes(const Vec3& angle, Eigen::Matrix3d& axes) {
@@ -233,7 +227,7 @@ IslandOutcome runRigidSteps(IslandStep& step, int steps, double begin_s) {
       const std::uint64_t born = step.counters.contactsBorn;
       stepOnce(step, repeat > 0);
       outcome.inside = findContacts(step);
-      if (!outcome.inside || born == step.counters.contactsBorn || repeat == kMaxRepeats) break;
+      if (!outcome.inside || born == step.counters.contactsBorn || repeat == tuning::kMaxRigidStepRepeats) break;
       restoreStep(step);
       recomputeClearances(step);
     }

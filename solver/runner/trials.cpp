@@ -1,5 +1,6 @@
 #include "solver/runner/trials.h"
 
+#include "core/tuning.h"
 #include "solver/block/inertia.h"
 #include "solver/statics/friction_limit.h"
 
@@ -10,11 +11,6 @@
 
 namespace springtower {
 namespace {
-
-constexpr double kQuickShare = 0.9;  // of what friction bears: reached in kQuickTime_s, then slowly
-constexpr double kQuickTime_s = 1.5;
-constexpr double kSlowShare_s = 0.01;
-constexpr double kMaxShare = 1.5;
 
 double friction_n(const Simulation& simulation, double normal_n) {
   return simulation.scene.staticFriction * normal_n;
@@ -111,9 +107,11 @@ SlipTrial pullUntilSlip(Simulation& simulation, std::size_t block, const Vec3& d
   const double begin_s = simulation.time_s;
   while (!trial.slipped) {
     trial.time_s = simulation.time_s + simulation.scene.settings.frame_s - begin_s;
-    const double share = trial.time_s < kQuickTime_s ? kQuickShare * trial.time_s / kQuickTime_s
-                                                     : kQuickShare + kSlowShare_s * (trial.time_s - kQuickTime_s);
-    if (share > kMaxShare) break;
+    const double share =
+        trial.time_s < tuning::kSlipRampQuickTime_s
+            ? tuning::kSlipRampQuickShare * trial.time_s / tuning::kSlipRampQuickTime_s
+            : tuning::kSlipRampQuickShare + tuning::kSlipRampSlowRate_per_s * (trial.time_s - tuning::kSlipRampQuickTime_s);
+    if (share > tuning::kMaxSlipRampShare) break;
     trial.force_n = share * borne_n;
     simulation.scene.forces = {forceNow(simulation, block, trial.force_n * direction)};
     const std::vector<ContactForce> before = contactForces(simulation);

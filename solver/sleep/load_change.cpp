@@ -1,5 +1,6 @@
 #include "solver/sleep/load_change.h"
 
+#include "core/tuning.h"
 #include "solver/contact/query.h"
 #include "solver/sleep/support_check.h"
 
@@ -9,18 +10,6 @@
 namespace springtower {
 
 namespace {
-
-// Change of force, in a block's weights, that counts at all.
-constexpr double kChange = 0.02;
-// Change of force, in a block's weights, and of torque, in its weight times its height, that is left unbalanced when a neighbour
-// has come to rest. Six of them are less than the thousandth that counts as balanced.
-constexpr double kUnbalanced = 1e-4;
-// A sleeper may absorb a change of normal force of up to this share of the load it carried when it fell asleep: the contacts
-// around it then change their compression by at most the same share.
-constexpr double kBorne = 0.35;
-// Share of the friction of its contacts with sleepers that may hold a block against friction of awake ones. A third of a row that
-// is drawn out asks for a fifth of it, half a row for a third; so some is left of what it takes to slip.
-constexpr double kHeld = 0.35;
 
 double weightOf(const Simulation& simulation, std::int32_t block) {
   return simulation.model.mass[static_cast<std::size_t>(block)] * simulation.scene.gravity.magnitude;
@@ -42,7 +31,7 @@ void addChange(Simulation& simulation, std::size_t at, std::int32_t sleeper) {
   const double sign = sleeper == engine.pairs.key[at].a ? 1.0 : -1.0;
   const ContactWrench now = pushOnA(simulation, at);
   const Vec3 difference = sign * (now.force - before.force);
-  const double least = kChange * weightOf(simulation, sleeper);
+  const double least = tuning::kMinLoadChange * weightOf(simulation, sleeper);
   const bool pushed = before.force.norm() > least;
   const bool pushes = now.force.norm() > least;
   change.begunOrLost = change.begunOrLost || pushed != pushes;
@@ -81,16 +70,17 @@ bool bears(const Simulation& simulation, std::int32_t block) {
   const auto b = static_cast<std::size_t>(block);
   const LoadChange& change = simulation.engine->scratch.loadChange[b];
   if (change.begunOrLost) return false;
-  if (change.force.norm() <= kChange * weightOf(simulation, block)) return true;
+  if (change.force.norm() <= tuning::kMinLoadChange * weightOf(simulation, block)) return true;
   const double longest = simulation.model.dimensions[b].maxCoeff();
   const double middle = simulation.model.dimensions[b].sum() - longest - simulation.model.dimensions[b].minCoeff();
   const Vec3 across = change.force - change.side.dot(change.force) * change.side;
   const double twist = std::abs(change.side.dot(change.torque));
   const Vec3 tilting = change.torque - change.side.dot(change.torque) * change.side;
-  if (std::abs(change.side.dot(change.force)) > kBorne * change.load_n) return false;
-  if (tilting.norm() > kBorne * change.load_n * middle) return false;
+  if (std::abs(change.side.dot(change.force)) > tuning::kMaxNormalLoadChange * change.load_n) return false;
+  if (tilting.norm() > tuning::kMaxNormalLoadChange * change.load_n * middle) return false;
   const double shear = change.shear.norm() + 4.0 * twist / longest;
-  return across.norm() <= kChange * weightOf(simulation, block) || shear <= kHeld * change.hold_n;
+  return across.norm() <= tuning::kMinLoadChange * weightOf(simulation, block) ||
+         shear <= tuning::kMaxFrictionUse * change.hold_n;
 }
 
 }  // namespace
@@ -109,7 +99,7 @@ void recordSleepLoads(Simulation& simulation, std::span<const std::uint8_t> stay
         pair.b < 0 ? -1 : (sleeps(simulation, pair.a) ? pair.a : (sleeps(simulation, pair.b) ? pair.b : -1));
     if (sleeper >= 0) {
       const auto s = static_cast<std::size_t>(sleeper);
-      const double most = kUnbalanced * weightOf(simulation, sleeper);
+      const double most = tuning::kSleepImbalance * weightOf(simulation, sleeper);
       const Vec3 force = now.force - before.force;
       const Vec3 torque = now.torque - before.torque - centre(simulation.state.position, s).cross(force);
       if (force.norm() <= most && torque.norm() <= most * simulation.model.dimensions[s].minCoeff()) continue;
@@ -139,7 +129,7 @@ bool findWakeCandidates(Simulation& simulation) {
       change = {};
     }
     addChange(simulation, at, sleeper);
-    const double least = kChange * weightOf(simulation, sleeper);
+    const double least = tuning::kMinLoadChange * weightOf(simulation, sleeper);
     changed = changed || change.begunOrLost || change.force.norm() > least ||
               change.torque.norm() > least * simulation.model.dimensions[static_cast<std::size_t>(sleeper)].minCoeff();
   }

@@ -1,5 +1,6 @@
 #include "solver/sleep/rest.h"
 
+#include "core/tuning.h"
 #include "narrowphase/separation.h"
 #include "solver/block/inertia.h"
 #include "solver/contact/approach.h"
@@ -12,16 +13,6 @@
 namespace springtower {
 
 namespace {
-
-// How much longer than others a block is at rest that falls asleep beside restless ones.
-constexpr double kPatience = 4.0;
-// Speed from which on a block hits a sleeper rather than being laid on it, in sqrt(g h).
-constexpr double kHit = 0.05;
-// Speed from which on a block that slides on sleepers, or is drawn over them, shakes all they touch before what it does to them
-// can be looked at, alike; a player's 4 cm/s are half of it.
-constexpr double kRush = 0.2;
-// What gravity may have turned since the last block fell asleep, in g.
-constexpr double kWakeGravity = 1e-4;
 
 double timeScale(const Simulation& s) {
   return std::sqrt(s.lengths.blockHeight_m / std::max(s.scene.gravity.magnitude, 1e-9));
@@ -94,9 +85,9 @@ bool isStruck(const Simulation& simulation, std::size_t at, std::int32_t awake, 
   const bool held = simulation.tether.block == blockId(block);
   const double speed =
       std::max(fastestCorner(simulation.state.velocity, block, Vec3::Zero()), held ? simulation.tether.velocity.norm() : 0.0);
-  if (anyPointTouches(contactOf(*simulation.engine, at))) return speed > kRush * scale;
+  if (anyPointTouches(contactOf(*simulation.engine, at))) return speed > tuning::kWakeSlideSpeed * scale;
   const bool falls = !supported && !held;
-  if (!falls && speed <= kHit * scale) return false;
+  if (!falls && speed <= tuning::kWakeImpactSpeed * scale) return false;
   const double frame_s = simulation.scene.settings.frame_s;
   const ParticleArray& position = simulation.state.position;
   const Separation separation = findSeparation(cornersOf(position, static_cast<std::size_t>(pair.a)),
@@ -107,7 +98,7 @@ bool isStruck(const Simulation& simulation, std::size_t at, std::int32_t awake, 
   for (std::size_t c = 0; c < kCorners; ++c) closing = std::max(closing, simulation.state.velocity.at(block, c).dot(towards));
   const double fall = falls ? std::max(0.0, simulation.scene.gravity.at(simulation.time_s).dot(towards)) : 0.0;
   if (gap > frame_s * (closing + 0.5 * fall * frame_s)) return false;
-  return std::sqrt(closing * closing + 2.0 * fall * gap) > kHit * scale;
+  return std::sqrt(closing * closing + 2.0 * fall * gap) > tuning::kWakeImpactSpeed * scale;
 }
 
 double restNeeded(const Simulation& simulation) {
@@ -198,7 +189,7 @@ void putToSleep(Simulation& simulation) {
   engine.scratch.joined.resize(simulation.asleep.size());
   connectedBlocks(engine.scratch.touchingEdges, engine.scratch.restless, engine.scratch.parent, engine.scratch.joined);
   for (const std::int32_t block : engine.scratch.awakeBlocks) {
-    const bool patient = simulation.restTime_s[static_cast<std::size_t>(block)] >= kPatience * needed;
+    const bool patient = simulation.restTime_s[static_cast<std::size_t>(block)] >= tuning::kSingleSleepFactor * needed;
     if (patient && ready(block) && !nearCounts) engine.scratch.joined[static_cast<std::size_t>(block)] = 0;
   }
   engine.scratch.toWake.clear();
@@ -229,7 +220,7 @@ void wakeForInputs(Simulation& simulation) {
   if (engine.sleep.awakeCount == simulation.asleep.size()) return;
   const double frame_s = simulation.scene.settings.frame_s;
   const Vec3 gravity = simulation.scene.gravity.at(simulation.time_s + frame_s);
-  if ((gravity - engine.sleep.gravity).norm() > kWakeGravity * simulation.scene.gravity.magnitude) {
+  if ((gravity - engine.sleep.gravity).norm() > tuning::kWakeGravityChange * simulation.scene.gravity.magnitude) {
     for (std::size_t b = 0; b < simulation.asleep.size(); ++b) wake(simulation, b, WakeReason::gravity);
     return;
   }

@@ -1,5 +1,6 @@
 #include "solver/sleep/support_check.h"
 
+#include "core/tuning.h"
 #include "solver/contact/query.h"
 #include "solver/sleep/support_solver.h"
 
@@ -9,21 +10,6 @@
 namespace springtower {
 
 namespace {
-
-// Safety factor of the support check: a sleeping group must resist 1.5 times the change of load on it. Too small wakes late (a
-// wrong result), too large wakes early (slow). For scale: pulling the middle block of a full row uses half of the outer blocks'
-// friction.
-constexpr double kMargin = 1.5;
-// Contacts below a block rather than beside it, by the cosine.
-constexpr double kBeneath = 0.5;
-// Change of what is done to a block, as a share of what goes through it, that is not worth asking again.
-constexpr double kSame = 0.1;
-// Change of force, as a share of what bears a group, that is felt at all; of torque, as a share of that times a block's height.
-constexpr double kFelt = 0.01;
-// Blocks whose centres differ by less than this share of a height are of one storey.
-constexpr double kStorey = 0.5;
-// Share of its friction from which on a point of an awake block counts as sliding.
-constexpr double kSliding = 0.9;
 
 double heightOf(const Simulation& simulation, std::int32_t block, const Vec3& up) {
   return centre(simulation.state.position, static_cast<std::size_t>(block)).dot(up);
@@ -68,9 +54,9 @@ void listSleepers(Simulation& simulation, const Vec3& up) {
   path.blocks.assign(engine.scratch.pushed.begin(), engine.scratch.pushed.end());
   for (const std::int32_t block : path.blocks) {
     LoadChange& change = engine.scratch.loadChange[static_cast<std::size_t>(block)];
-    change.torque =
-        kMargin * (change.torque + centre(simulation.state.position, static_cast<std::size_t>(block)).cross(change.force));
-    change.force *= kMargin;
+    change.torque = tuning::kSupportSafetyFactor *
+                    (change.torque + centre(simulation.state.position, static_cast<std::size_t>(block)).cross(change.force));
+    change.force *= tuning::kSupportSafetyFactor;
   }
   for (std::size_t i = 0; i < path.blocks.size(); ++i) {
     const std::int32_t block = path.blocks[i];
@@ -91,7 +77,7 @@ void listSleepers(Simulation& simulation, const Vec3& up) {
 
 // Whether one sleeper of a pair bears the other: what only leans on another, or lies beside it, does not go with it.
 bool bears(const SleepLoad& load, const Vec3& up) {
-  return std::abs(load.force.dot(up)) > kBeneath * load.force.norm();
+  return std::abs(load.force.dot(up)) > tuning::kSupportCosine * load.force.norm();
 }
 
 // Adds a sleeper to the groups above the level: it joins those it bears, and opens the pairs below it.
@@ -151,7 +137,7 @@ Vec3 findSupports(Simulation& simulation, std::span<const SupportPair> beneath, 
     const std::int32_t above = isAbove(path, pair.a) ? pair.a : pair.b;
     const PointForces points = forcesNow(simulation, contact);
     const double sense = contact.upper == above ? 1.0 : -1.0;
-    if (!(sense * points.direction.dot(up) > kBeneath)) continue;
+    if (!(sense * points.direction.dot(up) > tuning::kSupportCosine)) continue;
     const bool awake = !sleeps(simulation, pair.a == above ? pair.b : pair.a);
     for (std::size_t i = 0; i < static_cast<std::size_t>(contact.count); ++i) {
       if (!(points.normal[i] > 0.0)) continue;
@@ -161,7 +147,7 @@ Vec3 findSupports(Simulation& simulation, std::span<const SupportPair> beneath, 
       point.normal = sense * points.direction;
       point.force = sense * (points.normal[i] * points.direction + friction);
       point.friction = scene.staticFriction;
-      if (awake && friction.norm() > kSliding * scene.kineticFriction * points.normal[i]) {
+      if (awake && friction.norm() > tuning::kAwakeSlidingShare * scene.kineticFriction * points.normal[i]) {
         point.state = SupportState::slip;
         point.slide = sense * friction;
         point.friction = scene.kineticFriction;
@@ -185,7 +171,8 @@ bool supportHolds(Simulation& simulation, std::int32_t group, std::span<const Su
   const Vec3 torque = change.torque - middle.cross(change.force);
   double borne = 0.0;
   for (const SupportPoint& point : supports) borne += point.normal.dot(point.force);
-  if (change.force.norm() <= kFelt * borne && torque.norm() <= kFelt * borne * height) return true;
+  if (change.force.norm() <= tuning::kMinGroupLoadChange * borne && torque.norm() <= tuning::kMinGroupLoadChange * borne * height)
+    return true;
   return redistribute(supports, change.force, torque, height, simulation.scene.settings.tangentialRatio);
 }
 
@@ -197,7 +184,7 @@ bool isKnownToStay(Simulation& simulation) {
                                [&](const CheckedLoad& before, std::int32_t block) {
                                  const auto b = static_cast<std::size_t>(block);
                                  const LoadChange& now = engine.scratch.loadChange[b];
-                                 const double most = kSame * now.load_n;
+                                 const double most = tuning::kRepeatLoadChange * now.load_n;
                                  return before.block == block && (now.force - before.force).norm() <= most &&
                                         (now.torque - before.torque).norm() <= most * simulation.model.dimensions[b].minCoeff();
                                });
@@ -224,7 +211,7 @@ bool findFailedSupports(Simulation& simulation) {
   bool gives = false;
   std::size_t above = 0;  // how many blocks are above the level
   while (above < path.blocks.size()) {
-    const double level = heightOf(simulation, path.blocks[above], up) - kStorey * simulation.lengths.blockHeight_m;
+    const double level = heightOf(simulation, path.blocks[above], up) - tuning::kLevelHeight * simulation.lengths.blockHeight_m;
     for (; above < path.blocks.size() && heightOf(simulation, path.blocks[above], up) > level; ++above) {
       addToGroups(simulation, path.blocks[above], up);
     }

@@ -1,5 +1,7 @@
 #include "solver/sleep/support_solver.h"
 
+#include "core/tuning.h"
+
 #include <Eigen/Cholesky>
 #include <cmath>
 
@@ -9,13 +11,6 @@ namespace {
 
 using Vec6 = Eigen::Matrix<double, 6, 1>;
 using Mat6 = Eigen::Matrix<double, 6, 6>;
-
-// Rounds in which points lift off and begin to slide.
-constexpr int kRounds = 12;
-// How far friction may be off its cone, over the mean friction of the points.
-constexpr double kSlip = 0.02;
-// Least stiffness against any motion, over the stiffest: below it a block on its supports is free to move.
-constexpr double kFree = 1e-6;
 
 // What the springs of a point do against a motion of it.
 Eigen::Matrix3d stiffnessOf(const SupportPoint& point, double tangentialRatio) {
@@ -63,8 +58,8 @@ bool redistribute(std::span<SupportPoint> points, const Vec3& force, const Vec3&
   if (points.empty()) return false;
   double friction_n = 0.0;
   for (const SupportPoint& point : points) friction_n += point.friction * point.normal.dot(point.force);
-  const double slip_n = kSlip * friction_n / static_cast<double>(points.size());
-  for (int round = 0; round < kRounds; ++round) {
+  const double slip_n = tuning::kSupportConeTolerance * friction_n / static_cast<double>(points.size());
+  for (int round = 0; round < tuning::kMaxSupportRounds; ++round) {
     Mat6 stiffness = Mat6::Zero();
     Vec6 load;
     load << -force, -torque / length_m;
@@ -80,7 +75,7 @@ bool redistribute(std::span<SupportPoint> points, const Vec3& force, const Vec3&
       load.tail<3>() -= turn.transpose() * given;
     }
     const Eigen::LDLT<Mat6> factors(stiffness);
-    if (!(factors.vectorD().minCoeff() > kFree * factors.vectorD().maxCoeff())) return false;
+    if (!(factors.vectorD().minCoeff() > tuning::kMinSupportStiffness * factors.vectorD().maxCoeff())) return false;
     const Vec6 moved = factors.solve(load);
     bool kept = true;
     for (SupportPoint& point : points) {

@@ -1,5 +1,7 @@
 #include "solver/statics/contacts.h"
 
+#include "core/tuning.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,16 +11,6 @@
 
 namespace springtower {
 namespace {
-
-// Shares of the least side of the two blocks: distances below the first are none, and a face wins over a crossing of edges that
-// separates better by less than the second.
-constexpr double kTouch = 4e-6;
-constexpr double kFaceSlack = 1e-5;
-constexpr double kClipSlack = 1e-8;
-// Sine of the angle under which edges are parallel, and faces flat on each other.
-constexpr double kParallel = 1e-6;
-// Cosine of the angle between the vertical and the normal of a pair of which one lies over the other.
-constexpr double kOver = 0.866;
 
 struct Box {
   Vec3 centre;
@@ -63,7 +55,7 @@ Axis bestAxis(const Box& a, const Box& b, double slack) {
     for (int j = 0; j < 3; ++j) {
       const Vec3 product = a.axes.col(i).cross(b.axes.col(j));
       const double sine = product.norm();
-      if (sine < kParallel) continue;
+      if (sine < tuning::kStaticParallelSine) continue;
       const Axis axis = axisAlong(product / sine, a, b, i, j);
       if (axis.gap > edge.gap) edge = axis;
     }
@@ -125,12 +117,12 @@ std::vector<Vec3> overlapOfFaces(const Box& reference, const Box& incident, cons
     if (a == face.across) continue;
     const Vec3 side = reference.axes.col(a);
     const double middle = reference.centre.dot(side);
-    const double half = reference.half[a] + kClipSlack * size;
+    const double half = reference.half[a] + tuning::kStaticClipSlack * size;
     polygon = clipped(polygon, side, half + middle);
     polygon = clipped(polygon, -side, half - middle);
   }
-  const bool flat = face.normal.cross(other.normal).norm() < kParallel;
-  if (flat && areaOf(polygon) < kTouch * size * size) polygon.clear();
+  const bool flat = face.normal.cross(other.normal).norm() < tuning::kStaticParallelSine;
+  if (flat && areaOf(polygon) < tuning::kStaticTouchGap * size * size) polygon.clear();
   return polygon;
 }
 
@@ -153,8 +145,8 @@ Vec3 crossingOnA(const Box& a, const Box& b, const Axis& axis) {
 }
 
 void addPoint(FacePair& facing, const Vec3& place, double gap, double size, double reach) {
-  const double touch = kTouch * size;
-  if (gap > touch && (gap > reach || std::abs(facing.normal.z()) < kOver)) return;
+  const double touch = tuning::kStaticTouchGap * size;
+  if (gap > touch && (gap > reach || std::abs(facing.normal.z()) < tuning::kStaticOverCosine)) return;
   const bool known = std::any_of(facing.points.begin(), facing.points.end(),
                                  [&](const FacingPoint& point) { return (point.place - place).norm() <= touch; });
   if (!known) facing.points.push_back({place, gap > touch ? gap : 0.0});
@@ -162,10 +154,10 @@ void addPoint(FacePair& facing, const Vec3& place, double gap, double size, doub
 
 std::optional<FacePair> facingOf(const std::vector<Box>& boxes, std::size_t first, std::size_t second, double reach) {
   const double size = 2.0 * std::min(boxes[first].half.minCoeff(), boxes[second].half.minCoeff());
-  Axis axis = bestAxis(boxes[first], boxes[second], kFaceSlack * size);
-  if (axis.gap > std::max(reach, kTouch * size)) return {};
+  Axis axis = bestAxis(boxes[first], boxes[second], tuning::kStaticFaceSlack * size);
+  if (axis.gap > std::max(reach, tuning::kStaticTouchGap * size)) return {};
   // The block that lies higher along the axis is the upper one.
-  if (axis.direction.z() < -kParallel) {
+  if (axis.direction.z() < -tuning::kStaticParallelSine) {
     std::swap(first, second);
     axis = {-axis.direction, axis.gap, axis.ofB, axis.ofA};
   }
@@ -219,7 +211,7 @@ std::vector<FacePair> facingBlocks(const Scene& scene, double reach_m) {
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return low[a] < low[b]; });
   std::vector<FacePair> result;
-  const double margin = std::max(reach_m, kTouch * thickest);
+  const double margin = std::max(reach_m, tuning::kStaticTouchGap * thickest);
   for (std::size_t i = 0; i < order.size(); ++i) {
     const std::size_t a = order[i];
     if (scene.floor) {

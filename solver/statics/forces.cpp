@@ -1,16 +1,12 @@
 #include "solver/statics/forces.h"
 
+#include "core/tuning.h"
+
 #include <Eigen/SparseCholesky>
 #include <cmath>
 
 namespace springtower {
 namespace {
-
-constexpr int kMaxRefinements = 200;
-constexpr double kMaxImbalance = 1e-9;
-constexpr double kDamping = 1e-10;  // keeps the matrix regular where a block touches nothing; far below any stiffness
-constexpr double kMinStep = 1e-10;
-constexpr double kArmijo = 1e-4;
 
 // Nearest point of the cone |tangent| <= friction * normal, and how it follows its argument.
 struct Projection {
@@ -67,7 +63,7 @@ class Dual {
         for (int j = 0; j < 6; ++j) entries.emplace_back(6 * row + i, 6 * column + j, block(i, j));
       }
     };
-    for (int i = 0; i < imbalance_.size(); ++i) entries.emplace_back(i, i, kDamping);
+    for (int i = 0; i < imbalance_.size(); ++i) entries.emplace_back(i, i, tuning::kForceRegularisation);
     for (std::size_t i = 0; i < usable_.size(); ++i) {
       const ForcePoint& point = model_.points[usable_[i]];
       add(point.upper, point.upper, upper_[i] * derivatives_[i] * upper_[i].transpose());
@@ -109,18 +105,18 @@ std::optional<std::vector<Vec3>> leastSquaresForces(const StaticsModel& model, s
   Eigen::VectorXd displacement = Eigen::VectorXd::Zero(load.size());
   double value = dual.evaluate(displacement);
   dual.pretendAllStick();
-  for (int step = 0; step < kMaxRefinements; ++step) {
+  for (int step = 0; step < tuning::kMaxForceRefinements; ++step) {
     const Eigen::VectorXd imbalance = dual.imbalance();
-    if (imbalance.cwiseAbs().maxCoeff() <= kMaxImbalance) return dual.forces();
+    if (imbalance.cwiseAbs().maxCoeff() <= tuning::kMaxForceImbalance) return dual.forces();
     const Eigen::VectorXd direction = dual.newtonStep();
     const double slope = imbalance.dot(direction);
     double length = 1.0;
     for (;; length *= 0.5) {
-      if (!(length > kMinStep)) return {};
+      if (!(length > tuning::kMinForceStep)) return {};
       const double next = dual.evaluate(displacement + length * direction);
       // Near the end the value no longer resolves the progress; the imbalance does.
       const bool balances = dual.imbalance().norm() < 0.9 * imbalance.norm() && std::abs(next - value) <= 1e-9 * std::abs(value);
-      if (next <= value + kArmijo * length * slope || balances) {
+      if (next <= value + tuning::kArmijo * length * slope || balances) {
         value = next;
         break;
       }

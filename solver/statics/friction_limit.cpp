@@ -1,6 +1,7 @@
 #include "solver/statics/friction_limit.h"
 
 #include "core/state.h"
+#include "core/tuning.h"
 
 #include <ClpSimplex.hpp>
 #include <array>
@@ -13,7 +14,6 @@
 namespace springtower {
 namespace {
 
-constexpr int kSides = 64;
 constexpr int kRows = 3;  // of a block: two forces and a torque
 
 // The columns of a linear programme, one after the other, as CLP takes them.
@@ -48,8 +48,8 @@ double frictionLimit_n(const Simulation& simulation, std::span<const ContactForc
   for (const ContactForce& contact : contacts) {
     if (!(contact.normalForce > 0.0)) continue;
     const double most = simulation.scene.staticFriction * contact.normalForce / force_n;
-    for (int side = 0; side < kSides; ++side) {
-      const double angle = 2.0 * std::numbers::pi * side / kSides;
+    for (int side = 0; side < tuning::kFrictionLimitSides; ++side) {
+      const double angle = 2.0 * std::numbers::pi * side / tuning::kFrictionLimitSides;
       const std::array<double, 2> friction = {most * std::cos(angle), most * std::sin(angle)};
       const auto push = [&](BlockId on, double sign, const Vec3& place) {
         if (on == kFloor) return;

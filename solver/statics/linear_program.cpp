@@ -1,5 +1,7 @@
 #include "solver/statics/linear_program.h"
 
+#include "core/tuning.h"
+
 #include <ClpSimplex.hpp>
 #include <algorithm>
 #include <array>
@@ -12,14 +14,10 @@
 namespace springtower {
 namespace {
 
-constexpr int kFirstSides = 4;  // edges of every pyramid that are there from the start
-constexpr double kTolerance = 1e-9;
-constexpr double kPriceTolerance = 1e-8;
-constexpr double kMaxRowImbalance = 1e-7;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 double angleOf(int side) {
-  return 2.0 * std::numbers::pi * side / kConeSides;
+  return 2.0 * std::numbers::pi * side / tuning::kConeSides;
 }
 
 // What is missing to balance, up and down in each row.
@@ -44,8 +42,8 @@ void prepare(ClpSimplex& clp, int rows) {
   // Forces come in block weights and lengths in block heights: what is scaled already must not be scaled again, as columns that
   // join later would not be.
   clp.scaling(0);
-  clp.setPrimalTolerance(kTolerance);
-  clp.setDualTolerance(kTolerance);
+  clp.setPrimalTolerance(tuning::kLpTolerance);
+  clp.setDualTolerance(tuning::kLpTolerance);
   clp.resize(rows, 0);
 }
 
@@ -60,8 +58,8 @@ struct EquilibriumProgram::Solver {
 
   const StaticsModel& model;
   std::vector<std::size_t> usable;
-  std::vector<std::bitset<kConeSides>> present;  // of each usable point, which edges are columns
-  std::vector<Edge> edges;                       // in the order of their columns, which start at firstEdge
+  std::vector<std::bitset<tuning::kConeSides>> present;  // of each usable point, which edges are columns
+  std::vector<Edge> edges;                               // in the order of their columns, which start at firstEdge
   std::vector<int> loadColumns;
   std::vector<double> pointCosts;  // of the question now asked, to be minimised
   std::vector<double> loadCosts;
@@ -115,8 +113,8 @@ struct EquilibriumProgram::Solver {
       if (!seekingBalance && !pointCosts.empty()) gain[0] -= pointCosts[p];
       // Without friction a pyramid is its axis, and one edge is enough.
       const double turns = model.friction > 0.0 ? std::atan2(gain[2], gain[1]) / (2.0 * std::numbers::pi) : 0.0;
-      const int side = (static_cast<int>(std::lround(turns * kConeSides)) + kConeSides) % kConeSides;
-      if (edgeForce(side).dot(gain) <= kPriceTolerance || present[p].test(static_cast<std::size_t>(side))) continue;
+      const int side = (static_cast<int>(std::lround(turns * tuning::kConeSides)) + tuning::kConeSides) % tuning::kConeSides;
+      if (edgeForce(side).dot(gain) <= tuning::kLpPriceTolerance || present[p].test(static_cast<std::size_t>(side))) continue;
       wanted.push_back({p, side});
     }
     return wanted;
@@ -162,8 +160,8 @@ EquilibriumProgram::EquilibriumProgram(const StaticsModel& model, std::vector<st
   solver_->slackColumns = 2 * rows;
   std::vector<Solver::Edge> edges;
   for (std::size_t p = 0; p < solver_->usable.size(); ++p) {
-    const int sides = model.friction > 0.0 ? kFirstSides : 1;
-    for (int side = 0; side < kConeSides; side += kConeSides / sides) edges.push_back({p, side});
+    const int sides = model.friction > 0.0 ? tuning::kLpFirstSides : 1;
+    for (int side = 0; side < tuning::kConeSides; side += tuning::kConeSides / sides) edges.push_back({p, side});
   }
   if (!edges.empty()) solver_->addEdges(edges);
 }
@@ -190,8 +188,8 @@ void EquilibriumProgram::setBounds(std::size_t variableLoad, double lower, doubl
 bool EquilibriumProgram::isFeasible() {
   solver_->seekingBalance = true;
   solver_->setCosts();
-  solver_->solve(kMaxRowImbalance);
-  return solver_->clp.objectiveValue() <= kMaxRowImbalance;
+  solver_->solve(tuning::kMaxLpImbalance);
+  return solver_->clp.objectiveValue() <= tuning::kMaxLpImbalance;
 }
 
 double EquilibriumProgram::maximise(std::span<const double> costs, std::span<const double> pointCosts) {
@@ -261,7 +259,7 @@ bool parallelForcesBalance(const StaticsModel& model, std::span<const std::size_
   const auto columns = static_cast<int>(starts.size()) - 1;
   if (columns > 0) clp.addColumns(columns, nullptr, nullptr, nullptr, starts.data(), rows.data(), values.data());
   clp.primal();
-  return clp.status() == 0 && clp.objectiveValue() <= kMaxRowImbalance;
+  return clp.status() == 0 && clp.objectiveValue() <= tuning::kMaxLpImbalance;
 }
 
 }  // namespace springtower

@@ -9,10 +9,6 @@
 
 namespace springtower {
 
-/// Sides of the pyramid inscribed in each friction cone: it is narrower than the cone by a factor of cos(pi / 128), 0.006 degrees
-/// of slope at a friction of 0.4. Its edges enter the programme only where they are needed.
-inline constexpr int kConeSides = 128;
-
 /// The linear programme of rigid-block equilibrium with Coulomb friction: forces f >= 0 along the edges of the friction pyramids,
 /// and loads of which a part may vary,
 ///   A f + w + sum_i s_i v_i = 0,  lower_i <= s_i <= upper_i,

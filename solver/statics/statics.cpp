@@ -1,6 +1,7 @@
 #include "solver/statics/statics.h"
 
 #include "core/error.h"
+#include "core/tuning.h"
 #include "solver/statics/forces.h"
 
 #include <algorithm>
@@ -13,13 +14,6 @@
 namespace springtower {
 namespace {
 
-constexpr double kReach = 0.5;        // gaps looked at, in heights of the lowest block
-constexpr double kSettledGap = 1e-6;  // gaps below this are closed, in mean heights
-constexpr double kMaxStaticTurn = 5.0 * std::numbers::pi / 180.0;
-constexpr double kMaxSinking = 0.5;  // in mean heights
-constexpr double kMaxPull = 1e6;     // in mean block weights; what exceeds it is unlimited
-constexpr double kNoLoad = 1e-6;     // in mean block weights
-
 std::vector<std::size_t> allPoints(const StaticsModel& model) {
   std::vector<std::size_t> points(model.points.size());
   for (std::size_t p = 0; p < points.size(); ++p) points[p] = p;
@@ -29,7 +23,7 @@ std::vector<std::size_t> allPoints(const StaticsModel& model) {
 std::vector<std::size_t> closedPoints(const StaticsModel& model, const std::vector<double>& gap_m) {
   std::vector<std::size_t> points;
   for (std::size_t p = 0; p < model.points.size(); ++p) {
-    if (gap_m[p] <= kSettledGap * model.lengthUnit_m) points.push_back(p);
+    if (gap_m[p] <= tuning::kClosedGap * model.lengthUnit_m) points.push_back(p);
   }
   return points;
 }
@@ -59,7 +53,7 @@ std::optional<Settlement> settle(const StaticsModel& model) {
   Settlement settlement;
   for (std::size_t b = 0; b < model.blockCount(); ++b) {
     const Vec6 motion = price.segment<6>(static_cast<Eigen::Index>(6 * b));
-    if (motion.tail<3>().norm() > kMaxStaticTurn || motion[2] > kMaxSinking) return {};
+    if (motion.tail<3>().norm() > tuning::kMaxStaticTurn || motion[2] > tuning::kMaxStaticSinking) return {};
     settlement.motion_m = std::max(settlement.motion_m, motion.head<3>().norm() * model.lengthUnit_m);
   }
   for (const ForcePoint& point : model.points) {
@@ -87,7 +81,7 @@ StaticScene staticScene(const Scene& scene) {
   StaticScene result;
   double least = std::numeric_limits<double>::infinity();
   for (const BlockSpec& block : scene.blocks) least = std::min(least, block.dimensions.minCoeff());
-  result.facings = facingBlocks(scene, kReach * least);
+  result.facings = facingBlocks(scene, tuning::kStaticReach * least);
   result.model = staticsModel(scene, result.facings);
   result.gravity = scene.gravity.at(0.0) / scene.gravity.magnitude;
   const StaticsModel& model = result.model;
@@ -149,7 +143,7 @@ ContactLoads contactLoads(const StaticScene& scene) {
     pressure[point.facing] += force[0] * point.place;
     const double bound = model.friction * force[0];
     // Where there is no force to speak of, the share means nothing.
-    if (force[0] > kNoLoad * model.forceUnit_n && bound > 0.0) {
+    if (force[0] > tuning::kMinStaticLoad * model.forceUnit_n && bound > 0.0) {
       contact.frictionUsed = std::max(contact.frictionUsed, std::min(1.0, force.tail<2>().norm() / bound));
     }
   }
@@ -157,7 +151,7 @@ ContactLoads contactLoads(const StaticScene& scene) {
     loads.contacts[model.points[p].facing].pointForces.push_back(pointForces[p]);
   for (std::size_t c = 0; c < loads.contacts.size(); ++c) {
     ContactLoad& contact = loads.contacts[c];
-    if (contact.normal_n > kNoLoad * model.forceUnit_n) contact.place = pressure[c] / contact.normal_n;
+    if (contact.normal_n > tuning::kMinStaticLoad * model.forceUnit_n) contact.place = pressure[c] / contact.normal_n;
   }
   return loads;
 }
@@ -207,7 +201,8 @@ std::vector<BlockLoad> blockLoads(const StaticScene& scene, const ContactLoads& 
     } else {
       load.greatestAbove_n = 0.0;
     }
-    load.loose = load.covered && (touched[b] == 0 || load.greatestAbove_n.value_or(1.0) <= kNoLoad * model.forceUnit_n);
+    load.loose =
+        load.covered && (touched[b] == 0 || load.greatestAbove_n.value_or(1.0) <= tuning::kMinStaticLoad * model.forceUnit_n);
     if (!load.covered) load.gap_m = 0.0;
   }
   return result;
@@ -236,9 +231,9 @@ std::optional<double> pullLimit(const StaticScene& scene, BlockId block, const V
   pull.segment<3>(static_cast<Eigen::Index>(6 * index(block))) = direction;
   program.addVariableLoad(pull);
   if (!program.isFeasible()) return {};
-  program.setBounds(0, 0.0, kMaxPull);
+  program.setBounds(0, 0.0, tuning::kMaxStaticPull);
   const double limit = program.maximise(std::array{1.0});
-  return limit < 0.999 * kMaxPull ? limit * model.forceUnit_n : std::numeric_limits<double>::infinity();
+  return limit < 0.999 * tuning::kMaxStaticPull ? limit * model.forceUnit_n : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace springtower

@@ -1,15 +1,13 @@
 #include "solver/statics/tilt_limits.h"
 
+#include "core/tuning.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 namespace springtower {
 namespace {
-
-constexpr double kSameHeight = 1e-6;  // in mean block heights
-constexpr double kSamePlace = 1e-9;   // m
-constexpr double kFlat = 1e-9;
 
 double cross(const Vec2& a, const Vec2& b) {
   return a.x() * b.y() - a.y() * b.x();
@@ -26,7 +24,7 @@ struct Tipping {
 class Limits {
  public:
   Limits(const StaticsModel& model, std::span<const std::size_t> usable)
-      : model_(model), usable_(usable), same_m_(kSameHeight * model.lengthUnit_m) {}
+      : model_(model), usable_(usable), same_m_(tuning::kTiltSameHeight * model.lengthUnit_m) {}
 
   // All limits of the blocks above a height and of what they would tip on.
   void addLevel(double height) {
@@ -40,7 +38,7 @@ class Limits {
       places.emplace_back(point.place.head<2>());
       flat = flat && pushesUp(point, above) && std::abs(point.place.z() - height) <= same_m_;
     }
-    const std::vector<Vec2> hull = convexHull(places, kSamePlace);
+    const std::vector<Vec2> hull = convexHull(places, tuning::kTiltSamePlace_m);
     if (hull.size() < 3) return;
     for (std::size_t i = 0; i < hull.size(); ++i) {
       const Vec2 along = hull[(i + 1) % hull.size()] - hull[i];
@@ -61,7 +59,7 @@ class Limits {
     return isIn(point.upper, group) != isIn(point.lower, group);
   }
   static bool pushesUp(const ForcePoint& point, const std::vector<char>& group) {
-    return isIn(point.upper, group) && point.frame(2, 0) > 1.0 - kFlat;
+    return isIn(point.upper, group) && point.frame(2, 0) > 1.0 - tuning::kTiltFlatSlack;
   }
 
   void addChain(Tipping tipping) {
@@ -75,8 +73,8 @@ class Limits {
       const ForcePoint& point = model_.points[p];
       if (!crosses(point, tipping.moves)) continue;
       const double behind = tipping.edge - tipping.direction.dot(point.place.head<2>());
-      const bool letsGo =
-          pushesUp(point, tipping.moves) && model_.friction * std::abs(point.place.z() - tipping.height) <= behind + kSamePlace;
+      const bool letsGo = pushesUp(point, tipping.moves) &&
+                          model_.friction * std::abs(point.place.z() - tipping.height) <= behind + tuning::kTiltSamePlace_m;
       if (!letsGo) return;
     }
     double arm = 0.0;
@@ -163,7 +161,7 @@ std::vector<GravityLimit> gravityLimits(const StaticsModel& model, std::span<con
   std::vector<double> heights;
   for (const std::size_t p : usable) heights.push_back(model.points[p].place.z());
   std::sort(heights.begin(), heights.end());
-  const double same = kSameHeight * model.lengthUnit_m;
+  const double same = tuning::kTiltSameHeight * model.lengthUnit_m;
   heights.erase(std::unique(heights.begin(), heights.end(), [&](double a, double b) { return b - a <= same; }), heights.end());
   Limits limits(model, usable);
   for (const double height : heights) limits.addLevel(height);

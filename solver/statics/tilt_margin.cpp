@@ -1,5 +1,6 @@
 #include "solver/statics/tilt_margin.h"
 
+#include "core/tuning.h"
 #include "solver/statics/tilt_limits.h"
 
 #include <algorithm>
@@ -14,9 +15,6 @@ namespace {
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 const double kMaxSlope = std::tan(89.0 / kDegrees);
-constexpr double kSameSlope = 1e-9;
-constexpr int kMaxQuestions = 2000;  // a circle within 0.005 degrees takes some 130
-constexpr int kMaxSides = 400;       // of the first polygon
 
 // Where a hull is nearest to the origin: for an origin inside the outward normal of the nearest edge and its distance; for one
 // outside the direction from the nearest point to the origin, and minus its distance.
@@ -96,7 +94,7 @@ std::vector<Vec2> polygonWithin(const std::vector<GravityLimit>& limits, double 
                                 double friction) {
   const double widest = std::acos(std::min(1.0, radius / friction));
   const double sides = std::max(4.0, std::ceil(std::numbers::pi / widest + 1e-6));
-  if (!(sides <= kMaxSides)) return {};
+  if (!(sides <= tuning::kMaxTiltPolygonSides)) return {};
   std::vector<Vec2> polygon;
   for (int i = 0; i < static_cast<int>(sides); ++i) {
     const double angle = std::atan2(first.y(), first.x()) + std::numbers::pi * (2 * i + 1) / sides;
@@ -120,7 +118,7 @@ std::optional<StabilityMargin> tiltMargin(const StaticsModel& model, const std::
     const std::vector<GravityLimit> limits = gravityLimits(model, usable);
     for (const GravityLimit& limit : limits) {
       // Equal but for rounding: the first one.
-      if (limit.bound < best.distance - kSameSlope) best = {limit.direction, limit.bound};
+      if (limit.bound < best.distance - tuning::kTiltSameSlope) best = {limit.direction, limit.bound};
     }
     const double radius = std::tan(std::atan(best.distance) - 0.9 * tolerance);
     if (std::isfinite(best.distance) && radius > 0.0) {
@@ -133,11 +131,11 @@ std::optional<StabilityMargin> tiltMargin(const StaticsModel& model, const std::
   const auto ask = [&](const Vec2& direction) {
     hull.push_back(bearable.extreme(direction));
     const double support = hull.back().dot(direction);
-    if (support < best.distance - kSameSlope) best = {direction, support};
+    if (support < best.distance - tuning::kTiltSameSlope) best = {direction, support};
   };
   bool prepared = false;
-  for (int question = 0; question < kMaxQuestions; ++question) {
-    hull = convexHull(std::move(hull), kSameSlope);
+  for (int question = 0; question < tuning::kMaxTiltPrograms; ++question) {
+    hull = convexHull(std::move(hull), tuning::kTiltSameSlope);
     const Nearest nearest = nearestTo(hull);
     if (std::isfinite(best.distance) && std::atan(best.distance) - std::atan(nearest.distance) <= tolerance) break;
     // Where sliding sets the margin the set is round, and its hull needs many points: most are found by the cheap question.

@@ -1,16 +1,10 @@
 #include "solver/world/contact_pool.h"
 
+#include "core/tuning.h"
+
 #include <cstring>
 
 namespace springtower {
-
-namespace {
-
-// Rows that are kept free for contacts that are born in a frame: so many, and a share of those in use.
-constexpr std::size_t kFreeRows = 32;
-constexpr std::size_t kFreeShare = 8;
-
-}  // namespace
 
 std::int32_t ContactPool::take() {
   const std::int32_t contact = first_.take();
@@ -28,8 +22,8 @@ void ContactPool::giveBack(std::int32_t contact) {
 }
 
 void ContactPool::reserve(std::size_t most, bool wide) {
-  first_.reserve(kFreeRows + first_.rowsInUse() / kFreeShare, most, wide);
-  second_.reserve(second_.rowsInUse() > 0 ? kFreeRows : 1, most, wide);
+  first_.reserve(tuning::kFreeContactRows + first_.rowsInUse() / tuning::kFreeContactDivisor, most, wide);
+  second_.reserve(second_.rowsInUse() > 0 ? tuning::kFreeContactRows : 1, most, wide);
 }
 
 void ContactPool::store(std::int32_t contact, const PairOfBlocks& pair, const Manifold& manifold) {

@@ -13,9 +13,6 @@
 
 namespace springtower {
 
-/// Islands of at least this many blocks run their kernels on many threads; smaller ones fit one core's cache.
-inline constexpr std::size_t kParallelBlocks = 256;
-
 /// What a running scene holds beside its model, its inputs and its motion (solver/world/simulation.h), by who may rely on it:
 /// the state of contacts and sleep and what else the next frame depends on (copied into snapshots), and what may be lost between
 /// frames. All plain vectors, sized once a scene is loaded and grown only when new pairs appear.

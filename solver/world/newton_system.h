@@ -89,9 +89,6 @@ struct NewtonSystem : NewtonWork {
   std::vector<BlockPair> edges;                            ///< nodes that touching pairs couple, as last laid out
 };
 
-/// Islands of more blocks than this may be so wide that their factors cost as much as dozens of solutions.
-inline constexpr std::size_t kNarrowBlocks = 60;
-
 /// The own matrix of a node's block.
 inline const BlockJacobian& jacobianOf(const NewtonSystem& island, std::size_t node) {
   return island.kinds[static_cast<std::size_t>(island.blockClassOf[node])].jacobian;

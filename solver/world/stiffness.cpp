@@ -1,5 +1,7 @@
 #include "solver/world/stiffness.h"
 
+#include "core/tuning.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -88,8 +90,7 @@ double unevenness(const std::vector<BlockBounds>& bounds, const std::vector<std:
 
 // Whether one of a block's sides is level.
 bool isLevel(const BlockSpec& block) {
-  constexpr double kLevel = 0.9998;  // cosine of one degree
-  return block.orientation.toRotationMatrix().row(2).cwiseAbs().maxCoeff() > kLevel;
+  return block.orientation.toRotationMatrix().row(2).cwiseAbs().maxCoeff() > tuning::kLevelCosine;
 }
 
 // How far a block is above the highest of its supports, or the floor, if none of its sides is level; else 0.
@@ -101,17 +102,6 @@ double askewFall(const Scene& scene, const std::vector<BlockBounds>& bounds, std
   for (const std::size_t s : supports) top = std::max(top, bounds[s].upper[2]);
   return std::max(0.0, bounds[b].lower[2] - top);
 }
-
-constexpr double kPointsPerOverlap = 4.0;
-constexpr double kLoadedPoints = 2.0;  // a share that lies off centre rests on one side of the overlap
-// A block on tops that differ by more than this share of its height rests on two of them, and the paths of the load through
-// uneven rows bear up to this much more than their even share (measured over seeds: the heaviest point of 18 rows with 0.2 mm
-// deviation).
-constexpr double kUnevenHeight = 2e-4;
-constexpr double kUnevenLoad = 3.0;
-constexpr double kBucklingParameter = 7.837;  // Greenhill: w H^3 = 7.837 E I for a column under its own weight
-constexpr double kSwayReserve = 10.0;
-constexpr double kSeriesWithBlocks = 0.5;  // contacts and blocks bend alike
 
 // Blocks by their middle height, the highest first.
 std::vector<std::size_t> orderFromTop(const std::vector<BlockBounds>& bounds) {
@@ -142,16 +132,16 @@ Weighed weigh(const Scene& scene, const std::vector<BlockBounds>& bounds, const 
     if (isLevel(scene.blocks[b])) weighed.tower_n += own;
     estimate.askewFall_m = std::max(estimate.askewFall_m, askewFall(scene, bounds, b, below[b]));
     const double spread = unevenness(bounds, below[b]);
-    const bool uneven = spread > kUnevenHeight * (bounds[b].upper[2] - bounds[b].lower[2]);
+    const bool uneven = spread > tuning::kUnevenHeight * (bounds[b].upper[2] - bounds[b].lower[2]);
     weighed.anyUneven = weighed.anyUneven || uneven;
     const double supports = std::max(1.0, static_cast<double>(below[b].size()));
     const double shares = uneven ? std::min(supports, 2.0) : supports;
     double& largest = below[b].empty() ? estimate.floorLoad_n : estimate.contactLoad_n;
-    largest = std::max(largest, load[b] / shares / kLoadedPoints);
-    estimate.blockLoad_n = std::max(estimate.blockLoad_n, load[b] / kLoadedPoints);
+    largest = std::max(largest, load[b] / shares / tuning::kLoadedPoints);
+    estimate.blockLoad_n = std::max(estimate.blockLoad_n, load[b] / tuning::kLoadedPoints);
     // Nothing may rest on this block yet, but another like it may come.
-    estimate.contactLoad_n = std::max(estimate.contactLoad_n, own / kLoadedPoints);
-    estimate.floorLoad_n = std::max(estimate.floorLoad_n, own / kLoadedPoints);
+    estimate.contactLoad_n = std::max(estimate.contactLoad_n, own / tuning::kLoadedPoints);
+    estimate.floorLoad_n = std::max(estimate.floorLoad_n, own / tuning::kLoadedPoints);
     for (const std::size_t s : below[b]) load[s] += load[b] / supports;
   }
   return weighed;
@@ -192,7 +182,7 @@ Joints findJoints(const Scene& scene, const std::vector<BlockBounds>& bounds, co
     joints.top = std::max(joints.top, bounds[b].upper[2]);
     LevelMoments& here = joints.moments[level[b]];
     const auto addOverlap = [&](const BlockBounds& support) {
-      here.points += kPointsPerOverlap;
+      here.points += tuning::kPointsPerOverlap;
       for (std::size_t a = 0; a < 2; ++a) {
         here.add(std::max(bounds[b].lower[a], support.lower[a]), std::min(bounds[b].upper[a], support.upper[a]), a);
       }
@@ -214,8 +204,8 @@ double swayStiffness(const Joints& found, double towerWeight) {
   }
   const auto n = static_cast<double>(joints);
   // Weight per level w and level height h: a chain of n joints of stiffness S buckles near w h n^3 = 7.837 S.
-  const double jointNeeded = (towerWeight / n) * ((found.top - found.foot) / n) * n * n * n / kBucklingParameter;
-  return joints < 2 ? 0.0 : kSwayReserve * jointNeeded * (compliance / n) / kSeriesWithBlocks;
+  const double jointNeeded = (towerWeight / n) * ((found.top - found.foot) / n) * n * n * n / tuning::kBucklingParameter;
+  return joints < 2 ? 0.0 : tuning::kBucklingSafetyFactor * jointNeeded * (compliance / n) / tuning::kSeriesStiffnessShare;
 }
 
 }  // namespace
@@ -239,7 +229,7 @@ LoadEstimate estimateLoads(const Scene& scene) {
   const double narrow = 0.5 * std::min(joints.upper[0] - joints.lower[0], joints.upper[1] - joints.lower[1]);
   const double lever = std::min(
       1.0, 0.5 * (joints.upper[2] - joints.lower[2]) * std::tan(std::min(lean, 45.0) * M_PI / 180.0) / std::max(narrow, 1e-12));
-  const double concentration = (1.0 + lever) * (weighed.anyUneven ? kUnevenLoad : 1.0);
+  const double concentration = (1.0 + lever) * (weighed.anyUneven ? tuning::kUnevenLoad : 1.0);
   estimate.contactLoad_n *= concentration;
   estimate.floorLoad_n *= concentration;
   estimate.blockLoad_n *= concentration;

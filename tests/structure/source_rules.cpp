@@ -58,6 +58,7 @@ constexpr std::string_view kRooms[] = {"core",
                                        "apps/commands/profile",
                                        "apps/commands/chart",
                                        "apps/commands/validate",
+                                       "apps/commands/settings",
                                        "apps/cli",
                                        "apps/viewer"};
 

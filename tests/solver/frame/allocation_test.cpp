@@ -1,4 +1,5 @@
 // A frame calls no allocator once its buffers have grown, and what a scene holds stays within bounds.
+#include "core/tuning.h"
 #include "solver/runner/run.h"
 #include "solver/world/memory_use.h"
 #include "solver/world/simulation.h"
@@ -84,7 +85,7 @@ INSTANTIATE_TEST_SUITE_P(Frames, AllocationTest,
                                            Case{.name = "RigidPgs", .tilt_deg = 14.5, .method = Method::rigidPgs},
                                            Case{.name = "RigidLcp", .rows = 2, .method = Method::rigidLcp, .frames = 5},
                                            Case{.name = "Xpbd", .tilt_deg = 14.5, .method = Method::xpbd},
-                                           // More blocks than kParallelBlocks: the kernels that run in ranges.
+                                           // More blocks than tuning::kParallelBlocks: the kernels that run in ranges.
                                            Case{.name = "LargeIsland", .rows = 90, .frames = 1}),
                          [](const auto& one) { return one.param.name; });
 

@@ -1,5 +1,6 @@
 #include "core/random.h"
 #include "core/scene/scene.h"
+#include "core/tuning.h"
 #include "solver/world/engine.h"
 #include "solver/world/simulation.h"
 
@@ -117,7 +118,7 @@ Counters sameInOneLargeIsland(const Scene& scene, int frames) {
     const Islands& islands = simulation.engine->memo.islands;
     ASSERT_EQ(islands.count(), 1U) << "all are connected";
     EXPECT_EQ(islands.island(0).size(), scene.blocks.size());
-    EXPECT_GE(scene.blocks.size(), kParallelBlocks) << "so that its kernels run on many threads";
+    EXPECT_GE(scene.blocks.size(), tuning::kParallelBlocks) << "so that its kernels run on many threads";
     counters = simulation.counters;
   });
   EXPECT_EQ(hashAfter(scene, frames, 2), one);

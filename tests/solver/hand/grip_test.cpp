@@ -1,5 +1,6 @@
 #include "solver/hand/grip.h"
 
+#include "core/tuning.h"
 #include "solver/metrics/measures.h"
 #include "solver/metrics/penetration.h"
 #include "tests/support/block_scenes.h"
@@ -68,12 +69,12 @@ double deepest(Held& held, const Hand& hand, int frames) {
 TEST(Grip, TheClosedFormFallsAndIsSettledInTime) {
   double last = 1.0;
   for (int k = 1; k <= 60; ++k) {
-    const double now = followCourse(kFollow_rad_s, k * kFrame_s);
+    const double now = followCourse(tuning::kFollowFrequency_rad_s, k * kFrame_s);
     EXPECT_LT(now, last);
     EXPECT_GT(now, 0.0);  // never beyond: no overshoot at all
     last = now;
   }
-  EXPECT_LT(followCourse(kFollow_rad_s, kSettled * kFrame_s), 0.02);
+  EXPECT_LT(followCourse(tuning::kFollowFrequency_rad_s, kSettled * kFrame_s), 0.02);
 }
 
 // The engine's own course of a held block against the closed form: overshoot under 2 % and settled in 0.15 s.
@@ -96,7 +97,8 @@ TEST(Grip, ABlockInTheAirFollowsCriticallyDamped) {
       for (int k = 1; k <= 60; ++k) {
         step(held, hand);
         const Vec3 missing = target - centre(held.simulation.state.position, 0);
-        EXPECT_NEAR(missing.dot(direction), kStep_m * followCourse(kFollow_rad_s, k * kFrame_s), 0.012 * kStep_m) << k;
+        EXPECT_NEAR(missing.dot(direction), kStep_m * followCourse(tuning::kFollowFrequency_rad_s, k * kFrame_s), 0.012 * kStep_m)
+            << k;
         EXPECT_GT(missing.dot(direction), -0.02 * kStep_m) << k;
         EXPECT_LT((missing - missing.dot(direction) * direction).norm(), 1e-3 * kStep_m) << k;
         if (k >= kSettled) {
@@ -119,7 +121,7 @@ TEST(Grip, AFarStepAtFullForceDoesNotOvershootEither) {
     step(held, hand);
     most = std::max(most, centre(held.simulation.state.position, 0).x() - start);
     limited = limited || held.force.limited;
-    EXPECT_LE(held.force.force.norm(), kGripForce_n + 1e-12);
+    EXPECT_LE(held.force.force.norm(), tuning::kGripForce_n + 1e-12);
   }
   EXPECT_TRUE(limited);
   EXPECT_LT(most, 1.02);
@@ -191,7 +193,7 @@ TEST(Grip, LeavesWarpsToTheBlock) {
 TEST(Grip, FrictionAnswersTheHand) {
   Scene scene = oneBlockScene(true);
   const double bound = scene.staticFriction * scene.blocks[0].mass * kStandardGravity_m_s2;
-  const double perMetre = scene.blocks[0].mass * kFollow_rad_s * kFollow_rad_s;
+  const double perMetre = scene.blocks[0].mass * tuning::kFollowFrequency_rad_s * tuning::kFollowFrequency_rad_s;
   for (const double share : {0.8, 1.3}) {
     Held held(scene);
     wait(held, 60);
@@ -287,7 +289,7 @@ TEST(Grip, DrawsABlockOutAtItsSpeed) {
   for (int i = 0; i < 240 && times_s.size() < 90; ++i) {
     advancePull(draw, contactForces(simulation), simulation);
     stepFrame(simulation);
-    EXPECT_LE(gripForce(simulation).force.norm(), kGripForce_n * (1.0 + 1e-12));
+    EXPECT_LE(gripForce(simulation).force.norm(), tuning::kGripForce_n * (1.0 + 1e-12));
     const double moved = (centre(simulation.state.position, block) - start[block].centre).x();
     while (times_s.size() < 90 && moved > 1e-3 * static_cast<double>(times_s.size() + 1)) times_s.push_back(simulation.time_s);
     tilt = std::max(tilt, orientationOf(simulation.state.position, block).angularDistance(draw.hand.turn));

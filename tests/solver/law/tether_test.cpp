@@ -1,5 +1,6 @@
 #include "solver/law/tether.h"
 
+#include "core/tuning.h"
 #include "solver/block/affine.h"
 #include "solver/hand/grip.h"
 #include "tests/support/block_scenes.h"
@@ -126,7 +127,7 @@ TEST(Tether, ABlockLedAtTheLimitOfTheTorqueTakesImplicitSteps) {
   LoadedBlock loaded(1e-5);
   Simulation& simulation = loaded.simulation;
   Hand hand = handOn(simulation, loaded.block);
-  hand.rate_rad_s = kLead_rad_s;
+  hand.rate_rad_s = tuning::kDrawFrequency_rad_s;
   Grip grip;
   int limited = 0;
   constexpr int kFrames = 42;
