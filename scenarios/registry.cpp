@@ -40,7 +40,7 @@ TowerOptions uneven(TowerOptions options) {
 
 constexpr Scenario kScenarios[] = {
     {"tower",
-     "a full tower, each row turned a quarter turn against the one below",
+     "a full tower, each row a quarter turn against the one below",
      {rows(18), kNone},
      true,
      [](const ScenarioSize& size, const TowerOptions& options) { return towerScene(size[0], options); }},
@@ -69,7 +69,7 @@ constexpr Scenario kScenarios[] = {
      true,
      [](const ScenarioSize&, const TowerOptions& options) { return towerWithHolesScene(options); }},
     {"collapse",
-     "a tower that leans by a little more than it can stand, and goes over",
+     "a tower that leans further than it can stand, and goes over",
      {rows(18), kNone},
      true,
      [](const ScenarioSize& size, const TowerOptions& options) {
@@ -116,7 +116,7 @@ constexpr Scenario kScenarios[] = {
      false,
      [](const ScenarioSize& size, const TowerOptions&) { return cubePyramidScene(size[0]); }},
     {"pile",
-     "square rows of 108 blocks, one island, that land after a fall of 10 cm",
+     "square rows of 108 blocks, one island, landing after 10 cm",
      {SizeNumber{"rows", 3, 1, 900}, kNone},
      false,
      [](const ScenarioSize& size, const TowerOptions&) { return pileScene(size[0], {.fall_m = kPileFall_m}); }},
@@ -126,7 +126,7 @@ constexpr Scenario kScenarios[] = {
      false,
      [](const ScenarioSize& size, const TowerOptions&) { return heapScene(size[0]); }},
     {"askew",
-     "blocks dropped on one another, each turned further than the one below",
+     "blocks dropped on one another, each turned further",
      {SizeNumber{"blocks", 8, 1, kMaxAskewBlocks}, kNone},
      false,
      [](const ScenarioSize& size, const TowerOptions&) { return askewHeapScene(size[0]); }},
@@ -171,13 +171,6 @@ std::size_t numberCount(const Scenario& scenario) {
   std::size_t count = 0;
   while (count < scenario.numbers.size() && !scenario.numbers[count].what.empty()) ++count;
   return count;
-}
-
-// "18" of a tower, "20x12" of a wall; empty where there is no size.
-std::string textOf(const Scenario& scenario, const ScenarioSize& size) {
-  std::string text;
-  for (std::size_t n = 0; n < numberCount(scenario); ++n) text += fmt::format("{}{}", n == 0 ? "" : "x", size[n]);
-  return text;
 }
 
 std::string nameWithSize(const Scenario& scenario, const std::string& size) {
@@ -230,6 +223,12 @@ ScenarioSize usualSize(const Scenario& scenario) {
   return {scenario.numbers[0].usual, scenario.numbers[1].usual};
 }
 
+std::string sizeText(const Scenario& scenario, const ScenarioSize& size) {
+  std::string text;
+  for (std::size_t n = 0; n < numberCount(scenario); ++n) text += fmt::format("{}{}", n == 0 ? "" : "x", size[n]);
+  return text;
+}
+
 std::string usageOf(const Scenario& scenario) {
   std::string text;
   for (std::size_t n = 0; n < numberCount(scenario); ++n) {
@@ -252,10 +251,10 @@ std::string allowedSizes(const Scenario& scenario) {
 Scene makeScene(const Scenario& scenario, const ScenarioSize& size, const TowerOptions& options) {
   for (std::size_t n = 0; n < numberCount(scenario); ++n) {
     if (size[n] < scenario.numbers[n].least || size[n] > scenario.numbers[n].most) {
-      throw sizeError(scenario, textOf(scenario, size));
+      throw sizeError(scenario, sizeText(scenario, size));
     }
   }
-  const std::string name = nameWithSize(scenario, textOf(scenario, size));
+  const std::string name = nameWithSize(scenario, sizeText(scenario, size));
   const std::string_view given = firstGiven(options);
   if (!scenario.isTower && !given.empty()) {
     throw InputError(fmt::format("{}: found {}, allowed for towers only", name, given));

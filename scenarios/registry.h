@@ -38,6 +38,9 @@ const Scenario* findScenario(std::string_view name);
 /// The size it has unless told otherwise.
 ScenarioSize usualSize(const Scenario& scenario);
 
+/// A size as it is written: `18` of a tower, `20x12` of a wall; empty where there is none.
+std::string sizeText(const Scenario& scenario, const ScenarioSize& size);
+
 /// How it is written, such as `wall:COLUMNSxCOURSES`; the name alone where it has no size.
 std::string usageOf(const Scenario& scenario);
 

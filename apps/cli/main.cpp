@@ -3,6 +3,7 @@
 #include "apps/commands/chart/command.h"
 #include "apps/commands/profile/command.h"
 #include "apps/commands/run/command.h"
+#include "apps/commands/scenes/command.h"
 #include "apps/commands/statics/command.h"
 #include "apps/commands/validate/command.h"
 #include "apps/commands/verdict/verdict.h"
@@ -24,6 +25,7 @@ constexpr int kProgramError = 70;
 
 constexpr std::string_view kFooter = R"help(examples:
   springtower run tower:18                          the full tower for 10 simulated seconds
+  springtower scenes                                which scenes there are
   springtower run "(010)-(010)-(011)" --seconds 5 --picture tower.png
   springtower verdict towers.jsonl                  which towers of a list stand
   springtower profile --quick                       how long a frame takes
@@ -43,7 +45,7 @@ int complainAboutArguments(const CLI::App& program, const CLI::ParseError& error
   std::string hint = "springtower --help";
   for (const CLI::App* command : program.get_subcommands()) hint = fmt::format("springtower {} --help", command->get_name());
   const bool noCommand = program.get_subcommands().empty() && error.get_name() == "RequiredError";
-  complain(noCommand ? "found no command, allowed are run, verdict, profile, statics, chart and validate" : error.what(),
+  complain(noCommand ? "found no command, allowed are run, verdict, profile, statics, chart, validate and scenes" : error.what(),
            kBadInput);
   fmt::print(stderr, "Try '{}'.\n", hint);
   return kBadInput;
@@ -70,6 +72,7 @@ int run(int argc, char** argv) {
   ChartCommand chartCommand;
   const CLI::App* chartApp = defineChart(program, chartCommand);
   const CLI::App* validateApp = defineValidate(program, validateCommand);
+  const CLI::App* scenesApp = defineScenes(program);
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -80,6 +83,7 @@ int run(int argc, char** argv) {
   if (staticsApp->parsed()) return executeStatics(staticsCommand);
   if (chartApp->parsed()) return executeChart(chartCommand);
   if (validateApp->parsed()) return executeValidate(validateCommand);
+  if (scenesApp->parsed()) return executeScenes();
   return runApp->parsed() ? executeRun(runCommand) : executeVerdict(verdictCommand);
 }
 
