@@ -7,6 +7,8 @@
 #include "core/error.h"
 #include "core/scene/scene.h"
 #include "core/version.h"
+#include "scenarios/gate.h"
+#include "scenarios/towers.h"
 #include "solver/metrics/measures.h"
 #include "solver/metrics/penetration.h"
 #include "solver/world/simulation.h"
@@ -30,20 +32,9 @@
 namespace springtower {
 namespace {
 
-struct GateScene {
-  std::string_view name;
-  int rows;
-  double heightsSigma_m;
-  double tilt_deg;
-  double pull_m_s;  // speed at which the middle block of the middle row is pulled out, 0 for none
-  int before;       // frames
-  int counted;      // frames
-};
-
-constexpr GateScene kScenes[] = {{"rest", 18, 0.0, 0.0, 0.0, 20, 5},
-                                 {"uneven", 6, 0.0002, 0.0, 0.0, 20, 5},
-                                 {"pull", 18, 0.0, 0.0, 0.04, 20, 5},
-                                 {"collapse", 18, 0.0, 14.5, 0.0, 20, 5}};
+// What is run before, and what of it is counted, frames.
+constexpr int kBefore = 20;
+constexpr int kCounted = 5;
 
 constexpr std::uint64_t kPullFrom = 12;  // frames; by then the block carries its load
 constexpr double kFirstPull_n = 0.8;     // about its friction
@@ -53,23 +44,6 @@ std::vector<Method> methods() {
   const Method usual = Settings{}.method;
   if (usual == Method::semiImplicitEuler) return {usual};
   return {usual, Method::semiImplicitEuler};
-}
-
-Scene sceneOf(const GateScene& gate, Method method) {
-  TowerOptions options;
-  options.heightsSigma_m = gate.heightsSigma_m;
-  Scene scene = towerScene(gate.rows, options);
-  scene.gravity.tilt_deg = gate.tilt_deg;
-  scene.settings.method = method;
-  scene.settings.sleep = Sleep::off;
-  return scene;
-}
-
-// The middle block of the middle row.
-std::size_t pulledBlock(const Scene& scene, int rows) {
-  const auto found = std::find_if(scene.blocks.begin(), scene.blocks.end(),
-                                  [&](const BlockSpec& block) { return block.row == rows / 2 && block.position == 2; });
-  return static_cast<std::size_t>(found - scene.blocks.begin());
 }
 
 // Pulls a block along its length: the force that brings it to the speed in one frame, on top of what friction took so far.
@@ -82,19 +56,19 @@ void pull(Simulation& simulation, std::size_t block, double speed_m_s, double& f
   simulation.scene.forces = {{static_cast<int>(block), -1, (friction_n + 0.5 * unit_n) * along, simulation.time_s, end_s}};
 }
 
-void runGate(const GateScene& gate, Method method, int frames) {
+void runGate(const GateTower& gate, Method method, int frames) {
   Simulation simulation(sceneOf(gate, method));
   const ParticleArray start = simulation.state.position;
-  const std::size_t pulled = pulledBlock(simulation.scene, gate.rows);
+  const std::size_t pulled = middleBlock(simulation.scene);
   double friction_n = kFirstPull_n;
   const auto step = [&] {
     if (gate.pull_m_s > 0.0 && simulation.frame >= kPullFrom) pull(simulation, pulled, gate.pull_m_s, friction_n);
     stepFrame(simulation);
   };
-  const int before = std::max(0, frames - gate.counted);
+  const int before = std::max(0, frames - kCounted);
   for (int frame = 0; frame < before; ++frame) step();
   CALLGRIND_START_INSTRUMENTATION;
-  for (int frame = 0; frame < gate.counted; ++frame) step();
+  for (int frame = 0; frame < kCounted; ++frame) step();
   CALLGRIND_STOP_INSTRUMENTATION;
 
   PenetrationWorkspace workspace;
@@ -116,13 +90,13 @@ int gate(const std::vector<std::string_view>& arguments) {
   const tbb::global_control oneThread(tbb::global_control::max_allowed_parallelism, 1);
   bool found = arguments.empty();
   for (const Method method : methods()) {
-    for (const GateScene& gate : kScenes) {
+    for (const GateTower& gate : gateTowers()) {
       const std::string name = fmt::format("{} {}", gate.name, nameOf(method));
       if (arguments.empty()) {
         fmt::print("{}\n", name);
       } else if (arguments[0] == name) {
         found = true;
-        runGate(gate, method, arguments.size() > 1 ? std::stoi(std::string(arguments[1])) : gate.before + gate.counted);
+        runGate(gate, method, arguments.size() > 1 ? std::stoi(std::string(arguments[1])) : kBefore + kCounted);
       }
     }
   }

@@ -1,10 +1,10 @@
 #pragma once
 
 #include "core/scene/scene.h"
+#include "scenarios/towers.h"
 #include "solver/world/engine.h"
 #include "solver/world/simulation.h"
 
-#include <cmath>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -14,22 +14,10 @@
 
 namespace springtower {
 
-/// Towers of 18 rows on a square grid, 0.3 m apart, that never sleep, stepped by a method.
+/// Towers of 18 rows on a square (squareOf) that never sleep, stepped by a method.
 inline Scene towersScene(int towers, Method method) {
-  constexpr double kSpacing_m = 0.3;
-  Scene scene = towerScene(18);
-  const std::vector<BlockSpec> tower = scene.blocks;
-  scene.blocks.clear();
-  const int side = static_cast<int>(std::ceil(std::sqrt(static_cast<double>(towers))));
-  for (int i = 0; i < towers; ++i) {
-    const int line = i / side;
-    for (BlockSpec block : tower) {
-      block.centre += kSpacing_m * Vec3(i - line * side, line, 0.0);
-      scene.blocks.push_back(block);
-    }
-  }
+  Scene scene = awake(squareOf(towerScene(18), towers));
   scene.settings.method = method;
-  scene.settings.sleep = Sleep::off;
   return scene;
 }
 

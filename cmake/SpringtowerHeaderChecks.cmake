@@ -10,7 +10,7 @@ find_package(PkgConfig REQUIRED)
 pkg_check_modules(cairo REQUIRED IMPORTED_TARGET cairo)
 
 set(check_sources)
-foreach(folder IN ITEMS core broadphase narrowphase solver apps bench tests)
+foreach(folder IN ITEMS core broadphase narrowphase solver scenarios apps bench tests)
   file(GLOB_RECURSE headers CONFIGURE_DEPENDS RELATIVE "${PROJECT_SOURCE_DIR}" "${PROJECT_SOURCE_DIR}/${folder}/*.h")
   foreach(header IN LISTS headers)
     string(REGEX REPLACE "\\.h$" ".cpp" own "${header}")

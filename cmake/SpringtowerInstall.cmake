@@ -5,13 +5,14 @@ set(package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/springtower")
 
 install(
   TARGETS springtower_library springtower_core springtower_broadphase springtower_narrowphase springtower_solver
+          springtower_scenarios
   EXPORT springtowerTargets
   ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}")
 install(EXPORT springtowerTargets NAMESPACE springtower:: DESTINATION "${package_dir}")
 
 # Headers keep their folder, so that #include "core/state.h" reads the same inside and outside the repository.
 install(
-  DIRECTORY core broadphase narrowphase solver
+  DIRECTORY core broadphase narrowphase solver scenarios
   DESTINATION "${SPRINGTOWER_INSTALL_INCLUDEDIR}"
   FILES_MATCHING PATTERN "*.h")
 install(FILES "${SPRINGTOWER_GENERATED_DIR}/core/version.h" DESTINATION "${SPRINGTOWER_INSTALL_INCLUDEDIR}/core")

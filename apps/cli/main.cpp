@@ -3,6 +3,7 @@
 #include "apps/commands/chart/command.h"
 #include "apps/commands/profile/command.h"
 #include "apps/commands/run/command.h"
+#include "apps/commands/scenes/command.h"
 #include "apps/commands/settings/command.h"
 #include "apps/commands/statics/command.h"
 #include "apps/commands/validate/command.h"
@@ -25,6 +26,7 @@ constexpr int kProgramError = 70;
 
 constexpr std::string_view kFooter = R"help(examples:
   springtower run tower:18                          the full tower for 10 simulated seconds
+  springtower scenes                                which scenes there are
   springtower run "(010)-(010)-(011)" --seconds 5 --picture tower.png
   springtower verdict towers.jsonl                  which towers of a list stand
   springtower profile --quick                       how long a frame takes
@@ -45,9 +47,9 @@ int complainAboutArguments(const CLI::App& program, const CLI::ParseError& error
   std::string hint = "springtower --help";
   for (const CLI::App* command : program.get_subcommands()) hint = fmt::format("springtower {} --help", command->get_name());
   const bool noCommand = program.get_subcommands().empty() && error.get_name() == "RequiredError";
-  complain(
-      noCommand ? "found no command, allowed are run, verdict, profile, statics, chart, validate and settings" : error.what(),
-      kBadInput);
+  complain(noCommand ? "found no command, allowed are run, verdict, profile, statics, chart, validate, scenes and settings"
+                     : error.what(),
+           kBadInput);
   fmt::print(stderr, "Try '{}'.\n", hint);
   return kBadInput;
 }
@@ -75,6 +77,7 @@ int run(int argc, char** argv) {
   const CLI::App* validateApp = defineValidate(program, validateCommand);
   SettingsCommand settingsCommand;
   const CLI::App* settingsApp = defineSettings(program, settingsCommand);
+  const CLI::App* scenesApp = defineScenes(program);
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -86,6 +89,7 @@ int run(int argc, char** argv) {
   if (chartApp->parsed()) return executeChart(chartCommand);
   if (validateApp->parsed()) return executeValidate(validateCommand);
   if (settingsApp->parsed()) return executeSettings(settingsCommand);
+  if (scenesApp->parsed()) return executeScenes();
   return runApp->parsed() ? executeRun(runCommand) : executeVerdict(verdictCommand);
 }
 

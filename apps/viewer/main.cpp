@@ -63,7 +63,8 @@ struct Command {
 };
 
 void define(CLI::App& app, Command& c) {
-  app.add_option("--scene", c.scene, "a .toml file, a bit code such as (111)-(1L1), or tower:ROWS (default tower:18)")
+  app.add_option("--scene", c.scene,
+                 "a .toml file, a bit code such as (111)-(1L1), or NAME:SIZE as springtower scenes lists them (default tower:18)")
       ->type_name("SCENE");
   addWholeNumber(app, "--players", c.players, {0, kMaxPlayers, ""}, "plays the game; 0 lets every block be taken (default)");
   addNumber(app, "--heights-sigma", c.heightsSigma_m, kHeightsSigmaRange, "METRES",

@@ -3,6 +3,7 @@
 #include "core/error.h"
 #include "core/limits.h"
 #include "core/version.h"
+#include "scenarios/registry.h"
 
 #include <charconv>
 #include <fmt/format.h>
@@ -100,7 +101,7 @@ std::uint64_t hashFrom(const std::string& text, const std::string& where) {
 }  // namespace
 
 Scene sceneOf(const SceneChoice& choice) {
-  Scene scene = sceneFromName(choice.name, choice.options);
+  Scene scene = sceneNamed(choice.name, choice.options);
   if (scene.blocks.empty()) throw InputError(choice.name + ": the scene has no blocks, allowed is at least one");
   return scene;
 }

@@ -14,6 +14,7 @@
 #include <numbers>
 #include <string>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 namespace springtower {
@@ -191,6 +192,19 @@ double blockHeightOf(const Scene& scene) {
 double toleranceOf(const Scene& scene) {
   if (scene.settings.tolerance_m) return *scene.settings.tolerance_m;
   return kBlockTolerance_m * (blockHeightOf(scene) / kBlockHeight_m);
+}
+
+std::string_view firstGiven(const TowerOptions& options) {
+  const std::pair<bool, std::string_view> all[] = {{options.heightsSigma_m.has_value(), "a variation of heights"},
+                                                   {options.massSigma_kg.has_value(), "a variation of masses"},
+                                                   {options.seed.has_value(), "a seed"},
+                                                   {options.startGap_m.has_value(), "a start gap"},
+                                                   {!options.offsets.empty(), "offsets"},
+                                                   {!options.loose.empty(), "loose blocks"}};
+  for (const auto& [isGiven, name] : all) {
+    if (isGiven) return name;
+  }
+  return {};
 }
 
 Scene towerScene(int rows, const TowerOptions& options) {

@@ -168,15 +168,9 @@ std::vector<BlockSpec> readTower(const Table& table, const TowerOptions& given) 
 }
 
 void refuseTowerOptions(const TowerOptions& given, const std::string& file) {
-  const std::pair<bool, std::string_view> options[] = {{given.heightsSigma_m.has_value(), "a variation of heights"},
-                                                       {given.massSigma_kg.has_value(), "a variation of masses"},
-                                                       {given.seed.has_value(), "a seed"},
-                                                       {given.startGap_m.has_value(), "a start gap"},
-                                                       {!given.offsets.empty(), "offsets"},
-                                                       {!given.loose.empty(), "loose blocks"}};
-  for (const auto& [isGiven, name] : options) {
-    if (isGiven) throw InputError(fmt::format("{}: found {} for a scene without [tower], allowed for towers only", file, name));
-  }
+  const std::string_view name = firstGiven(given);
+  if (!name.empty())
+    throw InputError(fmt::format("{}: found {} for a scene without [tower], allowed for towers only", file, name));
 }
 
 Scene readScene(const Table& top, const TowerOptions& given, const std::string& file) {

@@ -104,6 +104,13 @@ double turningSpeed(const AffineField& place, const AffineField& motion) {
   return std::sqrt(fastest);
 }
 
+// For how many frames implicit steps are not tried again.
+void leaveImplicitSteps(IslandStep& step, bool heap) {
+  for (const std::int32_t block : step.blocks)
+    step.engine.memo.blockHistory[static_cast<std::size_t>(block)].explicitFrames =
+        heap ? tuning::kRigidRetryFrames : tuning::kExplicitFallbackFrames;
+}
+
 }  // namespace
 
 void prepareImplicit(Simulation& simulation) {
@@ -204,9 +211,7 @@ IslandOutcome runImplicitSteps(IslandStep& step, bool heap, double& reached_s) {
         takeSteps(finer);
         continue;
       }
-      for (const std::int32_t block : step.blocks)
-        engine.memo.blockHistory[static_cast<std::size_t>(block)].explicitFrames =
-            heap ? tuning::kRigidRetryFrames : tuning::kExplicitFallbackFrames;
+      leaveImplicitSteps(step, heap);
       return outcome;
     }
     ++outcome.substeps;

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstring>
 
 namespace springtower {
 namespace {
@@ -14,11 +13,6 @@ using Clock = std::chrono::steady_clock;
 
 double secondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-bool allAsleep(const Simulation& simulation) {
-  const auto& asleep = simulation.asleep;
-  return std::memchr(asleep.data(), 0, asleep.size()) == nullptr;
 }
 
 // What is measured of one frame.

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 namespace springtower {
 
@@ -288,6 +289,11 @@ void updateRest(Simulation& simulation) {
   if (sleep == Sleep::off) return;
   wakeRequested(simulation);
   putToSleep(simulation);
+}
+
+bool allAsleep(const Simulation& simulation) {
+  const auto& asleep = simulation.asleep;
+  return std::memchr(asleep.data(), 0, asleep.size()) == nullptr;
 }
 
 bool atRest(const Simulation& simulation) {

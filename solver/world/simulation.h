@@ -57,6 +57,9 @@ inline bool sleeps(const Simulation& simulation, std::int32_t block) {
   return block < 0 || simulation.asleep[static_cast<std::size_t>(block)] != 0;
 }
 
+/// Whether every block sleeps.
+bool allAsleep(const Simulation& simulation);
+
 /// Whether every block has been at rest (speed of its rigid motion, force and torque balance) for the time the settings name.
 bool atRest(const Simulation& simulation);
 

@@ -1,4 +1,4 @@
-#include "core/random.h"
+#include "scenarios/loose.h"
 #include "tests/pinned/pinned_scene.h"
 
 #include <memory>
@@ -9,41 +9,15 @@ namespace {
 constexpr int kSnapshotFrame = 30;  // rigid steps carry the fall by then
 constexpr int kFramesGoneOn = 20;
 
-Scene oneBlockAt(double height_m, const Eigen::Quaterniond& turn) {
-  Scene scene;
-  BlockSpec block;
-  block.centre.z() = height_m;
-  block.orientation = turn;
-  scene.blocks = {block};
-  return scene;
-}
-
-// Turned at random, on a lattice in which none can touch another. Without sines: no mathematical library has a say in it.
-Scene heap(int blocks) {
-  constexpr double kSpacing_m = 0.09;
-  RandomStream random(1, 0);
-  Scene scene;
-  for (int i = 0; i < blocks; ++i) {
-    BlockSpec block;
-    block.centre = Vec3(kSpacing_m * (i % 2), kSpacing_m * (i / 2 % 2), 0.1 + kSpacing_m * (i / 4));
-    for (Eigen::Index a = 0; a < 4; ++a) block.orientation.coeffs()[a] = random.normal();
-    block.orientation.normalize();
-    scene.blocks.push_back(block);
-  }
-  return scene;
-}
-
 // A tower topples: rigid steps carry the fall, implicit ones what has landed.
 Scene collapse(int rows) {
-  Scene scene = awake(towerScene(rows));
+  Scene scene = leaning(awake(towerScene(rows)), kTopplingTilt_deg);
   scene.settings.tolerance_m = 1e-5;
-  scene.gravity.tilt_deg = 14.5;
   return scene;
 }
 
 Scene rowsThatLand() {
-  Scene scene = awake(towerScene(3));
-  for (BlockSpec& block : scene.blocks) block.centre.z() += 0.02;
+  Scene scene = raised(awake(towerScene(3)), 0.02);
   scene.settings.tolerance_m = 1e-5;
   return scene;
 }
@@ -55,15 +29,6 @@ Scene rowsApart() {
   return towerScene(3, options);
 }
 
-// About the axis of middle moment, so that it tumbles.
-Scene spinWithoutGravity() {
-  Scene scene = oneBlockAt(0.0, Eigen::Quaterniond::Identity());
-  scene.floor = false;
-  scene.gravity.magnitude = 0.0;
-  scene.blocks[0].spin = Vec3(0.05, 10.0, 0.02);
-  return scene;
-}
-
 Scene blocksThatFly() {
   Scene scene = towerScene(1);
   for (BlockSpec& block : scene.blocks) {
@@ -71,24 +36,6 @@ Scene blocksThatFly() {
     block.velocity = Vec3(0.3, 0.0, 1.0);
     block.spin = Vec3(3.0, 2.0, 10.0);
   }
-  return scene;
-}
-
-Scene shotTower() {
-  Scene scene = towerScene(6);
-  BlockSpec shot;
-  shot.centre = Vec3(-0.3, 0.0, 3.6 * kBlockHeight_m);
-  shot.velocity = Vec3(5.0, 0.0, 0.0);
-  scene.blocks.push_back(shot);
-  return scene;
-}
-
-Scene sleeperHit() {
-  Scene scene = towerScene(2);
-  BlockSpec block;
-  block.centre = Vec3(0.01, 0.0, 21.0);  // lands after some 2 s, when the tower sleeps
-  block.orientation = Eigen::Quaterniond(0.99, 0.1, 0.05, 0.0).normalized();
-  scene.blocks.push_back(block);
   return scene;
 }
 
@@ -104,23 +51,21 @@ Leader backToASnapshot() {
 }  // namespace
 
 std::vector<PinnedScene> pinnedFalls() {
-  const Eigen::Quaterniond level = Eigen::Quaterniond::Identity();
-  const Eigen::Quaterniond onCorner = Eigen::Quaterniond(0.8, 0.4, 0.4, 0.2).normalized();
   return {
-      {"DropFlat", 60, [=] { return oneBlockAt(0.05, level); }},
-      {"DropOnCorner", 90, [=] { return oneBlockAt(0.1, onCorner); }},
+      {"DropFlat", 60, [] { return droppedBlockScene(0.05); }},
+      {"DropOnCorner", 90, [] { return droppedBlockScene(0.1, ontoACorner()); }},
       {"DroppedBlock", 90, [] { return sceneOfFile("dropped_block"); }},
-      {"HeapOf8", 120, [] { return heap(8); }},
+      {"HeapOf8", 120, [] { return heapScene(8); }},
       {"CollapseAndBack", 180, [] { return collapse(18); }},
       {"RowsThatLand", 60, rowsThatLand},
       {"RowsApart", 60, rowsApart},
       {"RestoredFall", 80, [] { return collapse(18); }, backToASnapshot},
-      {"SpinWithoutGravity", 120, spinWithoutGravity},
+      {"SpinWithoutGravity", 120, spinningBlockScene},
       {"BlocksThatFly", 40, blocksThatFly},
       {"ThrownPair", 60, [] { return sceneOfFile("two_thrown_blocks"); }},
       {"ThinWall", 40, [] { return sceneOfFile("thin_wall"); }},
-      {"ShotTower", 40, shotTower},
-      {"SleeperHit", 160, sleeperHit},
+      {"ShotTower", 40, shotTowerScene},
+      {"SleeperHit", 160, sleeperHitScene},
   };
 }
 

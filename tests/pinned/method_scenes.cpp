@@ -8,9 +8,7 @@ namespace {
 // Something of everything in few blocks: a stack that sways, a block that is pushed along under others, and one that lands on top
 // with a corner first.
 Scene sampler() {
-  Scene scene = awake(bitCodeScene("(101)-(111)-(101)"));
-  scene.gravity.sway_deg = 0.5;
-  scene.gravity.sway_hz = 2.0;
+  Scene scene = swaying(awake(bitCodeScene("(101)-(111)-(101)")), 0.5, 2.0);
   scene.forces.push_back({3, -1, Vec3(0.0, 0.2, 0.0), 0.1, 0.3});
   BlockSpec falling;
   falling.centre = Vec3(0.005, 0.0, 3.0 * kBlockHeight_m + 0.025);

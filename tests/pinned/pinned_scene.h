@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/scene/scene.h"
+#include "scenarios/towers.h"
 #include "solver/world/simulation.h"
 
 #include <functional>
@@ -25,7 +26,7 @@ struct PinnedScene {
 std::vector<PinnedScene> pinnedScenes();
 
 // By what they are about; each is one file.
-std::vector<PinnedScene> pinnedGates();    ///< those of bench/gate_scenes.cpp, so that both gates look at the same frames
+std::vector<PinnedScene> pinnedGates();    ///< those of bench/gate_scenes.cpp (scenarios/gate.h)
 std::vector<PinnedScene> pinnedRests();    ///< what stands or leans, awake and asleep
 std::vector<PinnedScene> pinnedFalls();    ///< what drops, flies and collapses
 std::vector<PinnedScene> pinnedLarge();    ///< many blocks: one large island, many small ones
@@ -34,8 +35,5 @@ std::vector<PinnedScene> pinnedMethods();  ///< every method, and settings that 
 
 /// One of the files of scenes/, by its name without ".toml".
 Scene sceneOfFile(const std::string& name);
-
-/// The same scene in which nothing sleeps.
-Scene awake(Scene scene);
 
 }  // namespace springtower

@@ -18,9 +18,4 @@ Scene sceneOfFile(const std::string& name) {
   return sceneFromToml(std::string(SPRINGTOWER_SOURCE_DIR) + "/scenes/" + name + ".toml");
 }
 
-Scene awake(Scene scene) {
-  scene.settings.sleep = Sleep::off;
-  return scene;
-}
-
 }  // namespace springtower

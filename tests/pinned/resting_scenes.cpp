@@ -4,15 +4,12 @@ namespace springtower {
 namespace {
 
 Scene swayingTower() {
-  Scene scene = awake(towerScene(18));
-  scene.gravity.sway_deg = 0.1;
-  scene.gravity.sway_hz = 2.0;
-  return scene;
+  return swaying(awake(towerScene(18)), 0.1, 2.0);
 }
 
 Scene unevenTower() {
   TowerOptions options;
-  options.heightsSigma_m = 0.0002;
+  options.heightsSigma_m = kUnevenHeightsSigma_m;
   options.massSigma_kg = 0.002;
   options.seed = 3;
   return towerScene(6, options);
@@ -35,10 +32,7 @@ Scene pulledAsleep() {
 }
 
 Scene swayThatWakes() {
-  Scene scene = towerScene(2);
-  scene.gravity.sway_deg = 0.5;
-  scene.gravity.sway_hz = 0.05;
-  return scene;
+  return swaying(towerScene(2), 0.5, 0.05);
 }
 
 Scene cornerForce() {

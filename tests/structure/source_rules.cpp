@@ -16,22 +16,24 @@ struct Folder {
   std::initializer_list<std::string_view> mayInclude;
 };
 
-// core < broadphase, narrowphase < solver < apps, bench; tests see the apps, whose viewer has parts that are tested without a
-// window.
+// core < broadphase, narrowphase < solver < apps, bench; core < scenarios < apps, bench; tests see the apps, whose viewer has
+// parts that are tested without a window.
 const Folder kFolders[] = {
     {"core", {"core"}},
     {"broadphase", {"core", "broadphase"}},
     {"narrowphase", {"core", "narrowphase"}},
     {"solver", {"core", "broadphase", "narrowphase", "solver"}},
-    {"apps", {"core", "broadphase", "narrowphase", "solver", "apps"}},
-    {"bench", {"core", "broadphase", "narrowphase", "solver", "bench"}},
-    {"tests", {"core", "broadphase", "narrowphase", "solver", "apps", "tests"}},
+    {"scenarios", {"core", "scenarios"}},
+    {"apps", {"core", "broadphase", "narrowphase", "solver", "scenarios", "apps"}},
+    {"bench", {"core", "broadphase", "narrowphase", "solver", "scenarios", "bench"}},
+    {"tests", {"core", "broadphase", "narrowphase", "solver", "scenarios", "apps", "tests"}},
 };
 
 // The rooms of the top-level folders that have some, from the ground up: each may know those before it in its own folder.
 // docs/adr/0001-folders.md says why in this order.
 constexpr std::string_view kRooms[] = {"core",
                                        "core/scene",
+                                       "scenarios",
                                        "narrowphase/exact",
                                        "narrowphase",
                                        "solver/block",
@@ -53,6 +55,7 @@ constexpr std::string_view kRooms[] = {"core",
                                        "apps/plot",
                                        "apps/picture",
                                        "apps/commands/run",
+                                       "apps/commands/scenes",
                                        "apps/commands/verdict",
                                        "apps/commands/statics",
                                        "apps/commands/profile",

@@ -1,24 +1,13 @@
 #pragma once
 
 #include "core/scene/scene.h"
+#include "scenarios/loose.h"
 #include "solver/world/simulation.h"
 
 #include <cmath>
 #include <numbers>
 
 namespace springtower {
-
-/// A scene of one block of the game, standing flat on the floor if there is one, that never sleeps.
-inline Scene oneBlockScene(bool floor) {
-  Scene scene;
-  scene.name = "one block";
-  BlockSpec block;
-  block.centre.z() = 0.5 * block.dimensions.z();
-  scene.blocks.push_back(block);
-  scene.floor = floor;
-  scene.settings.sleep = Sleep::off;
-  return scene;
-}
 
 /// Makes a scene step with steps of exactly `step_s`, `steps` of them a frame, whether that is stable or not.
 inline void setSteps(Settings& settings, Method method, double step_s, int steps) {

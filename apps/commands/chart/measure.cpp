@@ -95,7 +95,7 @@ class ChartRun {
     reference_ = fittedBoxes(closed_);
     if (what.method == Method::automatic) result.note = fmt::format("took {}", nameOf(scene.settings.method));
     if (what.peer != Peer::none) peer_ = std::make_unique<PeerProcess>(what, scene);
-    pulled_ = pulledBlock(what.scene, scene, limits.rows);
+    pulled_ = pulledBlock(what.scene, scene);
     if (pulled_ >= 0) {
       leftOut_.assign(scene.blocks.size(), 0);
       leftOut_[static_cast<std::size_t>(pulled_)] = 1;

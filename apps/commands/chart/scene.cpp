@@ -1,56 +1,33 @@
 #include "apps/commands/chart/scene.h"
 
+#include "scenarios/loose.h"
+#include "scenarios/towers.h"
+
 #include <algorithm>
-#include <cmath>
 #include <fmt/format.h>
-#include <numbers>
+#include <utility>
 
 namespace springtower {
 namespace {
 
-constexpr double kChartHeightsSigma_m = 0.0002;
 constexpr double kChartPullSpeed_m_s = 0.04;
 constexpr double kStrongestPull_n = 100.0;
 constexpr double kDrop_m = 0.02;
 constexpr int kDropRows = 3;
-// The collapsing tower leans by a little more than it can stand; a short one would slide before.
-constexpr double kBeyondStanding_deg = 0.6;
-constexpr double kMaxTilt_deg = 30.0;
 constexpr double kHeavyFactor = 10.0;
 constexpr int kLeanRows = 9;
 constexpr double kLean_deg = 9.0;
 constexpr int kTallRows = 36;
 constexpr double kMotion_s = 2.0;  // of scenes that do not come to rest
 
-double collapseTilt_deg(int rows) {
-  const double standing = std::atan(kBlockLength_m / (rows * kBlockHeight_m)) * 180.0 / std::numbers::pi;
-  return std::min(standing + kBeyondStanding_deg, kMaxTilt_deg);
-}
-
-// One block that slides until friction stops it, eight that fall askew and come to lie in a heap, or two that are thrown at one
-// another.
+// Blocks on their own.
 Scene looseBlocks(ChartScene kind) {
   constexpr int kHeap = 8;
-  constexpr double kThrown_m_s = 3.0;
-  Scene scene;
-  scene.name = nameOf(kind);
-  const int count = kind == ChartScene::heap ? kHeap : kind == ChartScene::thrown ? 2 : 1;
-  for (int i = 0; i < count; ++i) {
-    BlockSpec block;
-    if (kind == ChartScene::heap) {
-      block.centre = Vec3(0.02 * std::cos(2.0 * i), 0.02 * std::sin(2.0 * i), 0.04 + 0.04 * i);
-      block.orientation = Eigen::AngleAxisd(1.1 * i, Vec3::UnitZ()) * Eigen::AngleAxisd(0.15 + 0.05 * i, Vec3::UnitY());
-    } else if (kind == ChartScene::thrown) {
-      const double side = i == 0 ? -1.0 : 1.0;
-      block.centre = Vec3(0.1 * side, 0.004 * side, 0.15);
-      block.velocity.x() = -kThrown_m_s * side;
-      block.orientation = Eigen::AngleAxisd(0.3 + 0.4 * i, Vec3::UnitZ()) * Eigen::AngleAxisd(0.2, Vec3::UnitX());
-    } else {
-      block.centre.z() = 0.5 * kBlockHeight_m;
-      block.velocity.x() = 0.7;
-    }
-    scene.blocks.push_back(block);
-  }
+  Scene scene = kind == ChartScene::heap     ? askewHeapScene(kHeap)
+                : kind == ChartScene::thrown ? thrownPairScene()
+                : kind == ChartScene::spin   ? spinningBlockScene()
+                                             : slidingBlockScene();
+  scene.name = kind == ChartScene::spin ? "one block" : nameOf(kind);
   return scene;
 }
 
@@ -59,29 +36,17 @@ bool hasRows(ChartScene scene) {
 }
 
 Scene blocksOf(ChartScene scene, int rows) {
-  if (scene == ChartScene::spin) {
-    Scene one;
-    one.name = "one block";
-    BlockSpec block;
-    block.spin = Vec3(0.05, 10.0, 0.02);  // about the axis of middle moment, so that it tumbles
-    one.blocks.push_back(block);
-    one.floor = false;
-    one.gravity.magnitude = 0.0;
-    return one;
-  }
   if (!hasRows(scene)) return looseBlocks(scene);
-  if (scene == ChartScene::holes) return bitCodeScene("(111)-(101)-(111)-(010)-(111)-(101)-(111)-(101)-(111)-(010)-(111)-(111)");
+  if (scene == ChartScene::holes) return towerWithHolesScene();
   if (scene == ChartScene::lean) rows = kLeanRows;
   if (scene == ChartScene::tall) rows = kTallRows;
   TowerOptions options;
-  if (scene == ChartScene::heights) options.heightsSigma_m = kChartHeightsSigma_m;
+  if (scene == ChartScene::heights) options.heightsSigma_m = kUnevenHeightsSigma_m;
   Scene tower = towerScene(scene == ChartScene::drop ? std::min(rows, kDropRows) : rows, options);
-  for (BlockSpec& block : tower.blocks) {
-    if (scene == ChartScene::drop) block.centre.z() += kDrop_m;
-    if (scene == ChartScene::heavyLight && block.row % 2 == 1) block.mass *= kHeavyFactor;
-  }
-  if (scene == ChartScene::collapse) tower.gravity.tilt_deg = collapseTilt_deg(rows);
-  if (scene == ChartScene::lean) tower.gravity.tilt_deg = kLean_deg;
+  if (scene == ChartScene::drop) return raised(std::move(tower), kDrop_m);
+  if (scene == ChartScene::heavyLight) return withHeavyRows(std::move(tower), kHeavyFactor);
+  if (scene == ChartScene::collapse) return leaning(std::move(tower), collapseTilt_deg(rows));
+  if (scene == ChartScene::lean) return leaning(std::move(tower), kLean_deg);
   return tower;
 }
 
@@ -190,11 +155,8 @@ std::optional<bool> expectedToStand(ChartScene scene) {
   return scene != ChartScene::collapse;
 }
 
-int pulledBlock(ChartScene scene, const Scene& blocks, int rows) {
-  if (scene != ChartScene::pull) return -1;
-  const auto found = std::find_if(blocks.blocks.begin(), blocks.blocks.end(),
-                                  [&](const BlockSpec& block) { return block.row == rows / 2 && block.position == 2; });
-  return static_cast<int>(found - blocks.blocks.begin());
+int pulledBlock(ChartScene scene, const Scene& blocks) {
+  return scene == ChartScene::pull ? static_cast<int>(middleBlock(blocks)) : -1;
 }
 
 void pull(SteadyPull& hand, Simulation& simulation) {

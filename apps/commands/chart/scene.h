@@ -32,7 +32,7 @@ int towerRows(ChartScene scene, const ChartLimits& limits);
 std::optional<bool> expectedToStand(ChartScene scene);
 
 /// The block that is pulled in scene `pull`: the middle one of the middle row. -1 in other scenes.
-int pulledBlock(ChartScene scene, const Scene& blocks, int rows);
+int pulledBlock(ChartScene scene, const Scene& blocks);
 
 /// A hand that pulls one block, as far as a force that holds for a frame can, at a steady speed (proportional and integral
 /// control); engines that know no hand of ours (solver/hand/grip) know a force.

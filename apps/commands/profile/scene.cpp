@@ -1,43 +1,29 @@
 #include "apps/commands/profile/scene.h"
 
 #include "core/error.h"
+#include "scenarios/towers.h"
+#include "scenarios/walls.h"
 
-#include <algorithm>
 #include <chrono>
-#include <cmath>
+#include <cstddef>
 #include <fmt/format.h>
 #include <numbers>
+#include <utility>
 
 namespace springtower {
 namespace {
 
-constexpr double kTowerSpacing_m = 0.3;
-constexpr double kCollapseTilt_deg = 14.5;  // a tower of 18 rows topples, but does not slide
 constexpr double kSway_deg = 0.1;
 constexpr double kSway_hz = 1.0;
-constexpr double kProfileHeightsSigma_m = 0.0002;
 constexpr double kPullSpeed_m_s = 0.04;
 constexpr double kPullStart_m = 0.001;  // from here on the block slides
 constexpr double kPullLongest_s = 5.0;
 constexpr double kAsleepLongest_s = 60.0;
 constexpr double kStrongest_n = 100.0;
-constexpr int kPileCells = 6;        // of three blocks side by side, along and across
-constexpr double kPileGap = 0.002;   // between blocks of a row, in their lengths
 constexpr double kPileFall_m = 0.1;  // what it has fallen through when it lands
-
-// The middle block of the middle row.
-int pulledBlock(const Scene& scene, int rows) {
-  const auto found = std::find_if(scene.blocks.begin(), scene.blocks.end(),
-                                  [&](const BlockSpec& block) { return block.row == rows / 2 && block.position == 2; });
-  return static_cast<int>(found - scene.blocks.begin());
-}
 
 bool isPull(ProfileScene scene) {
   return scene == ProfileScene::pull || scene == ProfileScene::pullSleep;
-}
-
-bool allAsleep(const Simulation& simulation) {
-  return std::all_of(simulation.asleep.begin(), simulation.asleep.end(), [](std::uint8_t flag) { return flag != 0; });
 }
 
 // Wall time that preparing may take.
@@ -66,35 +52,18 @@ void fallAsleep(PreparedScene& scene, const Deadline& deadline) {
   }
 }
 
-// A stack of square rows, each turned by a right angle against the one below and shifted by half a block, so that all of it is
-// connected. Nothing holds its blocks together but their weight.
+// A pile instead of the scene's blocks. A profile counts its rows, whose compression it measures.
 void layPile(int rows, Scene& scene) {
-  const BlockSpec first = scene.blocks.front();
-  const double length = (1.0 + kPileGap) * first.dimensions.x();
-  const double width = length / 3.0;
-  scene.blocks.clear();
-  for (int row = 0; row < rows; ++row) {
-    const bool turned = row % 2 == 1;
-    const double shift = turned ? 0.5 * length : 0.0;
-    for (int i = 0; i < kPileCells * kPileCells * 3; ++i) {
-      const int line = i / (3 * kPileCells);
-      const double along = (line + 0.5) * length + shift;
-      const double across = (i - 3 * kPileCells * line + 0.5) * width + shift;
-      BlockSpec block = first;
-      block.row = row;
-      block.centre = Vec3(turned ? across : along, turned ? along : across, (row + 0.5) * first.dimensions.z());
-      block.orientation = Eigen::AngleAxisd(turned ? 0.5 * std::numbers::pi : 0.0, Vec3::UnitZ());
-      block.velocity = -std::sqrt(2.0 * scene.gravity.magnitude * kPileFall_m) * Vec3::UnitZ();
-      scene.blocks.push_back(block);
-    }
-  }
+  const Eigen::Quaterniond turn(Eigen::AngleAxisd(0.5 * std::numbers::pi, Vec3::UnitZ()));
+  scene.blocks = pileScene(rows, {.fall_m = kPileFall_m, .turn = turn}).blocks;
+  for (std::size_t b = 0; b < scene.blocks.size(); ++b) scene.blocks[b].row = static_cast<int>(b) / kPileRowBlocks;
   scene.name = fmt::format("a pile of {} blocks", scene.blocks.size());
 }
 
 // Pulls until the block slides, so that every timed frame has a moving block.
-void startPulling(PreparedScene& scene, int rows, const Deadline& deadline) {
+void startPulling(PreparedScene& scene, const Deadline& deadline) {
   Simulation& simulation = scene.simulation;
-  const auto block = static_cast<std::size_t>(pulledBlock(simulation.scene, rows));
+  const auto block = middleBlock(simulation.scene);
   const Vec3 direction = simulation.scene.blocks[block].orientation * Vec3::UnitX();
   scene.hand = drawingFrom(simulation, blockId(block), direction, kPullSpeed_m_s, kStrongest_n);
   scene.leftOut.assign(simulation.scene.blocks.size(), 0);
@@ -120,27 +89,15 @@ void PreparedScene::step() {
 
 Scene sceneOf(const ProfileCase& what) {
   TowerOptions options;
-  if (what.scene == ProfileScene::heights) options.heightsSigma_m = kProfileHeightsSigma_m;
+  if (what.scene == ProfileScene::heights) options.heightsSigma_m = kUnevenHeightsSigma_m;
   Scene scene = towerScene(what.rows, options);
   if (what.towers > 1) {
-    const Scene tower = scene;
-    const int side = static_cast<int>(std::ceil(std::sqrt(static_cast<double>(what.towers))));
-    scene.blocks.clear();
-    for (int i = 0; i < what.towers; ++i) {
-      const int line = i / side;
-      for (BlockSpec block : tower.blocks) {
-        block.centre += kTowerSpacing_m * Vec3(i - line * side, line, 0.0);
-        scene.blocks.push_back(block);
-      }
-    }
+    scene = squareOf(std::move(scene), what.towers);
     scene.name = fmt::format("{} towers of {} rows", what.towers, what.rows);
   }
   if (what.scene == ProfileScene::pile) layPile(what.rows, scene);
-  if (what.scene == ProfileScene::collapse) scene.gravity.tilt_deg = kCollapseTilt_deg;
-  if (what.scene == ProfileScene::sway) {
-    scene.gravity.sway_deg = kSway_deg;
-    scene.gravity.sway_hz = kSway_hz;
-  }
+  if (what.scene == ProfileScene::collapse) scene = leaning(std::move(scene), kTopplingTilt_deg);
+  if (what.scene == ProfileScene::sway) scene = swaying(std::move(scene), kSway_deg, kSway_hz);
   Settings& settings = scene.settings;
   settings.method = what.method;
   settings.inertia = what.inertia;
@@ -163,7 +120,7 @@ std::unique_ptr<PreparedScene> prepareScene(const ProfileCase& what, const Profi
     } else if (what.scene != ProfileScene::pile) {
       settle(*scene, limits.settle_s, deadline);
     }
-    if (isPull(what.scene)) startPulling(*scene, what.rows, Deadline(limits.prepare_s));
+    if (isPull(what.scene)) startPulling(*scene, Deadline(limits.prepare_s));
   } catch (const DivergenceError& error) {
     scene->failure = error.what();
   }

@@ -7,6 +7,7 @@
 #include "apps/common/progress.h"
 #include "apps/picture/picture.h"
 #include "core/error.h"
+#include "scenarios/registry.h"
 #include "solver/runner/run.h"
 
 #include <CLI/CLI.hpp>
@@ -23,6 +24,7 @@ constexpr Range kPosesEveryRange{1e-6, 1e7, "s"};
 
 constexpr std::string_view kRunExamples = R"help(examples:
   springtower run tower:18                               the full tower for 10 s
+  springtower run wall:20x12                             another of the scenes that springtower scenes lists
   springtower run tower:18 --seconds 60 --no-sleep       all blocks simulated to the end
   springtower run "(010)-(010)-(011)" --picture a.png    a bit code: rows from the bottom, 1 present, 0 absent, L loose
   springtower run tower:18 --gravity-tilt 14.5 --report collapse.json --poses collapse.csv --poses-every 0.05
@@ -66,7 +68,9 @@ std::unique_ptr<OutputFile> open(const std::optional<std::string>& path, const s
 
 CLI::App* defineRun(CLI::App& program, RunCommand& command) {
   CLI::App* run = program.add_subcommand("run", "simulates a scene, measures it and prints a table");
-  run->add_option("SCENE", command.scene, "tower:R with R rows of three, a bit code such as (010)-(010)-(011), or a .toml file")
+  run->add_option("SCENE", command.scene,
+                  "NAME or NAME:SIZE as springtower scenes lists them, such as tower:18 or wall:20x12; a bit code such as "
+                  "(010)-(010)-(011); or a .toml file")
       ->type_name("")
       ->required();
   addNumber(*run, "--seconds", command.seconds, kSecondsRange, "S", "simulated time (default 10, or what the scene file says)");
@@ -98,7 +102,7 @@ Scene sceneOf(const RunCommand& command) {
   options.massSigma_kg = command.massSigma_kg;
   if (command.seed) options.seed = static_cast<std::uint64_t>(*command.seed);
   options.startGap_m = command.startGap_m;
-  Scene scene = sceneFromName(command.scene, options);
+  Scene scene = sceneNamed(command.scene, options);
   if (command.seconds) scene.seconds = *command.seconds;
   scene.gravity = withOptions(scene.gravity, command);
   applyPhysicsOptions(command.physics, scene.settings);

@@ -6,6 +6,7 @@
 #include "apps/common/output_file.h"
 #include "core/error.h"
 #include "core/limits.h"
+#include "scenarios/registry.h"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -68,7 +69,7 @@ Scene sceneOf(const StaticsCommand& command) {
   options.heightsSigma_m = command.heightsSigma_m;
   options.massSigma_kg = command.massSigma_kg;
   if (command.seed) options.seed = static_cast<std::uint64_t>(*command.seed);
-  Scene scene = sceneFromName(command.scene, options);
+  Scene scene = sceneNamed(command.scene, options);
   if (command.friction) scene.staticFriction = scene.kineticFriction = *command.friction;
   if (command.tilt_deg) scene.gravity.tilt_deg = *command.tilt_deg;
   if (command.direction_deg) scene.gravity.direction_deg = *command.direction_deg;
@@ -141,7 +142,8 @@ CLI::App* defineStatics(CLI::App& program, StaticsCommand& command) {
       program.add_subcommand("statics", "says by equilibrium alone whether a scene can stand, and by what margin");
   statics
       ->add_option("SCENE", command.scene,
-                   "tower:R, a bit code or a .toml file, as for run; or a list of towers, FILE.jsonl or - for standard input")
+                   "NAME:SIZE such as tower:18, a bit code or a .toml file, as for run; or a list of towers, FILE.jsonl or - for "
+                   "standard input")
       ->type_name("")
       ->required();
   addNumber(*statics, "--mu", command.friction, kFrictionRange, "MU", "coefficient of friction (default 0.4)");

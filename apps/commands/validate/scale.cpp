@@ -1,5 +1,6 @@
 #include "apps/commands/validate/validate.h"
 #include "core/error.h"
+#include "scenarios/towers.h"
 #include "solver/runner/run.h"
 #include "solver/runner/trials.h"
 
@@ -77,10 +78,7 @@ Claim relativeClaim(const std::string& what, double measured, double reference) 
 }
 
 void addHeavy(bool longForm, ValidationSection& section) {
-  Scene scene = towerScene(18);
-  for (BlockSpec& block : scene.blocks) {
-    if (block.row % 2 == 1) block.mass *= kHeavy;
-  }
+  const Scene scene = withHeavyRows(towerScene(18), kHeavy);
   Claim stands{"18 rows alternating light and 100 times heavier, light at the bottom", "stands", ""};
   try {
     const RunResult result = runOf(scene, longForm ? 20.0 : 6.0);

@@ -60,6 +60,10 @@ INSTANTIATE_TEST_SUITE_P(
         BadArguments{"NoScene", {}, "SCENE"}, BadArguments{"MissingFile", {"no-such-scene.toml"}, "no-such-scene.toml"},
         BadArguments{"Folder", {"/"}, "folder"}, BadArguments{"TypoInCode", {"(010)-(0120)"}, "character 10"},
         BadArguments{"NoRows", {"tower:0"}, "tower:0"}, BadArguments{"AbsurdRows", {"tower:1000000000"}, "1 to 2000"},
+        BadArguments{"UnknownName", {"castle:3"}, "'castle:3': found no such scene, allowed are tower:ROWS, "},
+        BadArguments{"WrongSize", {"wall:20"}, "wall:COLUMNSxCOURSES: found the size '20'"},
+        BadArguments{"SizeOfNone", {"thrown:2"}, "allowed is the name alone"},
+        BadArguments{"HeightsOfNoTower", {"wall:3x2", "--heights-sigma", "0.0002"}, "for towers only"},
         BadArguments{"RowsNoNumber", {"tower:ten"}, "ten"}, BadArguments{"TwoScenes", {"tower:1", "tower:2"}, "tower:2"},
         BadArguments{"UnknownOption", {"tower:3", "--colour"}, "--colour"},
         BadArguments{"NoNumber", {"tower:3", "--seconds", "ten"}, "found 'ten'"},
@@ -100,7 +104,7 @@ TEST(Program, WithoutACommandNamesTheCommands) {
   for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{{}, {"jump"}, {"--colour"}}) {
     const ProgramResult result = runProgram("springtower", arguments);
     EXPECT_EQ(result.exitCode, 2);
-    EXPECT_THAT(result.error, HasSubstr("run, verdict, profile, statics, chart and validate"));
+    EXPECT_THAT(result.error, HasSubstr("run, verdict, profile, statics, chart, validate, scenes and settings"));
     EXPECT_THAT(linesOf(result.error), SizeIs(2));
   }
 }

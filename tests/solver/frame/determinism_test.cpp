@@ -1,6 +1,7 @@
 #include "core/random.h"
 #include "core/scene/scene.h"
 #include "core/tuning.h"
+#include "scenarios/towers.h"
 #include "solver/world/engine.h"
 #include "solver/world/simulation.h"
 
@@ -37,26 +38,14 @@ void expectSameOnAnyThreads(const Scene& scene, int frames) {
 
 Scene unevenTower(int rows) {
   TowerOptions options;
-  options.heightsSigma_m = 0.0002;
+  options.heightsSigma_m = kUnevenHeightsSigma_m;
   options.seed = 3;
   return towerScene(rows, options);
 }
 
 // Many islands: they run side by side.
 Scene manyTowers() {
-  const Scene one = unevenTower(2);
-  Scene scene = one;
-  scene.blocks.clear();
-  for (int x = 0; x < 10; ++x) {
-    for (int y = 0; y < 10; ++y) {
-      for (BlockSpec block : one.blocks) {
-        block.centre += Vec3(0.2 * x, 0.2 * y, 0.0);
-        scene.blocks.push_back(block);
-      }
-    }
-  }
-  scene.name = "100 towers";
-  return scene;
+  return grid(unevenTower(2), 10, 10, 0.2);
 }
 
 // A thousand blocks, each turned at random by up to `mostTurn`, in a lattice without overlap. All move towards the axis and the
@@ -81,21 +70,6 @@ Scene pile(double mostTurn, double inwards_hz) {
   Scene scene;
   scene.name = "a pile";
   scene.blocks = blocks;
-  return scene;
-}
-
-// Five full towers in a row, end against end: the blocks along it meet those of the next tower with their small faces.
-Scene touchingTowers() {
-  const Scene one = towerScene(18);
-  Scene scene = one;
-  scene.blocks.clear();
-  for (int x = 0; x < 5; ++x) {
-    for (BlockSpec block : one.blocks) {
-      block.centre.x() += kBlockLength_m * x;
-      scene.blocks.push_back(block);
-    }
-  }
-  scene.name = "touching towers";
   return scene;
 }
 
@@ -170,7 +144,7 @@ TEST_P(RestingTest, ALargeIslandIsTheSameOnAnyThreads) {
 
 INSTANTIATE_TEST_SUITE_P(Determinism, RestingTest,
                          ::testing::Values(Resting{towerScene(90), 60, "OneTallTower"},
-                                           Resting{touchingTowers(), 20, "TouchingTowers"}),
+                                           Resting{touchingTowersScene(5), 20, "TouchingTowers"}),
                          [](const auto& tested) { return std::string(tested.param.name); });
 
 class SnapshotTest : public ::testing::TestWithParam<Method> {};

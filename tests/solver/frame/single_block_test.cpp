@@ -1,6 +1,7 @@
 #include "core/error.h"
 #include "core/random.h"
 #include "core/scene/scene.h"
+#include "scenarios/towers.h"
 #include "solver/metrics/measures.h"
 #include "solver/metrics/penetration.h"
 #include "solver/runner/run.h"
@@ -45,10 +46,7 @@ bool allFinite(const ParticleArray& values) {
 }
 
 Scene slopeScene(double shareOfFrictionAngle, double direction_deg) {
-  Scene scene = oneBlockScene(true);
-  scene.gravity.tilt_deg = shareOfFrictionAngle * kFrictionAngle_deg;
-  scene.gravity.direction_deg = direction_deg;
-  return scene;
+  return awake(blockOnSlopeScene(shareOfFrictionAngle * kFrictionAngle_deg, direction_deg));
 }
 
 // Angle between two boxes, degrees, from the sines of the axes' turns: exact where it is small.

@@ -1,6 +1,8 @@
 // Islands of more than 60 blocks: the matrix of an implicit step is no narrow band, and factors cost as much as dozens of
 // solutions.
 #include "core/scene/scene.h"
+#include "scenarios/towers.h"
+#include "scenarios/walls.h"
 #include "solver/metrics/measures.h"
 #include "solver/metrics/penetration.h"
 #include "solver/world/engine.h"
@@ -15,48 +17,10 @@
 namespace springtower {
 namespace {
 
-constexpr double kGap_m = 0.0004;
-
-void place(Scene& scene, const Vec3& centre, const Vec3& dimensions, double mass) {
-  BlockSpec block;
-  block.centre = centre;
-  block.dimensions = dimensions;
-  block.mass = mass;
-  scene.blocks.push_back(block);
-}
-
-// Running bond, half bricks at the ends of every other row; awake.
-Scene wallScene(int columns, int rows) {
-  Scene scene;
-  scene.settings.sleep = Sleep::off;
+// Cubes as dense as the game's blocks.
+Scene densePyramid(int rows) {
   const BlockSpec brick;
-  const Vec3 whole = brick.dimensions;
-  const double pitch = whole.x() + kGap_m;
-  const Vec3 half(0.5 * (whole.x() - kGap_m), whole.y(), whole.z());
-  for (int row = 0; row < rows; ++row) {
-    const double z = (row + 0.5) * whole.z();
-    const int wholes = row % 2 == 0 ? columns : columns - 1;
-    for (int i = 0; i < wholes; ++i) place(scene, Vec3((i - 0.5 * (wholes - 1)) * pitch, 0.0, z), whole, brick.mass);
-    const double end = 0.5 * (columns * pitch - kGap_m) - 0.5 * half.x();
-    for (int side = -1; row % 2 == 1 && side <= 1; side += 2)
-      place(scene, Vec3(side * end, 0.0, z), half, brick.mass * half.x() / whole.x());
-  }
-  return scene;
-}
-
-// Cubes of 20 mm, each on two of the row below, but for the lowest.
-Scene pyramidScene(int rows) {
-  Scene scene;
-  scene.settings.sleep = Sleep::off;
-  const BlockSpec brick;
-  const double side = 0.02;
-  const double mass = brick.mass * side * side * side / brick.dimensions.prod();
-  const double pitch = side + kGap_m;
-  for (int row = 0; row < rows; ++row) {
-    for (int i = 0; i < rows - row; ++i)
-      place(scene, Vec3((i - 0.5 * (rows - row - 1)) * pitch, 0.0, (row + 0.5) * side), Vec3::Constant(side), mass);
-  }
-  return scene;
+  return awake(cubePyramidScene(rows, brick.mass * kCubeSide_m * kCubeSide_m * kCubeSide_m / brick.dimensions.prod()));
 }
 
 double deepest(const Simulation& simulation) {
@@ -74,7 +38,7 @@ double farthest(const ParticleArray& before, const ParticleArray& now) {
 // After a second nothing moves any more and no equation is solved: a frame evaluates the forces and is done. It used to take 233
 // explicit steps a frame.
 TEST(WideIsland, AWallRestsWithoutASolution) {
-  Simulation simulation(wallScene(20, 12));
+  Simulation simulation(awake(wallScene(20, 12)));
   stepFor(simulation, 1.0);
   const ParticleArray before = simulation.state.position;
   const Counters then = simulation.counters;
@@ -90,7 +54,7 @@ TEST(WideIsland, AWallRestsWithoutASolution) {
 // Weight goes down a pyramid along its sides, and thousands of points slide before it rests: without what friction does as normal
 // forces change, the search for its equilibrium ended or not as rounding had it.
 TEST(WideIsland, APyramidOf40RowsBeginsInEquilibrium) {
-  Simulation simulation(pyramidScene(40));
+  Simulation simulation(densePyramid(40));
   const ParticleArray start = simulation.state.position;
   stepFor(simulation, 0.5);
   EXPECT_EQ(simulation.counters.handedOver, 0U);
@@ -104,7 +68,7 @@ TEST(WideIsland, APyramidOf40RowsBeginsInEquilibrium) {
 // A brick in the middle is pushed across the wall by a little more than friction bears, on its lower and its upper face, for 0.03
 // s: then friction stops it. Points slide and let go; the order of elimination stays, and no step falls back on explicit ones.
 TEST(WideIsland, ABrickIsPushedOutOfAWallByImplicitSteps) {
-  Scene scene = wallScene(20, 12);
+  Scene scene = awake(wallScene(20, 12));
   const int pushed = 130;
   const BlockSpec& brick = scene.blocks[static_cast<std::size_t>(pushed)];
   const double rowsAbove = 11.5 - brick.centre.z() / brick.dimensions.z();
@@ -138,14 +102,14 @@ TEST(WideIsland, IsEliminatedInTheOrderThatFillsInLess) {
   Scene tower = towerScene(30);
   tower.settings.sleep = Sleep::off;
   EXPECT_TRUE(fromBelow(tower));
-  EXPECT_FALSE(fromBelow(wallScene(20, 12)));
+  EXPECT_FALSE(fromBelow(awake(wallScene(20, 12))));
 }
 
 TEST(WideIsland, HasTheSameBitsOnAnyNumberOfThreads) {
   std::uint64_t hashes[2] = {};
   for (const std::size_t threads : {1U, 4U}) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-    Simulation simulation(wallScene(28, 11));
+    Simulation simulation(awake(wallScene(28, 11)));
     kick(simulation, simulation.model.blockCount() - 1, Vec3(0.0, 0.05, 0.0));
     stepFor(simulation, 0.25);
     hashes[threads == 1 ? 0 : 1] = stateHash(simulation);

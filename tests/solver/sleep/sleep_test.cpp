@@ -15,10 +15,6 @@ std::size_t asleepBlocks(const Simulation& simulation) {
   return static_cast<std::size_t>(std::count(simulation.asleep.begin(), simulation.asleep.end(), std::uint8_t{1}));
 }
 
-bool allAsleep(const Simulation& simulation) {
-  return asleepBlocks(simulation) == simulation.asleep.size();
-}
-
 // Steps until all blocks sleep, at most for a time.
 void stepUntilAsleep(Simulation& simulation, double seconds) {
   while (!allAsleep(simulation) && simulation.time_s < seconds) stepFrame(simulation);
