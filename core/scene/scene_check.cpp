@@ -1,4 +1,6 @@
 #include "core/error.h"
+#include "core/geometry/oriented_box.h"
+#include "core/geometry/sweep.h"
 #include "core/limits.h"
 #include "core/scene/scene.h"
 
@@ -8,7 +10,6 @@
 #include <cstddef>
 #include <fmt/format.h>
 #include <limits>
-#include <numeric>
 #include <string>
 #include <vector>
 
@@ -19,42 +20,24 @@ namespace {
 constexpr double kAllowedOverlap = 1e-6;
 constexpr std::array<const char*, 3> kAxisNames = {"x", "y", "z"};
 
-struct Box {
-  Vec3 centre;
-  Eigen::Matrix3d axes;  // its own axes as columns
-  Vec3 half;
-  Vec3 reach;  // half lengths of its bounding box along the world's axes
-};
-
-Box boxOf(const BlockSpec& block) {
-  Box box;
-  box.centre = block.centre;
-  box.axes = block.orientation.toRotationMatrix();
-  box.half = 0.5 * block.dimensions;
-  box.reach = box.axes.cwiseAbs() * box.half;
-  return box;
+double overlapAlong(const Vec3& direction, const OrientedBox& a, const OrientedBox& b) {
+  return a.reachAlong(direction) + b.reachAlong(direction) - std::abs(direction.dot(b.centre - a.centre));
 }
 
-double overlapAlong(const Vec3& direction, const Box& a, const Box& b) {
-  const auto reachAlong = [&](const Box& box) { return (box.axes.transpose() * direction).cwiseAbs().dot(box.half); };
-  return reachAlong(a) + reachAlong(b) - std::abs(direction.dot(b.centre - a.centre));
-}
-
-// How far two boxes would have to move apart to touch (separating axes: faces of each, products of edges); not positive when
-// they are apart.
-double overlapDepth(const Box& a, const Box& b) {
+// How far two boxes would have to move apart to touch; not positive when they are apart. Any direction is a valid witness, so
+// rounding in one does no harm.
+double overlapDepth(const OrientedBox& a, const OrientedBox& b) {
+  constexpr double kLeastSine = 1e-8;
   double depth = std::numeric_limits<double>::infinity();
   for (Eigen::Index i = 0; i < 3; ++i) {
     depth = std::min({depth, overlapAlong(a.axes.col(i), a, b), overlapAlong(b.axes.col(i), a, b)});
   }
-  for (Eigen::Index i = 0; i < 3 && depth > 0.0; ++i) {
-    for (Eigen::Index j = 0; j < 3; ++j) {
-      const Vec3 product = a.axes.col(i).cross(b.axes.col(j));
-      const double length = product.norm();
-      // Nearly parallel edges: the faces decide. Any direction is a valid witness, so rounding in this one does no harm.
-      if (length > 1e-8) depth = std::min(depth, overlapAlong(product / length, a, b));
-    }
-  }
+  if (depth <= 0.0) return depth;
+  forEachEdgeProduct([&](int i) { return a.axes.col(i); }, [&](int j) { return b.axes.col(j); }, kLeastSine,
+                     [&](int, int, const Vec3& axis) {
+                       depth = std::min(depth, overlapAlong(axis, a, b));
+                       return true;
+                     });
   return depth;
 }
 
@@ -108,9 +91,9 @@ void checkForce(const UserForce& force, std::size_t blocks, const std::string& w
   requireInRange(force.end_s, {force.start_s, kTimeRange.most, kTimeRange.unit}, where + ": end");
 }
 
-void checkFloor(const Scene& scene, const std::vector<Box>& boxes, std::string_view source) {
+void checkFloor(const Scene& scene, const std::vector<OrientedBox>& boxes, std::string_view source) {
   for (std::size_t b = 0; b < boxes.size(); ++b) {
-    const double depth = boxes[b].reach.z() - boxes[b].centre.z();
+    const double depth = boxes[b].reach().z() - boxes[b].centre.z();
     if (depth <= kAllowedOverlap * scene.blocks[b].dimensions.minCoeff()) continue;
     throw InputError(fmt::format("{}: {} starts {:.4g} mm inside the floor z = 0, allowed is touching it", source,
                                  nameOfBlock(scene, b), 1e3 * depth));
@@ -140,40 +123,29 @@ void checkPlane(const Scene& scene, std::string_view source) {
   require(scene.gravity.at(0.0).y(), "gravity: y");
 }
 
-// The axis along which the blocks are spread most, which leaves the fewest neighbours in a sweep.
-Eigen::Index widestAxis(const std::vector<Box>& boxes) {
-  Vec3 sum = Vec3::Zero();
-  Vec3 sumOfSquares = Vec3::Zero();
-  for (const Box& box : boxes) {
-    const Vec3 place = box.centre - boxes.front().centre;
-    sum += place;
-    sumOfSquares += place.cwiseAbs2();
-  }
-  Eigen::Index widest = 0;
-  (sumOfSquares - sum.cwiseAbs2() / static_cast<double>(boxes.size())).maxCoeff(&widest);
-  return widest;
+void checkPair(const Scene& scene, const std::vector<OrientedBox>& boxes, std::size_t one, std::size_t other,
+               std::string_view source) {
+  const auto [first, second] = std::minmax(one, other);
+  const OrientedBox& a = boxes[first];
+  const OrientedBox& b = boxes[second];
+  if (((a.centre - b.centre).cwiseAbs().array() >= (a.reach() + b.reach()).array()).any()) return;
+  const double depth = overlapDepth(a, b);
+  const double size = std::min(scene.blocks[first].dimensions.minCoeff(), scene.blocks[second].dimensions.minCoeff());
+  if (depth <= kAllowedOverlap * size) return;
+  throw InputError(fmt::format("{}: {} and {} start {:.4g} mm inside each other, allowed is touching", source,
+                               nameOfBlock(scene, first), nameOfBlock(scene, second), 1e3 * depth));
 }
 
-void checkPairs(const Scene& scene, const std::vector<Box>& boxes, std::string_view source) {
-  const Eigen::Index axis = widestAxis(boxes);
-  const auto low = [&](std::size_t b) { return boxes[b].centre[axis] - boxes[b].reach[axis]; };
-  std::vector<std::size_t> order(boxes.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return low(a) < low(b); });
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    const Box& box = boxes[order[i]];
-    const double high = box.centre[axis] + box.reach[axis];
-    for (std::size_t j = i + 1; j < order.size() && low(order[j]) < high; ++j) {
-      const Box& other = boxes[order[j]];
-      const auto [first, second] = std::minmax(order[i], order[j]);
-      if (((other.centre - box.centre).cwiseAbs().array() >= (box.reach + other.reach).array()).any()) continue;
-      const double depth = overlapDepth(boxes[first], boxes[second]);
-      const double size = std::min(scene.blocks[first].dimensions.minCoeff(), scene.blocks[second].dimensions.minCoeff());
-      if (depth <= kAllowedOverlap * size) continue;
-      throw InputError(fmt::format("{}: {} and {} start {:.4g} mm inside each other, allowed is touching", source,
-                                   nameOfBlock(scene, first), nameOfBlock(scene, second), 1e3 * depth));
-    }
+void checkPairs(const Scene& scene, const std::vector<OrientedBox>& boxes, std::string_view source) {
+  const Eigen::Index axis = widestAxis(boxes.size(), [&](std::size_t b) { return boxes[b].centre; });
+  std::vector<double> lower;
+  std::vector<double> upper;
+  for (const OrientedBox& box : boxes) {
+    const double reach = box.reach()[axis];
+    lower.push_back(box.centre[axis] - reach);
+    upper.push_back(box.centre[axis] + reach);
   }
+  forEachOverlap(lower, upper, 0.0, [&](std::size_t a, std::size_t b) { checkPair(scene, boxes, a, b, source); });
 }
 
 }  // namespace
@@ -187,11 +159,11 @@ void checkScene(const Scene& scene, std::string_view source) {
                  fmt::format("{}: kinetic friction", source));
   requireInRange(static_cast<double>(scene.blocks.size()), {1.0, static_cast<double>(kMaxBlocks), ""},
                  fmt::format("{}: number of blocks", source));
-  std::vector<Box> boxes;
+  std::vector<OrientedBox> boxes;
   boxes.reserve(scene.blocks.size());
   for (std::size_t b = 0; b < scene.blocks.size(); ++b) {
     checkBlock(scene, b, source);
-    boxes.push_back(boxOf(scene.blocks[b]));
+    boxes.push_back(orientedBox(scene.blocks[b].centre, scene.blocks[b].orientation, scene.blocks[b].dimensions));
   }
   for (std::size_t f = 0; f < scene.forces.size(); ++f) {
     checkForce(scene.forces[f], scene.blocks.size(), fmt::format("{}: force {}", source, f));

@@ -1,5 +1,7 @@
 #include "solver/metrics/penetration.h"
 
+#include "core/geometry/oriented_box.h"
+#include "core/geometry/sweep.h"
 #include "core/tuning.h"
 
 #include <algorithm>
@@ -51,24 +53,10 @@ void findBounds(const ParticleArray& position, std::vector<Bounds>& bounds) {
   }
 }
 
-// The axis along which the blocks are spread most: fewest pairs overlap along it.
-Eigen::Index widestAxis(const std::vector<Bounds>& bounds) {
-  Vec3 sum = Vec3::Zero();
-  Vec3 sumOfSquares = Vec3::Zero();
-  for (const Bounds& box : bounds) {
-    sum += box.low;
-    sumOfSquares += box.low.cwiseAbs2();
-  }
-  const Vec3 variance = sumOfSquares - sum.cwiseAbs2() / static_cast<double>(bounds.size());
-  Eigen::Index axis = 0;
-  variance.maxCoeff(&axis);
-  return axis;
-}
-
 void sortBlocks(PenetrationWorkspace& workspace) {
   const auto& bounds = workspace.bounds;
   auto& order = workspace.order;
-  const Eigen::Index axis = widestAxis(bounds);
+  const Eigen::Index axis = widestAxis(bounds.size(), [&](std::size_t b) { return bounds[b].low; });
   const auto before = [&](std::uint32_t a, std::uint32_t b) { return bounds[a].low[axis] < bounds[b].low[axis]; };
   if (order.size() != bounds.size() || axis != workspace.axis) {
     order.resize(bounds.size());
@@ -121,14 +109,10 @@ double overlapDepth(const ParticleArray& position, std::size_t first, std::size_
       if (!stillDeep(axis)) return std::max(depth, 0.0);
     }
   }
-  for (const Vec3& edgeA : boxA.axis) {
-    for (const Vec3& edgeB : boxB.axis) {
-      const Vec3 axis = edgeA.cross(edgeB);
-      const double sine = axis.norm();
-      if (sine > tuning::kPenetrationParallelSine && !stillDeep(axis / sine)) return std::max(depth, 0.0);
-    }
-  }
-  return depth;
+  forEachEdgeProduct([&](int i) { return boxA.axis[static_cast<std::size_t>(i)]; },
+                     [&](int j) { return boxB.axis[static_cast<std::size_t>(j)]; }, tuning::kPenetrationParallelSine,
+                     [&](int, int, const Vec3& axis) { return stillDeep(axis); });
+  return std::max(depth, 0.0);
 }
 
 Penetration maxPenetration(const ParticleArray& position, bool floor, PenetrationWorkspace& workspace) {

@@ -1,33 +1,18 @@
 #include "solver/statics/contacts.h"
 
+#include "core/geometry/oriented_box.h"
+#include "core/geometry/polygon.h"
+#include "core/geometry/sweep.h"
 #include "core/tuning.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <optional>
 
 namespace springtower {
 namespace {
-
-struct Box {
-  Vec3 centre;
-  Eigen::Matrix3d axes;  // columns
-  Vec3 half;
-
-  [[nodiscard]] double reachAlong(const Vec3& direction) const { return (axes.transpose() * direction).cwiseAbs().dot(half); }
-  [[nodiscard]] Vec3 corner(unsigned bits) const {
-    Vec3 side;
-    for (unsigned a = 0; a < 3; ++a) side[a] = ((bits >> a) & 1U) != 0U ? half[a] : -half[a];
-    return centre + axes * side;
-  }
-};
-
-Box boxOf(const BlockSpec& block) {
-  return {block.centre, block.orientation.toRotationMatrix(), 0.5 * block.dimensions};
-}
 
 // An axis that may separate two boxes: its direction is unit, from b to a.
 struct Axis {
@@ -37,12 +22,12 @@ struct Axis {
   int ofB = -1;
 };
 
-Axis axisAlong(const Vec3& unit, const Box& a, const Box& b, int ofA, int ofB) {
+Axis axisAlong(const Vec3& unit, const OrientedBox& a, const OrientedBox& b, int ofA, int ofB) {
   const double distance = (a.centre - b.centre).dot(unit);
   return {distance < 0.0 ? Vec3(-unit) : unit, std::abs(distance) - a.reachAlong(unit) - b.reachAlong(unit), ofA, ofB};
 }
 
-Axis bestAxis(const Box& a, const Box& b, double slack) {
+Axis bestAxis(const OrientedBox& a, const OrientedBox& b, double slack) {
   Axis best;
   for (int i = 0; i < 3; ++i) {
     for (const Axis& axis : {axisAlong(b.axes.col(i), a, b, -1, i), axisAlong(a.axes.col(i), a, b, i, -1)}) {
@@ -51,15 +36,12 @@ Axis bestAxis(const Box& a, const Box& b, double slack) {
     }
   }
   Axis edge;
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) {
-      const Vec3 product = a.axes.col(i).cross(b.axes.col(j));
-      const double sine = product.norm();
-      if (sine < tuning::kStaticParallelSine) continue;
-      const Axis axis = axisAlong(product / sine, a, b, i, j);
-      if (axis.gap > edge.gap) edge = axis;
-    }
-  }
+  forEachEdgeProduct([&](int i) { return a.axes.col(i); }, [&](int j) { return b.axes.col(j); }, tuning::kStaticParallelSine,
+                     [&](int i, int j, const Vec3& unit) {
+                       const Axis axis = axisAlong(unit, a, b, i, j);
+                       if (axis.gap > edge.gap) edge = axis;
+                       return true;
+                     });
   return edge.gap > best.gap + slack ? edge : best;
 }
 
@@ -70,7 +52,7 @@ struct Face {
   Vec3 normal;
 };
 
-Face faceAlong(const Box& box, const Vec3& direction) {
+Face faceAlong(const OrientedBox& box, const Vec3& direction) {
   int across = 0;
   const Vec3 cosines = box.axes.transpose() * direction;
   for (int a = 1; a < 3; ++a) {
@@ -80,23 +62,6 @@ Face faceAlong(const Box& box, const Vec3& direction) {
   return {across, box.centre + normal * box.half[across], normal};
 }
 
-// Keeps what of a polygon lies below `limit` along a direction (Sutherland & Hodgman 1974). Give the limit a little slack: an
-// edge that lies on it but for rounding would else be cut somewhere along its length.
-std::vector<Vec3> clipped(const std::vector<Vec3>& polygon, const Vec3& direction, double limit) {
-  std::vector<Vec3> kept;
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const Vec3& from = polygon[i];
-    const Vec3& to = polygon[(i + 1) % polygon.size()];
-    const double before = from.dot(direction) - limit;
-    const double after = to.dot(direction) - limit;
-    if (before <= 0.0) kept.push_back(from);
-    if ((before < 0.0 && after > 0.0) || (before > 0.0 && after < 0.0)) {
-      kept.push_back(from + (to - from) * (before / (before - after)));
-    }
-  }
-  return kept;
-}
-
 double areaOf(const std::vector<Vec3>& polygon) {
   Vec3 twice = Vec3::Zero();
   for (std::size_t i = 2; i < polygon.size(); ++i) twice += (polygon[i - 1] - polygon[0]).cross(polygon[i] - polygon[0]);
@@ -104,7 +69,7 @@ double areaOf(const std::vector<Vec3>& polygon) {
 }
 
 // The part of `incident`'s face over `reference`'s face; `normal` is unit, out of the reference face.
-std::vector<Vec3> overlapOfFaces(const Box& reference, const Box& incident, const Vec3& normal, double size) {
+std::vector<Vec3> overlapOfFaces(const OrientedBox& reference, const OrientedBox& incident, const Vec3& normal, double size) {
   const Face face = faceAlong(reference, normal);
   const Face other = faceAlong(incident, -normal);
   const int u = (other.across + 1) % 3;
@@ -118,8 +83,8 @@ std::vector<Vec3> overlapOfFaces(const Box& reference, const Box& incident, cons
     const Vec3 side = reference.axes.col(a);
     const double middle = reference.centre.dot(side);
     const double half = reference.half[a] + tuning::kStaticClipSlack * size;
-    polygon = clipped(polygon, side, half + middle);
-    polygon = clipped(polygon, -side, half - middle);
+    polygon = clippedBy(polygon, side, half + middle);
+    polygon = clippedBy(polygon, Vec3(-side), half - middle);
   }
   const bool flat = face.normal.cross(other.normal).norm() < tuning::kStaticParallelSine;
   if (flat && areaOf(polygon) < tuning::kStaticTouchGap * size * size) polygon.clear();
@@ -127,8 +92,8 @@ std::vector<Vec3> overlapOfFaces(const Box& reference, const Box& incident, cons
 }
 
 // Where two crossed edges come nearest: on a's edge.
-Vec3 crossingOnA(const Box& a, const Box& b, const Axis& axis) {
-  const auto edgeCentre = [](const Box& box, const Vec3& towards, int along) {
+Vec3 crossingOnA(const OrientedBox& a, const OrientedBox& b, const Axis& axis) {
+  const auto edgeCentre = [](const OrientedBox& box, const Vec3& towards, int along) {
     Vec3 place = box.centre;
     for (int i = 0; i < 3; ++i) {
       if (i != along) place += box.axes.col(i) * (box.axes.col(i).dot(towards) < 0.0 ? -box.half[i] : box.half[i]);
@@ -152,7 +117,7 @@ void addPoint(FacePair& facing, const Vec3& place, double gap, double size, doub
   if (!known) facing.points.push_back({place, gap > touch ? gap : 0.0});
 }
 
-std::optional<FacePair> facingOf(const std::vector<Box>& boxes, std::size_t first, std::size_t second, double reach) {
+std::optional<FacePair> facingOf(const std::vector<OrientedBox>& boxes, std::size_t first, std::size_t second, double reach) {
   const double size = 2.0 * std::min(boxes[first].half.minCoeff(), boxes[second].half.minCoeff());
   Axis axis = bestAxis(boxes[first], boxes[second], tuning::kStaticFaceSlack * size);
   if (axis.gap > std::max(reach, tuning::kStaticTouchGap * size)) return {};
@@ -161,14 +126,14 @@ std::optional<FacePair> facingOf(const std::vector<Box>& boxes, std::size_t firs
     std::swap(first, second);
     axis = {-axis.direction, axis.gap, axis.ofB, axis.ofA};
   }
-  const Box& upper = boxes[first];
-  const Box& lower = boxes[second];
+  const OrientedBox& upper = boxes[first];
+  const OrientedBox& lower = boxes[second];
   FacePair facing{blockId(first), blockId(second), axis.direction, {}};
   if (axis.ofA >= 0 && axis.ofB >= 0) {
     addPoint(facing, crossingOnA(upper, lower, axis), axis.gap, size, reach);
   } else {
     const bool onLower = axis.ofB >= 0;
-    const Box& reference = onLower ? lower : upper;
+    const OrientedBox& reference = onLower ? lower : upper;
     const Vec3 outward = onLower ? axis.direction : Vec3(-axis.direction);
     const double plane = reference.centre.dot(outward) + reference.reachAlong(outward);
     for (const Vec3& place : overlapOfFaces(reference, onLower ? upper : lower, outward, size)) {
@@ -180,7 +145,7 @@ std::optional<FacePair> facingOf(const std::vector<Box>& boxes, std::size_t firs
   return facing;
 }
 
-std::optional<FacePair> facingFloor(const Box& box, std::size_t block, double reach) {
+std::optional<FacePair> facingFloor(const OrientedBox& box, std::size_t block, double reach) {
   FacePair facing{blockId(block), kFloor, Vec3::UnitZ(), {}};
   const double size = 2.0 * box.half.minCoeff();
   // A block that lies on the floor has gaps at its lower corners alone, however far the reach goes.
@@ -196,31 +161,25 @@ std::optional<FacePair> facingFloor(const Box& box, std::size_t block, double re
 }  // namespace
 
 std::vector<FacePair> facingBlocks(const Scene& scene, double reach_m) {
-  std::vector<Box> boxes;
+  std::vector<OrientedBox> boxes;
   std::vector<double> low;
   std::vector<double> high;
   double thickest = 0.0;
   for (const BlockSpec& block : scene.blocks) {
-    boxes.push_back(boxOf(block));
+    boxes.push_back(orientedBox(block.centre, block.orientation, block.dimensions));
     const double half = boxes.back().reachAlong(Vec3::UnitZ());
     low.push_back(block.centre.z() - half);
     high.push_back(block.centre.z() + half);
     thickest = std::max(thickest, block.dimensions.minCoeff());
   }
-  std::vector<std::size_t> order(boxes.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return low[a] < low[b]; });
   std::vector<FacePair> result;
   const double margin = std::max(reach_m, tuning::kStaticTouchGap * thickest);
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    const std::size_t a = order[i];
-    if (scene.floor) {
-      if (const auto facing = facingFloor(boxes[a], a, reach_m)) result.push_back(*facing);
-    }
-    for (std::size_t j = i + 1; j < order.size() && low[order[j]] <= high[a] + margin; ++j) {
-      if (const auto facing = facingOf(boxes, a, order[j], reach_m)) result.push_back(*facing);
-    }
+  for (std::size_t b = 0; scene.floor && b < boxes.size(); ++b) {
+    if (const auto facing = facingFloor(boxes[b], b, reach_m)) result.push_back(*facing);
   }
+  forEachOverlap(low, high, margin, [&](std::size_t a, std::size_t b) {
+    if (const auto facing = facingOf(boxes, a, b, reach_m)) result.push_back(*facing);
+  });
   std::sort(result.begin(), result.end(),
             [](const FacePair& a, const FacePair& b) { return std::pair(a.upper, a.lower) < std::pair(b.upper, b.lower); });
   return result;

@@ -2,6 +2,7 @@
 
 #include "core/state.h"
 #include "core/tuning.h"
+#include "solver/statics/lp_columns.h"
 
 #include <ClpSimplex.hpp>
 #include <array>
@@ -16,23 +17,6 @@ namespace {
 
 constexpr int kRows = 3;  // of a block: two forces and a torque
 
-// The columns of a linear programme, one after the other, as CLP takes them.
-struct Columns {
-  std::vector<CoinBigIndex> start = {0};
-  std::vector<int> row;
-  std::vector<double> value;
-  std::vector<double> cost;
-
-  void add(int at, double entry) {
-    row.push_back(at);
-    value.push_back(entry);
-  }
-  void finish(double theCost) {
-    start.push_back(static_cast<CoinBigIndex>(row.size()));
-    cost.push_back(theCost);
-  }
-};
-
 }  // namespace
 
 double frictionLimit_n(const Simulation& simulation, std::span<const ContactForce> contacts, BlockId block,
@@ -43,7 +27,7 @@ double frictionLimit_n(const Simulation& simulation, std::span<const ContactForc
   const int balances = kRows * static_cast<int>(simulation.model.blockCount());
 
   // A friction force is a mean of the corners of its polygon: shares that add up to no more than 1, a row for each contact.
-  Columns columns;
+  LpColumns columns;
   int rows = balances;
   for (const ContactForce& contact : contacts) {
     if (!(contact.normalForce > 0.0)) continue;
@@ -76,8 +60,7 @@ double frictionLimit_n(const Simulation& simulation, std::span<const ContactForc
   clp.resize(rows, 0);
   for (int row = 0; row < balances; ++row) clp.setRowBounds(row, 0.0, 0.0);
   for (int row = balances; row < rows; ++row) clp.setRowBounds(row, -COIN_DBL_MAX, 1.0);
-  clp.addColumns(static_cast<int>(columns.cost.size()), nullptr, nullptr, columns.cost.data(), columns.start.data(),
-                 columns.row.data(), columns.value.data());
+  columns.addTo(clp);
   clp.primal();
   if (clp.status() != 0) {
     throw std::runtime_error("friction limit: the linear programme could not be solved, status " + std::to_string(clp.status()));

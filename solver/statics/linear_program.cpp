@@ -1,6 +1,7 @@
 #include "solver/statics/linear_program.h"
 
 #include "core/tuning.h"
+#include "solver/statics/lp_columns.h"
 
 #include <ClpSimplex.hpp>
 #include <algorithm>
@@ -23,18 +24,14 @@ double angleOf(int side) {
 // What is missing to balance, up and down in each row.
 void addSlacks(ClpSimplex& clp) {
   const int rows = clp.numberRows();
-  std::vector<CoinBigIndex> starts = {0};
-  std::vector<int> indices;
-  std::vector<double> values;
+  LpColumns slacks;
   for (int row = 0; row < rows; ++row) {
     for (const double sign : {1.0, -1.0}) {
-      indices.push_back(row);
-      values.push_back(sign);
-      starts.push_back(static_cast<CoinBigIndex>(indices.size()));
+      slacks.add(row, sign);
+      slacks.finish(1.0);
     }
   }
-  const std::vector<double> ones(indices.size(), 1.0);
-  clp.addColumns(2 * rows, nullptr, nullptr, ones.data(), starts.data(), indices.data(), values.data());
+  slacks.addTo(clp);
 }
 
 void prepare(ClpSimplex& clp, int rows) {
@@ -77,10 +74,7 @@ struct EquilibriumProgram::Solver {
   }
 
   void addEdges(const std::vector<Edge>& fresh) {
-    std::vector<CoinBigIndex> starts = {0};
-    std::vector<int> rows;
-    std::vector<double> values;
-    std::vector<double> costs;
+    LpColumns columns;
     for (const Edge& edge : fresh) {
       const ForcePoint& point = model.points[usable[edge.point]];
       for (const bool onUpper : {true, false}) {
@@ -89,17 +83,15 @@ struct EquilibriumProgram::Solver {
         const Vec6 wrench = model.wrench(point, onUpper) * edgeForce(edge.side);
         for (Eigen::Index i = 0; i < 6; ++i) {
           if (wrench[i] == 0.0) continue;
-          rows.push_back(6 * block + static_cast<int>(i));
-          values.push_back(wrench[i]);
+          columns.add(6 * block + static_cast<int>(i), wrench[i]);
         }
       }
-      starts.push_back(static_cast<CoinBigIndex>(rows.size()));
-      costs.push_back(seekingBalance || pointCosts.empty() ? 0.0 : pointCosts[edge.point]);
+      columns.finish(seekingBalance || pointCosts.empty() ? 0.0 : pointCosts[edge.point]);
       present[edge.point].set(static_cast<std::size_t>(edge.side));
-      edgeColumns.push_back(clp.numberColumns() + static_cast<int>(costs.size()) - 1);
+      edgeColumns.push_back(clp.numberColumns() + columns.count() - 1);
       edges.push_back(edge);
     }
-    clp.addColumns(static_cast<int>(fresh.size()), nullptr, nullptr, costs.data(), starts.data(), rows.data(), values.data());
+    columns.addTo(clp);
   }
 
   // The edges whose price says that they would better the solution: the best of each point.
@@ -236,9 +228,7 @@ bool parallelForcesBalance(const StaticsModel& model, std::span<const std::size_
     for (const int row : {3 * b + 1, 3 * b + 2}) clp.setRowBounds(row, 0.0, 0.0);
   }
   addSlacks(clp);
-  std::vector<CoinBigIndex> starts = {0};
-  std::vector<int> rows;
-  std::vector<double> values;
+  LpColumns columns;
   for (const std::size_t p : usable) {
     const ForcePoint& point = model.points[p];
     // With the rounding of a slope that is the friction itself.
@@ -249,15 +239,11 @@ bool parallelForcesBalance(const StaticsModel& model, std::span<const std::size_
       const Vec6 wrench = model.wrench(point, onUpper) * (point.frame.transpose() * up);
       // Force along gravity, and the torques across it; the others vanish.
       const Vec3 entries(wrench.head<3>().dot(up), wrench.tail<3>().dot(axes.col(1)), wrench.tail<3>().dot(axes.col(2)));
-      for (int i = 0; i < 3; ++i) {
-        rows.push_back(3 * block + i);
-        values.push_back(entries[i]);
-      }
+      for (int i = 0; i < 3; ++i) columns.add(3 * block + i, entries[i]);
     }
-    starts.push_back(static_cast<CoinBigIndex>(rows.size()));
+    columns.finish(0.0);
   }
-  const auto columns = static_cast<int>(starts.size()) - 1;
-  if (columns > 0) clp.addColumns(columns, nullptr, nullptr, nullptr, starts.data(), rows.data(), values.data());
+  columns.addTo(clp);
   clp.primal();
   return clp.status() == 0 && clp.objectiveValue() <= tuning::kMaxLpImbalance;
 }

@@ -1,5 +1,6 @@
 #include "solver/statics/tilt_limits.h"
 
+#include "core/geometry/polygon.h"
 #include "core/tuning.h"
 
 #include <algorithm>
@@ -143,18 +144,7 @@ std::vector<Vec2> convexHull(std::vector<Vec2> points, double same) {
 }
 
 std::vector<Vec2> keepTo(const std::vector<Vec2>& polygon, const GravityLimit& limit) {
-  std::vector<Vec2> kept;
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const Vec2& from = polygon[i];
-    const Vec2& to = polygon[(i + 1) % polygon.size()];
-    const double before = from.dot(limit.direction) - limit.bound;
-    const double after = to.dot(limit.direction) - limit.bound;
-    if (before <= 0.0) kept.push_back(from);
-    if ((before < 0.0 && after > 0.0) || (before > 0.0 && after < 0.0)) {
-      kept.emplace_back(from + (to - from) * (before / (before - after)));
-    }
-  }
-  return kept;
+  return clippedBy(polygon, limit.direction, limit.bound);
 }
 
 std::vector<GravityLimit> gravityLimits(const StaticsModel& model, std::span<const std::size_t> usable) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/state.h"
+#include "narrowphase/manifold.h"
 #include "solver/world/memo.h"
 #include "solver/world/page_pool.h"
 #include "solver/world/report_state.h"

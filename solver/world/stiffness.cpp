@@ -1,5 +1,7 @@
 #include "solver/world/stiffness.h"
 
+#include "core/geometry/oriented_box.h"
+#include "core/geometry/sweep.h"
 #include "core/tuning.h"
 
 #include <algorithm>
@@ -17,13 +19,12 @@ struct BlockBounds {
 };
 
 BlockBounds boundsOf(const BlockSpec& block) {
-  const Eigen::Matrix3d rotation = block.orientation.toRotationMatrix();
+  const Vec3 reach = orientedBox(block.centre, block.orientation, block.dimensions).reach();
   BlockBounds bounds;
-  for (int a = 0; a < 3; ++a) {
-    double reach = 0.0;
-    for (int k = 0; k < 3; ++k) reach += std::abs(rotation(a, k)) * 0.5 * block.dimensions[k];
-    bounds.lower[static_cast<std::size_t>(a)] = block.centre[a] - reach;
-    bounds.upper[static_cast<std::size_t>(a)] = block.centre[a] + reach;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const auto axis = static_cast<Eigen::Index>(a);
+    bounds.lower[a] = block.centre[axis] - reach[axis];
+    bounds.upper[a] = block.centre[axis] + reach[axis];
   }
   return bounds;
 }
@@ -35,21 +36,18 @@ double overlapLength(const BlockBounds& a, const BlockBounds& b, std::size_t axi
 // The highest blocks below each block that its outline covers: those whose tops are within half a block of the highest such top.
 std::vector<std::vector<std::size_t>> supportsOf(const std::vector<BlockBounds>& bounds) {
   const std::size_t count = bounds.size();
-  std::vector<std::size_t> order(count);
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(), [&](std::size_t p, std::size_t q) {
-    return bounds[p].lower[0] != bounds[q].lower[0] ? bounds[p].lower[0] < bounds[q].lower[0] : p < q;
-  });
   std::vector<std::vector<std::size_t>> below(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::size_t p = order[i];
-    for (std::size_t j = i + 1; j < count && bounds[order[j]].lower[0] < bounds[p].upper[0]; ++j) {
-      const std::size_t q = order[j];
-      if (overlapLength(bounds[p], bounds[q], 1) <= 0.0) continue;
-      const bool pIsLower = bounds[p].lower[2] + bounds[p].upper[2] < bounds[q].lower[2] + bounds[q].upper[2];
-      below[pIsLower ? q : p].push_back(pIsLower ? p : q);
-    }
+  std::vector<double> lower;
+  std::vector<double> upper;
+  for (const BlockBounds& box : bounds) {
+    lower.push_back(box.lower[0]);
+    upper.push_back(box.upper[0]);
   }
+  forEachOverlap(lower, upper, 0.0, [&](std::size_t p, std::size_t q) {
+    if (overlapLength(bounds[p], bounds[q], 1) <= 0.0) return;
+    const bool pIsLower = bounds[p].lower[2] + bounds[p].upper[2] < bounds[q].lower[2] + bounds[q].upper[2];
+    below[pIsLower ? q : p].push_back(pIsLower ? p : q);
+  });
   for (std::size_t b = 0; b < count; ++b) {
     double top = -1e300;
     for (const std::size_t s : below[b]) top = std::max(top, bounds[s].upper[2]);

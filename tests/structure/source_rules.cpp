@@ -32,6 +32,7 @@ const Folder kFolders[] = {
 // The rooms of the top-level folders that have some, from the ground up: each may know those before it in its own folder.
 // docs/adr/0001-folders.md says why in this order.
 constexpr std::string_view kRooms[] = {"core",
+                                       "core/geometry",
                                        "core/scene",
                                        "scenarios",
                                        "narrowphase/exact",
