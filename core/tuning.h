@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <limits>
+#include <numbers>
 #include <span>
 #include <string_view>
 

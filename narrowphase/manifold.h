@@ -41,9 +41,9 @@ struct ImpulseRow {
   FourVectors friction;    ///< N, mean over the step, on upper
   FourValues normalForce;  ///< N, mean over the step
   FourValues restDepth;    ///< m, overlap that is left as it is
-  FourValues stiffening;   ///< 1, for the springs that follow
+  FourValues stiffening;   ///< not used; as the springs before it left it
   FourValues untouched;    ///< 0: no springs hold energy
-  FourValues slipping;     ///< 1 where friction is at its bound, else 0
+  FourValues slipping;     ///< not 0 where friction is at its bound
 };
 
 /// Four points as position constraints (method xpbd).

@@ -63,7 +63,7 @@ void rearrange(const std::vector<std::int32_t>& from, T first, std::vector<std::
     std::memcpy(space.data() + i * sizeof(T), &value, sizeof(T));
   }
   column.resize(from.size());
-  std::memcpy(column.data(), space.data(), space.size());
+  if (!column.empty()) std::memcpy(column.data(), space.data(), space.size());
 }
 
 // Brings engine.pairs to what the sweep has found, taking over what was known of each. Returns whether any came or went, or is

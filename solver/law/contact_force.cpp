@@ -17,8 +17,8 @@ struct LawStep {
   const ContactStep& step;
   double stiffness;       // N/m
   double impactFactor;    // stiffness scale per squared approach speed
-  double stiffeningKeep;  // what is left of a scale's excess after the step
-  double maxwellGain;     // how much of its lag the relaxing branch forgets in the step
+  double stiffeningKeep;  // what is left after the step of a stiffening beyond 1
+  double maxwellGain;     // share of its lag that the Maxwell branch loses in the step
   double perAdvance;      // 1/s; 0 where the memory is not advanced
   double pointMass;       // kg that a point moves at least: all four of a face that is hit flat push and squash the block
 };
@@ -48,7 +48,7 @@ struct PointState {
   Lanes stiffness;  // N/m
 };
 
-// The tangential part of the law, for points that push with p.normalForce and close at `closing`: carries the stretch along,
+// The tangential part of the law, for points that push with p.normalForce and close at `closing`: carries the displacement along,
 // keeps it tangential, and bounds it by the cone.
 SPRINGTOWER_INLINE void frictionLaw(const LawStep& s, const PointState& state, const Lanes* relative, const Lanes* carried,
                                     const double* normal, PointLanes& p) {
@@ -87,7 +87,7 @@ SPRINGTOWER_INLINE void frictionLaw(const LawStep& s, const PointState& state, c
   squareRoot(squared, size);
   const Lanes keep = slides ? law.kineticFriction * push / size : one;
   p.slipRatio = slides & touching ? (keep > tuning::kMinSlipRatio ? keep : zero + tuning::kMinSlipRatio) : zero;
-  // What slips frees a little of the offset; friction's own loss pays for the work.
+  // What slips frees a little of the rest depth; friction's own loss pays for the work.
   Lanes displacementSize;
   squareRoot(displacement[0] * displacement[0] + displacement[1] * displacement[1] + displacement[2] * displacement[2],
              displacementSize);
@@ -108,9 +108,9 @@ SPRINGTOWER_INLINE void pointLaw(const LawStep& s, const Lanes& depth, const Lan
   const ContactLaw& law = s.law;
   const Lanes closing = -(relative[0] * normal[0] + relative[1] * normal[1] + relative[2] * normal[2]);
 
-  // First contact: the offset is the depth when it is detected (explicit steps) or 0 (implicit steps), so the spring starts
+  // First contact: the rest depth is the depth when it is detected (explicit steps) or 0 (implicit steps), so the spring starts
   // unloaded and adds no energy. Stiffness is multiplied so that the impact at the present closing speed stops within the impact
-  // depth. The offset shrinks with the depth as the point lifts, where the spring stores nothing.
+  // depth. The rest depth shrinks with the depth as the point lifts, where the spring stores nothing.
   const LaneMask touching = (depth > zero) & (inUse > zero);
   const LaneMask known = touching & (p.touching > zero);
   Lanes impact = s.impactFactor * closing * closing;

@@ -8,12 +8,13 @@
 namespace springtower {
 
 /// The law of a contact point, with its constants. In the normal direction a spring of stiffness k on the elastic depth e = depth
-/// - offset, a relaxing (Maxwell) branch beside it, and a dashpot; never pulling. Tangentially a spring on the anchor's stretch
-/// with a dashpot, bounded by Coulomb's cone (Cundall & Strack 1979): what the cone does not carry slides and is forgotten.
+/// - rest depth, a Maxwell branch beside it, and a dashpot; never pulling. Tangentially a spring on the displacement from the
+/// anchor with a dashpot, bounded by Coulomb's cone (Cundall & Strack 1979): what the cone does not carry slides and is
+/// forgotten.
 struct ContactLaw {
   double stiffness_n_m = 0.0;        ///< k between blocks, N/m
   double floorStiffness_n_m = 0.0;   ///< k on the floor, N/m
-  double maxwellRatio = 0.0;         ///< stiffness of the relaxing branch over k
+  double maxwellRatio = 0.0;         ///< stiffness of the Maxwell branch over k
   double maxwellTime_s = 1.0;        ///< its relaxation time, s
   double dampingTime_s = 0.0;        ///< dashpot over stiffness, s
   double tangentialRatio = 1.0;      ///< tangential stiffness over k
@@ -22,7 +23,7 @@ struct ContactLaw {
   double impactPenetration_m = 1.0;  ///< depth aimed at in an impact; decides how much a new contact is stiffened
   double stiffeningTime_s = 1.0;     ///< s in which that stiffening fades
   double restDepthPerSlip =
-      0.0;  ///< how much of the offset fades per length of slip; its work is paid by the slip's own friction
+      0.0;  ///< how much of the rest depth fades per length of slip; its work is paid by the slip's own friction
 };
 
 /// What changes from step to step.

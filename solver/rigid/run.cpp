@@ -33,6 +33,7 @@ void readPoses(IslandStep& step) {
   const Simulation& simulation = step.simulation;
   const bool undeformed = isRigid(simulation.scene.settings.method);
   RigidIsland& island = rigidIslandOf(step);
+  island.bodies.clear();
   island.bodies.resize(step.blocks.size());
   for (std::size_t i = 0; i < step.blocks.size(); ++i) {
     const auto b = static_cast<std::size_t>(step.blocks[i]);

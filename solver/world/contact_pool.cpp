@@ -22,6 +22,7 @@ void ContactPool::giveBack(std::int32_t contact) {
 }
 
 void ContactPool::reserve(std::size_t most, bool wide) {
+  wide_ = wide_ || wide;
   first_.reserve(tuning::kFreeContactRows + first_.rowsInUse() / tuning::kFreeContactDivisor, most, wide);
   second_.reserve(second_.rowsInUse() > 0 ? tuning::kFreeContactRows : 1, most, wide);
 }
@@ -92,8 +93,11 @@ void ContactPool::restoreShape(std::int32_t contact) {
 }
 
 void ContactPool::poisonStartRows() {
-  first_.forEachPage([](First& page) { std::memset(static_cast<void*>(page.start.get()), 0xFF, sizeof *page.start); });
-  second_.forEachPage([](Second& page) { std::memset(static_cast<void*>(page.start.get()), 0xFF, sizeof *page.start); });
+  const auto poison = [](auto& page) {
+    if (page.start != nullptr) std::memset(static_cast<void*>(page.start.get()), 0xFF, sizeof *page.start);
+  };
+  first_.forEachPage(poison);
+  second_.forEachPage(poison);
 }
 
 std::size_t ContactPool::bytes() const {
@@ -101,7 +105,7 @@ std::size_t ContactPool::bytes() const {
 }
 
 std::size_t ContactPool::stepBytes() const {
-  return kFirstStepBytes * first_.rowsInUse() + kSecondStepBytes * second_.rowsInUse();
+  return (kFirstStepBytes + (wide_ ? kWideBytes : 0)) * first_.rowsInUse() + kSecondStepBytes * second_.rowsInUse();
 }
 
 }  // namespace springtower

@@ -14,7 +14,7 @@ namespace springtower {
 /// How the second block of a pair lies to the first: its centre and sides along the other's edges, m.
 using RelativePose = std::array<float, 12>;
 
-/// What a contact did to block a of its pair when the first of the two fell asleep, and its partner must keep up.
+/// Force and torque of a contact on block a of its pair as the first of the two fell asleep: what the other is compared with.
 struct SleepLoad {
   Vec3 force = Vec3::Zero();   ///< N
   Vec3 torque = Vec3::Zero();  ///< N m, about the world's origin
@@ -30,7 +30,7 @@ struct StoredShape {
   PointKind kind : 7 = PointKind::penalty;
 };
 
-/// A contact of a pair (a, b): which pair it is of, and how it touches.
+/// A pair of blocks and how they touch.
 struct PairOfBlocks {
   std::int32_t a;
   std::int32_t b;  ///< -1: the floor
@@ -61,6 +61,7 @@ class ContactPool {
   static constexpr std::size_t kSecondBytes = sizeof(PlaceRow) + sizeof(PointRow);
   static constexpr std::size_t kFirstStepBytes =
       2 * sizeof(PointRow) + sizeof(PlaceRow) + sizeof(StoredShape) + sizeof(RelativePose);
+  static constexpr std::size_t kWideBytes = sizeof(PairForce);  ///< more in wide islands
   static constexpr std::size_t kSecondStepBytes = 2 * sizeof(PointRow) + sizeof(PlaceRow);
 
   /// Takes a contact for a pair, with no points. Any thread.
@@ -159,18 +160,15 @@ class ContactPool {
   [[nodiscard]] std::size_t inUse() const { return first_.rowsInUse(); }
   [[nodiscard]] std::size_t secondRowsInUse() const { return second_.rowsInUse(); }
   [[nodiscard]] std::size_t bytes() const;      ///< that contacts in use cost
-  [[nodiscard]] std::size_t stepBytes() const;  ///< that frames and steps add, pages that are free included
+  [[nodiscard]] std::size_t stepBytes() const;  ///< that frames and steps add to those
 
  private:
-  // What a page owns beside its rows and frames or steps fill anew: not copied.
+  // What a page owns beside its rows and frames or steps fill anew: not copied, but made by `prepare`.
   template <class T>
   struct Working : std::unique_ptr<T> {
     Working() = default;
-    Working(const Working& other) : std::unique_ptr<T>() { *this = other; }
-    Working& operator=(const Working& other) {
-      if (other != nullptr && *this == nullptr) this->reset(new T);
-      return *this;
-    }
+    Working(const Working& /*other*/) : std::unique_ptr<T>() {}
+    Working& operator=(const Working& /*other*/) { return *this; }
     Working(Working&&) noexcept = default;
     Working& operator=(Working&&) noexcept = default;
     ~Working() = default;
@@ -231,6 +229,7 @@ class ContactPool {
     return result;
   }
 
+  bool wide_ = false;
   PagePool<First> first_;
   PagePool<Second> second_;
 };

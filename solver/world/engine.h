@@ -15,7 +15,8 @@ namespace springtower {
 
 /// What a running scene holds beside its model, its inputs and its motion (solver/world/simulation.h), by who may rely on it:
 /// the state of contacts and sleep and what else the next frame depends on (copied into snapshots), and what may be lost between
-/// frames. All plain vectors, sized once a scene is loaded and grown only when new pairs appear.
+/// frames (docs/adr/0003-ownership.md). Vectors grow only when new pairs appear, the pool of contacts when more touch than
+/// before.
 struct Engine {
   std::vector<double> springRadius;  ///< 1/s2, largest eigenvalue of M^-1 K of each block alone; part of the model
   PairTable pairs;
@@ -44,7 +45,8 @@ inline ManifoldShape shapeOf(const Engine& engine, std::size_t pair) {
   return shapeOf(engine.contacts.shape(engine.pairs.contact[pair]), engine.pairs[pair]);
 }
 
-/// The same with its points as they are at the end of an implicit step not yet taken. Precondition: the pair touches.
+/// `contact`, which is contactOf(pair), with its points as they are at the end of an implicit step not yet taken. Precondition:
+/// the pair touches.
 inline ContactView trialOf(const Engine& engine, std::size_t pair, const ContactView& contact) {
   ContactView trial = contact;
   trial.points = engine.contacts.trial(engine.pairs.contact[pair]);

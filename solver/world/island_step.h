@@ -26,7 +26,7 @@ struct IslandStep {
   /// Pairs that touch or may use up their margin soon: all, but in steps so short that it is worth listing them.
   std::span<const std::int32_t> activePairs = pairs;
   bool usesActiveList = false;               ///< whether the steps are so short
-  int activeListSteps = 0;                   ///< steps for which `watched` still holds
+  int activeListSteps = 0;                   ///< steps for which `activePairs` still holds
   PointKind pointKind = PointKind::penalty;  ///< what contacts that are made now store, by the steps that carry the island
   bool unforced = false;                     ///< neither user forces nor the hand act: the equilibrium before the first frame
 };

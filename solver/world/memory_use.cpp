@@ -102,7 +102,7 @@ std::size_t ofScratch(const Scratch& s) {
 }
 
 std::size_t ofFrameStart(const FrameStart& start) {
-  return bytesOf(start.state) +
+  return bytesOf(start.state) + sizeof(SavedPairs) / kPageRows * start.savedPairs.rowsInUse() +
          sumOf(start.history, start.previous, start.previousVelocity, start.stepTravel, start.reportContacts);
 }
 

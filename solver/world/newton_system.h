@@ -71,7 +71,7 @@ struct NewtonSystem : NewtonWork {
   TetherStiffness tether;             ///< the hand's springs that the factors contain
   bool limited = false;               ///< whether one of them was at its limit then
   int directions = 0;                 ///< that the last correction took beside the factors
-  bool trialIsAhead = false;          ///< whether engine.trial holds a state after the step's start
+  bool trialIsAhead = false;          ///< whether the contacts' trial points are of a state after the step's start
   bool useConsistentTangent = false;  ///< whether the iteration is so near the solution that contacts may be taken as they stand
   bool forcesKnown = false;           ///< engine.memo.force holds the forces at the island's present state
   BlockCholesky matrix;

@@ -11,15 +11,16 @@
 
 namespace springtower {
 
-/// Rows in pages that never move, taken on any thread and given back on one. A page is a structure of arrays of kPageRows rows;
-/// `Page` is default constructible and copyable, and `prepare(wide)` adds what wide islands need. No locks: a row is taken by one
-/// atomic addition, and only where more rows are taken at once than `reserve` provided is a page allocated on the way. Which
-/// thread gets which row is chance, so no result may depend on the order of rows. A copy that is assigned keeps the pages it has.
+/// Rows of a page, and a column of it.
 inline constexpr std::size_t kPageRows = 64;
 
 template <class T>
 using Column = std::array<T, kPageRows>;
 
+/// Rows in pages that never move, taken on any thread and given back on one. A page is a structure of arrays of kPageRows rows;
+/// `Page` is default constructible and copyable, and `prepare(wide)` adds what wide islands need. No locks: a row is taken by one
+/// atomic addition, and only where more rows are taken at once than `reserve` provided is a page allocated on the way. Which
+/// thread gets which row is chance, so no result may depend on the order of rows. A copy that is assigned keeps the pages it has.
 template <class Page>
 class PagePool {
  public:
@@ -40,6 +41,7 @@ class PagePool {
       addFree(rows_, mine);
       rows_ = mine;
     }
+    prepared_ = false;  // neither copies nor pages that the other has none of are; `reserve` does it, as a snapshot needs none
     return *this;
   }
   PagePool(PagePool&& other) noexcept { *this = std::move(other); }
@@ -49,6 +51,7 @@ class PagePool {
     std::swap(rows_, other.rows_);
     std::swap(free_, other.free_);
     std::swap(wide_, other.wide_);
+    std::swap(prepared_, other.prepared_);
     taken_.store(other.taken_.exchange(taken_.load()));
     return *this;
   }
@@ -88,11 +91,10 @@ class PagePool {
   /// `wide`: whether pages are to be prepared for wide islands. Not while others take.
   void reserve(std::size_t free, std::size_t most, bool wide) {
     settle();
-    if (wide && !wide_) {
-      wide_ = true;
-      for (std::size_t i = 0; i < tableSize_; ++i) {
-        if (Page* page = table_[i].load()) page->prepare(wide);
-      }
+    if (!prepared_ || (wide && !wide_)) {
+      wide_ = wide_ || wide;
+      prepared_ = true;
+      forEachPage([&](Page& page) { page.prepare(wide_); });
     }
     const std::size_t pages = std::max(most, rowsInUse() + free) / kPageRows + 2;
     if (pages > tableSize_) growTable(pages + pages / 4);
@@ -166,12 +168,14 @@ class PagePool {
     tableSize_ = size;
   }
 
+  // Rows in use are rows_ + taken_ - free_.size(); settle() folds taken_ in.
   std::unique_ptr<std::atomic<Page*>[]> table_;
   std::size_t tableSize_ = 0;
   std::size_t rows_ = 0;               // of the pages that are settled
   std::vector<std::int32_t> free_;     // descending where nothing has been given back; taken from the back
   std::atomic<std::size_t> taken_{0};  // of them since, and beyond
   bool wide_ = false;
+  bool prepared_ = true;  // whether all pages are
 };
 
 }  // namespace springtower

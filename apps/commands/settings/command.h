@@ -15,8 +15,8 @@ struct SettingsCommand {
 /// Adds the command to the program.
 CLI::App* defineSettings(CLI::App& program, SettingsCommand& command);
 
-/// Prints what a scene may set, with units, ranges and defaults; with `all` the engine's own constants, with the evidence they rest
-/// on. Returns the exit code.
+/// Prints what a scene may set, with units, ranges and defaults; with `all` the engine's own constants, with the evidence they
+/// rest on. Returns the exit code.
 int executeSettings(const SettingsCommand& command);
 
 }  // namespace springtower

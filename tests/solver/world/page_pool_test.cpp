@@ -12,7 +12,8 @@ namespace {
 
 struct NumberPage {
   Column<int> number{};
-  void prepare(bool /*wide*/) {}
+  bool isWide = false;
+  void prepare(bool wide) { isWide = wide; }
 };
 using NumberPool = PagePool<NumberPage>;
 
@@ -71,6 +72,18 @@ TEST(PagePool, KeepsItsPagesWhenACopyIsAssigned) {
   std::set<std::int32_t> taken{first};
   for (int i = 0; i < 500; ++i) EXPECT_TRUE(taken.insert(pool.take()).second);
   EXPECT_EQ(pool.pageCount(), pages);
+}
+
+// Of a pool that has grown while narrow, all pages are prepared once a wide one has been assigned to it.
+TEST(PagePool, PreparesAllPagesOnceAWideCopyIsAssigned) {
+  NumberPool wide;
+  wide.reserve(1, 1000, true);
+  NumberPool narrow;
+  narrow.reserve(500, 1000, false);
+  narrow = wide;
+  narrow.reserve(1, 1000, true);
+  narrow.forEachPage([](NumberPage& page) { EXPECT_TRUE(page.isWide); });
+  EXPECT_GE(narrow.pageCount(), 8U);
 }
 
 }  // namespace
