@@ -147,7 +147,8 @@ class PagePool {
     auto made = std::make_unique<Page>();
     made->prepare(wide_);
     Page* expected = nullptr;
-    if (table_[at].compare_exchange_strong(expected, made.get())) made.release();  // else another thread was first
+    if (table_[at].compare_exchange_strong(expected, made.get()))
+      static_cast<void>(made.release());  // else another thread was first
   }
 
   void copyPage(const Page* from, std::size_t at) {

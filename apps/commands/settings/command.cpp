@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::string_view kHelp =
+constexpr std::string_view kSettingsHelp =
     R"help(A scene file sets these in its [settings]; README says what a scene file looks like. With --all follow the numbers that no
 scene sets: thresholds, caps and safety factors of the engine, each with what it is for and what it rests on. Lengths are in h, the
 height of the scene's lowest block, speeds in sqrt(g h), times in sqrt(h / g).
@@ -78,7 +78,7 @@ void printTuning() {
 
 CLI::App* defineSettings(CLI::App& program, SettingsCommand& command) {
   CLI::App* app = program.add_subcommand("settings", "lists what a scene may set, and with --all the engine's own constants");
-  app->footer(std::string(kHelp));
+  app->footer(std::string(kSettingsHelp));
   app->add_flag("--all", command.all, "the engine's own constants as well, with what each rests on");
   app->add_flag("--json", command.json, "prints JSON instead of a table");
   return app;
