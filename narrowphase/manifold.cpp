@@ -80,18 +80,6 @@ std::size_t dropStraight(double radius, const Lengths& lengths, std::size_t coun
 
 constexpr std::array<std::array<double, 2>, 4> kCornerPlaces = {{{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}}};
 
-void start(Manifold& manifold, PairPhase phase, int incidentFace, int referenceFace) {
-  const std::int32_t upper = manifold.upper;
-  const std::int32_t lower = manifold.lower;
-  manifold = Manifold{};
-  manifold.upper = upper;
-  manifold.lower = lower;
-  manifold.phase = phase;
-  manifold.incidentFace = static_cast<std::int8_t>(incidentFace);
-  manifold.referenceFace = static_cast<std::int8_t>(referenceFace);
-  for (PointRow& row : manifold.points) row.penalty.stiffening.fill(1.0);
-}
-
 // One point, whatever it stores: only the vector turns round where the blocks have changed roles.
 void carryPoint(const PenaltyRow& from, std::size_t lane, double side, PenaltyRow& to, std::size_t toLane) {
   for (std::size_t a = 0; a < 3; ++a) to.displacement[a][toLane] = side * from.displacement[a][lane];
@@ -103,6 +91,18 @@ void carryPoint(const PenaltyRow& from, std::size_t lane, double side, PenaltyRo
 }
 
 }  // namespace
+
+void startManifold(Manifold& manifold, PairPhase phase, int incidentFace, int referenceFace) {
+  const ManifoldShape before = manifold;
+  manifold = Manifold{};
+  static_cast<ManifoldShape&>(manifold) = before;
+  manifold.count = 0;
+  manifold.phase = phase;
+  manifold.incidentFace = static_cast<std::int8_t>(incidentFace);
+  manifold.referenceFace = static_cast<std::int8_t>(referenceFace);
+  if (manifold.kind == PointKind::anchor) return;
+  for (PointRow& row : manifold.points) row.penalty.stiffening.fill(1.0);
+}
 
 FaceFrame faceFrame(const CornerView& block, int face) {
   const auto& corners = kFaceCorners[static_cast<std::size_t>(face)];
@@ -138,7 +138,7 @@ Vec3 pointOnIncidentFace(const ContactView& manifold, const CornerView& upper, s
 
 void buildFaceManifold(const CornerView& upper, const CornerView& lower, int incidentFace, int referenceFace,
                        const ManifoldLimits& limits, Manifold& manifold) {
-  start(manifold, PairPhase::face, incidentFace, referenceFace);
+  startManifold(manifold, PairPhase::face, incidentFace, referenceFace);
   const FaceFrame incident = faceFrame(upper, incidentFace);
   const FaceFrame reference = faceFrame(lower, referenceFace);
   const Vec3 alongS = reference.sideU / reference.sideU.squaredNorm();
@@ -176,7 +176,7 @@ void buildFaceManifold(const CornerView& upper, const CornerView& lower, int inc
 
 void buildFloorManifold(const CornerView& upper, const ManifoldLimits& limits, Manifold& manifold) {
   const int face = incidentFaceOf(upper, Vec3::UnitZ());
-  start(manifold, PairPhase::face, face, 0);
+  startManifold(manifold, PairPhase::face, face, 0);
   std::size_t kept = 0;
   for (std::size_t i = 0; i < 4; ++i) {
     if (upper.z[kFaceCorners[static_cast<std::size_t>(face)][i]] > limits.reach) continue;

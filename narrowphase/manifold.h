@@ -41,7 +41,7 @@ struct ImpulseRow {
   FourVectors friction;    ///< N, mean over the step, on upper
   FourValues normalForce;  ///< N, mean over the step
   FourValues restDepth;    ///< m, overlap that is left as it is
-  FourValues stiffening;   ///< not used; as the springs before it left it
+  FourValues stiffening;   ///< not used; 1, or as the springs before it left it
   FourValues untouched;    ///< 0: no springs hold energy
   FourValues slipping;     ///< not 0 where friction is at its bound
 };
@@ -174,6 +174,10 @@ struct ManifoldLimits {
   double mergeRadius;  ///< points closer than this on the incident face are one
   double reach;        ///< points farther than this above the reference plane are left out
 };
+
+/// Begins a manifold anew, without points: `upper`, `lower` and `kind` stay. What its points will store are springs that are not
+/// pressed, or impulses and anchors without forces.
+void startManifold(Manifold& manifold, PairPhase phase, int incidentFace, int referenceFace);
 
 /// Overlap of upper's incident face with lower's reference face: clips the one against the sides of the other (Sutherland &
 /// Hodgman 1974), merges points that coincide and leaves out those along a straight edge. Fills u, v, count and names; the memory

@@ -68,7 +68,7 @@ constexpr Scenario kScenarios[] = {
      {kNone, kNone},
      true,
      [](const ScenarioSize&, const TowerOptions& options) { return towerWithHolesScene(options); }},
-    {"collapse", "a tower that leans further than it can stand, and goes over", {rows(18), kNone}, true, collapsingTower},
+    {"collapse", "a tower that leans beyond its stability margin and topples", {rows(18), kNone}, true, collapsingTower},
     {"falling-rows",
      "rows that fall together from 2 cm",
      {rows(3), kNone},

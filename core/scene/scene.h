@@ -112,7 +112,7 @@ struct TowerOptions {
   std::vector<LooseBlock> loose = {};
 };
 
-/// What the first option that is given asks for, as messages say it ("a seed"); empty if none is.
+/// The first option that is given, in the words of messages ("a seed"); empty if none is.
 std::string_view firstGiven(const TowerOptions& options);
 
 /// The full tower of `rows` rows of three. Throws InputError unless 1 <= rows <= 2000 and the options are within limits.

@@ -16,7 +16,7 @@ bool bounces(const IslandStep& step, double step_s);
 bool meetsSoon(const IslandStep& step, double step_s);
 
 /// What has met in an implicit step: nothing that matters; blocks that have come to overlap as the step knew of no contact
-/// between them; blocks, or points of a contact that did not push, at a speed that asks for stiffer contacts than implicit steps
+/// between them; blocks, or points of a contact that did not push, at a speed that takes stiffer contacts than implicit steps
 /// have.
 enum class FirstContact { none, added, impact };
 

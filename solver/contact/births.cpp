@@ -56,14 +56,10 @@ Deepest deepestPoints(const ContactView& manifold, const CornerView& upper, cons
 }
 
 void edgeManifold(const Separation& separation, const BlockPair& pair, Manifold& fresh) {
-  fresh = Manifold{};
   fresh.upper = pair.a;
   fresh.lower = pair.b;
-  fresh.phase = PairPhase::edge;
-  fresh.incidentFace = static_cast<std::int8_t>(separation.edgeOfA);
-  fresh.referenceFace = static_cast<std::int8_t>(separation.edgeOfB);
+  startManifold(fresh, PairPhase::edge, separation.edgeOfA, separation.edgeOfB);
   fresh.count = 1;
-  for (PointRow& row : fresh.points) row.penalty.stiffening.fill(1.0);
 }
 
 // Whether faces touch although edges separate better: at more than a point, which lies as deep as the edges do. A crossing that
@@ -160,8 +156,8 @@ void updateSeparatedFloor(IslandStep& step, std::size_t at, Counters& counters) 
   ++counters.contactsBorn;
   Manifold fresh;
   fresh.upper = pairs.key[at].a;
-  buildFloorManifold(now, limitsOf(step.simulation), fresh);
   fresh.kind = step.pointKind;
+  buildFloorManifold(now, limitsOf(step.simulation), fresh);
   storeContact(step.engine, at, fresh);
 }
 
@@ -236,11 +232,11 @@ void updateSeparated(IslandStep& step, std::size_t at, Counters& counters, Stage
       step.simulation.lengths.contactError_m + 2.0 * (warp(step.engine.memo.previous, a) + warp(step.engine.memo.previous, b));
   if (step.simulation.frame > 0 && before.best() < -unsure) ++counters.contactsBornPenetrating;
   Manifold fresh;
+  fresh.kind = step.pointKind;
   chooseManifold(before, movingA.end, movingB.end, limitsOf(step.simulation), 0.0, edgeSlackOf(step.simulation), pair, {}, fresh);
   pairs.clearance[at] = 0.0;
   if (fresh.count == 0) return;
   ++counters.contactsBorn;
-  fresh.kind = step.pointKind;
   storeContact(step.engine, at, fresh);
 }
 
@@ -263,6 +259,7 @@ void refreshManifold(IslandStep& step, std::size_t at, Counters& counters) {
   const double radius = tuning::kPointMatchRadius * simulation.lengths.blockHeight_m;
   ++counters.manifoldRefreshes;
   Manifold fresh;
+  fresh.kind = old.kind;
   if (pair.b < 0) {
     const CornerView block = cornersOf(position, static_cast<std::size_t>(pair.a));
     const double gap = lowestCorner(block);
@@ -287,7 +284,6 @@ void refreshManifold(IslandStep& step, std::size_t at, Counters& counters) {
       return;
     }
   }
-  fresh.kind = old.kind;
   keepContactMemory(old, position, step.law, radius, fresh);
   storeContact(step.engine, at, fresh);
 }

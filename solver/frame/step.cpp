@@ -45,8 +45,8 @@ struct ApproachEstimate {
 
 ApproachEstimate approachOf(const IslandStep& step) {
   const Simulation& simulation = step.simulation;
-  std::vector<std::int32_t>& beginning = step.engine.scratch.newContactCount;
-  for (const std::int32_t block : step.blocks) beginning[static_cast<std::size_t>(block)] = 0;
+  std::vector<std::int32_t>& newContacts = step.engine.scratch.newContactCount;
+  for (const std::int32_t block : step.blocks) newContacts[static_cast<std::size_t>(block)] = 0;
   const ParticleArray& velocity = simulation.state.velocity;
   const double corner = affineCornerInverseMass(simulation.scene.settings.inertia);
   const double frame_s = simulation.scene.settings.frame_s;
@@ -83,7 +83,7 @@ ApproachEstimate approachOf(const IslandStep& step) {
     if (apart || !anyPointTouches(contactOf(step.engine, at))) {
       for (const std::int32_t block : {pair.a, pair.b}) {  // sleepers may be those of other islands as well, and do not move
         if (!sleeps(simulation, block))
-          approach.together = std::max(approach.together, ++beginning[static_cast<std::size_t>(block)]);
+          approach.together = std::max(approach.together, ++newContacts[static_cast<std::size_t>(block)]);
       }
     }
     approach.meeting = approach.meeting || mayMeet;
@@ -308,11 +308,11 @@ void stepFrame(Simulation& simulation) {
     findNearPairs(simulation, margin);
     while (true) {
       // The frame is run again where something was hit and left its swept box, with a wider one, so that no meeting is missed;
-      // and where sleepers gave way to what was done to them, with these awake.
+      // and where supports of sleepers failed, with these awake.
       if (wakeOnImpact(simulation)) findNearPairs(simulation, margin);
       const bool inside = runIslands(simulation);
-      const bool gaveWay = inside && wakeFailedSupports(simulation);
-      if (inside && !gaveWay) break;
+      const bool failed = inside && wakeFailedSupports(simulation);
+      if (inside && !failed) break;
       ++simulation.counters.replayedFrames;
       if (!inside) margin *= tuning::kReplayMarginGrowth;
       restoreFrame(simulation);

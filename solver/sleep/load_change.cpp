@@ -65,8 +65,8 @@ void findLoads(Simulation& simulation) {
   }
 }
 
-// Whether a sleeping block bears what is done to it.
-bool bears(const Simulation& simulation, std::int32_t block) {
+// Whether the change of its load leaves a sleeping block where it is.
+bool isWithinLimits(const Simulation& simulation, std::int32_t block) {
   const auto b = static_cast<std::size_t>(block);
   const LoadChange& change = simulation.engine->scratch.loadChange[b];
   if (change.begunOrLost) return false;
@@ -136,7 +136,7 @@ bool findWakeCandidates(Simulation& simulation) {
   if (changed) {
     findLoads(simulation);
     for (const std::int32_t block : engine.scratch.pushed) {
-      if (!bears(simulation, block)) engine.scratch.toWake.push_back({block, WakeReason::loadChange});
+      if (!isWithinLimits(simulation, block)) engine.scratch.toWake.push_back({block, WakeReason::loadChange});
     }
     if (simulation.scene.settings.sleep == Sleep::on) gives = findFailedSupports(simulation);
   }

@@ -14,7 +14,7 @@ void wakeForInputs(Simulation& simulation);
 bool wakeOnImpact(Simulation& simulation);
 
 /// At the end of a frame: finds the sleeping blocks to wake, whose awake neighbours push them otherwise than when they fell
-/// asleep (engine.scratch.toWake). Where some of them gave way all are woken, and the frame has to be run again from its start:
+/// asleep (engine.scratch.toWake). Where supports of some fail all are woken, and the frame has to be run again from its start:
 /// returns whether it has.
 bool wakeFailedSupports(Simulation& simulation);
 

@@ -76,7 +76,7 @@ void listSleepers(Simulation& simulation, const Vec3& up) {
 }
 
 // Whether one sleeper of a pair bears the other: what only leans on another, or lies beside it, does not go with it.
-bool bears(const SleepLoad& load, const Vec3& up) {
+bool isVertical(const SleepLoad& load, const Vec3& up) {
   return std::abs(load.force.dot(up)) > tuning::kSupportCosine * load.force.norm();
 }
 
@@ -91,7 +91,7 @@ void addToGroups(Simulation& simulation, std::int32_t block, const Vec3& up) {
       path.open.push_back(at);
       return;
     }
-    if (!bears(sleepLoadOf(engine, static_cast<std::size_t>(at)), up)) return;
+    if (!isVertical(sleepLoadOf(engine, static_cast<std::size_t>(at)), up)) return;
     const std::int32_t into = findRoot(path.parent, block);
     const std::int32_t from = findRoot(path.parent, other);
     if (into == from) return;

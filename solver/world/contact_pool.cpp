@@ -22,7 +22,6 @@ void ContactPool::giveBack(std::int32_t contact) {
 }
 
 void ContactPool::reserve(std::size_t most, bool wide) {
-  wide_ = wide_ || wide;
   first_.reserve(tuning::kFreeContactRows + first_.rowsInUse() / tuning::kFreeContactDivisor, most, wide);
   second_.reserve(second_.rowsInUse() > 0 ? tuning::kFreeContactRows : 1, most, wide);
 }
@@ -46,50 +45,41 @@ void ContactPool::store(std::int32_t contact, const PairOfBlocks& pair, const Ma
   more.points[moreSlot] = manifold.points[1];
 }
 
-void ContactPool::savePoints(std::int32_t contact) {
+// Calls with the page of a contact's first row, and where there is a second row in use with the page of that: forRows(contact,
+// [](auto& page, std::size_t slot) ...).
+template <class Visit>
+void ContactPool::forRows(std::int32_t contact, const Visit& visit) {
   First& page = first_.page(contact);
   const std::size_t slot = Pool::slot(contact);
-  page.start->before[slot] = page.points[slot];
-  if (rowsFor(page.shape[slot].count) < 2) return;
-  Second& more = second_.page(page.shape[slot].secondRow);
-  const std::size_t moreSlot = Pool::slot(page.shape[slot].secondRow);
-  more.start->before[moreSlot] = more.points[moreSlot];
+  visit(page, slot);
+  const StoredShape& stored = page.shape[slot];
+  if (rowsFor(stored.count) == kManifoldRows) visit(second_.page(stored.secondRow), Pool::slot(stored.secondRow));
+}
+
+void ContactPool::savePoints(std::int32_t contact) {
+  forRows(contact, [](auto& page, std::size_t slot) { page.start->before[slot] = page.points[slot]; });
 }
 
 void ContactPool::restorePoints(std::int32_t contact) {
-  First& page = first_.page(contact);
-  const std::size_t slot = Pool::slot(contact);
-  page.points[slot] = page.start->before[slot];
-  if (rowsFor(page.shape[slot].count) < 2) return;
-  Second& more = second_.page(page.shape[slot].secondRow);
-  const std::size_t moreSlot = Pool::slot(page.shape[slot].secondRow);
-  more.points[moreSlot] = more.start->before[moreSlot];
+  forRows(contact, [](auto& page, std::size_t slot) { page.points[slot] = page.start->before[slot]; });
 }
 
 void ContactPool::saveShape(std::int32_t contact) {
-  First& page = first_.page(contact);
-  const std::size_t slot = Pool::slot(contact);
-  page.start->shapeBefore[slot] = page.shape[slot];
-  page.start->placeBefore[slot] = page.place[slot];
-  page.start->poseBefore[slot] = page.pose[slot];
-  if (rowsFor(page.shape[slot].count) < 2) return;
-  Second& more = second_.page(page.shape[slot].secondRow);
-  const std::size_t moreSlot = Pool::slot(page.shape[slot].secondRow);
-  more.start->placeBefore[moreSlot] = more.place[moreSlot];
+  First& first = first_.page(contact);
+  const std::size_t at = Pool::slot(contact);
+  first.start->shapeBefore[at] = first.shape[at];
+  first.start->poseBefore[at] = first.pose[at];
+  forRows(contact, [](auto& page, std::size_t slot) { page.start->placeBefore[slot] = page.place[slot]; });
 }
 
 void ContactPool::restoreShape(std::int32_t contact) {
-  First& page = first_.page(contact);
-  const std::size_t slot = Pool::slot(contact);
-  const std::int32_t second = page.shape[slot].secondRow;  // it may have got one since, which it keeps
-  page.shape[slot] = page.start->shapeBefore[slot];
-  page.shape[slot].secondRow = second;
-  page.place[slot] = page.start->placeBefore[slot];
-  page.pose[slot] = page.start->poseBefore[slot];
-  if (rowsFor(page.shape[slot].count) < 2) return;
-  Second& more = second_.page(second);
-  const std::size_t moreSlot = Pool::slot(second);
-  more.place[moreSlot] = more.start->placeBefore[moreSlot];
+  First& first = first_.page(contact);
+  const std::size_t at = Pool::slot(contact);
+  const std::int32_t second = first.shape[at].secondRow;  // it may have got one since, which it keeps
+  first.shape[at] = first.start->shapeBefore[at];
+  first.shape[at].secondRow = second;
+  first.pose[at] = first.start->poseBefore[at];
+  forRows(contact, [](auto& page, std::size_t slot) { page.place[slot] = page.start->placeBefore[slot]; });
 }
 
 void ContactPool::poisonStartRows() {
@@ -105,7 +95,7 @@ std::size_t ContactPool::bytes() const {
 }
 
 std::size_t ContactPool::stepBytes() const {
-  return (kFirstStepBytes + (wide_ ? kWideBytes : 0)) * first_.rowsInUse() + kSecondStepBytes * second_.rowsInUse();
+  return (kFirstStepBytes + (first_.isWide() ? kWideBytes : 0)) * first_.rowsInUse() + kSecondStepBytes * second_.rowsInUse();
 }
 
 }  // namespace springtower

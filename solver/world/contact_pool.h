@@ -229,7 +229,9 @@ class ContactPool {
     return result;
   }
 
-  bool wide_ = false;
+  template <class Visit>
+  void forRows(std::int32_t contact, const Visit& visit);
+
   PagePool<First> first_;
   PagePool<Second> second_;
 };

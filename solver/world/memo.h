@@ -20,7 +20,7 @@ struct BlockHistory {
   double lastExplicitStep_s = 0.0;  ///< s; the explicit step in which the block's positions last moved; 0 after an implicit one
   double lastImplicitStep_s = 0.0;  ///< s; the implicit step that led here from memo.previous, 0 where it was none
   std::int32_t explicitFrames = 0;  ///< frames that the block's island is still to be stepped explicitly
-  std::int32_t implicitSteps = 0;   ///< steps of a frame that its ringing asked for last
+  std::int32_t implicitSteps = 0;   ///< steps of a frame that its vibration needed last
   bool forced = false;              ///< whether a user's force or the hand acts on its island, as of the last frame begun
   bool explicitLast = false;        ///< whether explicit steps brought it where it is
   bool falls = false;               ///< whether its island fell in the last frame begun

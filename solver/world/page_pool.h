@@ -112,6 +112,7 @@ class PagePool {
     }
   }
 
+  [[nodiscard]] bool isWide() const { return wide_; }
   [[nodiscard]] std::size_t rowsInUse() const { return rows_ + taken_.load(std::memory_order_relaxed) - free_.size(); }
   [[nodiscard]] std::size_t pageCount() const {
     return static_cast<std::size_t>(

@@ -6,7 +6,7 @@ class App;
 
 namespace springtower {
 
-/// What `springtower settings` was asked for.
+/// Options of `springtower settings`.
 struct SettingsCommand {
   bool all = false;   ///< the engine's own constants as well
   bool json = false;  ///< as JSON instead of a table
