@@ -1,5 +1,7 @@
 #pragma once
 
+#include "core/method.h"
+
 #include <optional>
 #include <span>
 #include <string>
@@ -8,33 +10,6 @@
 #include <vector>
 
 namespace springtower {
-
-/// How a frame is stepped. Each is one file solve_*.cpp of solver/, which the implicit ones share; `automatic` is replaced by
-/// the one that suits the scene when its simulation is set up.
-enum class Method {
-  implicit,
-  implicitEuler,
-  implicitEigen,
-  semiImplicitEuler,
-  midpoint,
-  rungeKutta4,
-  report,
-  rigidPgs,
-  rigidLcp,
-  xpbd,
-  automatic
-};
-
-/// Whether a method solves for the state at its step's end: in two steps of history (`implicit`, and `implicitEigen`, which has
-/// the factors of its matrix from Eigen), or in one.
-constexpr bool isImplicit(Method method) {
-  return method == Method::implicit || method == Method::implicitEuler || method == Method::implicitEigen;
-}
-
-/// Whether a method takes blocks as rigid: it has no stiffness, and its knobs are substeps and iterations.
-constexpr bool isRigid(Method method) {
-  return method == Method::rigidPgs || method == Method::rigidLcp || method == Method::xpbd;
-}
 
 /// How the corner particles carry a block's mass: `cuboid` has exactly the mass and inertia of a uniform cuboid, `lumped` is the
 /// report's eight equal masses (three times the central moments).

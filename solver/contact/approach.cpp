@@ -1,6 +1,7 @@
 #include "solver/contact/approach.h"
 
 #include "core/tuning.h"
+#include "solver/block/inertia.h"
 #include "solver/contact/births.h"
 #include "solver/world/checkpoint.h"
 
@@ -213,6 +214,57 @@ double fastestCorner(const ParticleArray& velocity, std::size_t block, const Vec
   double squared = 0.0;
   for (std::size_t c = 0; c < kCorners; ++c) squared = std::max(squared, (velocity.at(block, c) - against).squaredNorm());
   return std::sqrt(squared);
+}
+
+ApproachEstimate estimateApproach(const IslandStep& step) {
+  const Simulation& simulation = step.simulation;
+  std::vector<std::int32_t>& newContacts = step.engine.scratch.newContactCount;
+  for (const std::int32_t block : step.blocks) newContacts[static_cast<std::size_t>(block)] = 0;
+  const ParticleArray& velocity = simulation.state.velocity;
+  const double corner = affineCornerInverseMass(simulation.scene.settings.inertia);
+  const double frame_s = simulation.scene.settings.frame_s;
+  const double fall = simulation.scene.gravity.magnitude * frame_s;
+  ApproachEstimate approach;
+  const PairTable& pairs = step.engine.pairs;
+  for (const std::int32_t position : step.pairs) {
+    const auto at = static_cast<std::size_t>(position);
+    const BlockPair& pair = pairs.key[at];
+    const auto a = static_cast<std::size_t>(pair.a);
+    const double massA = simulation.model.mass[a];
+    // A block that has been at rest is held; another may be in free fall.
+    bool resting = simulation.restTime_s[a] > 0.0;
+    double speed = 0.0;
+    double reduced = massA;
+    double inverse = corner / massA;
+    double travel = step.engine.memo.blockHistory[a].travel;
+    if (pair.b < 0) {
+      speed = fastestCorner(velocity, a, Vec3::Zero());
+    } else {
+      const auto b = static_cast<std::size_t>(pair.b);
+      const Vec3 common = 0.5 * (centre(velocity, a) + centre(velocity, b));
+      speed = fastestCorner(velocity, a, common) + fastestCorner(velocity, b, common);
+      const double massB = simulation.model.mass[b];
+      reduced = massA * massB / (massA + massB);
+      inverse += corner / massB;
+      travel += step.engine.memo.blockHistory[b].travel;
+      resting = resting && simulation.restTime_s[b] > 0.0;
+    }
+    if (!resting) speed += fall;
+    const bool apart = !pairs.touches(at);
+    const bool mayMeet = apart && pairs.clearance[at] - (travel - pairs.travelAtCheck[at]) < speed * frame_s;
+    if (apart && !mayMeet) continue;
+    if (apart || !anyPointTouches(contactOf(step.engine, at))) {
+      for (const std::int32_t block : {pair.a, pair.b}) {  // sleepers may be those of other islands as well, and do not move
+        if (!sleeps(simulation, block))
+          approach.together = std::max(approach.together, ++newContacts[static_cast<std::size_t>(block)]);
+      }
+    }
+    approach.meeting = approach.meeting || mayMeet;
+    approach.speed = std::max(approach.speed, speed);
+    approach.reducedMass = std::max(approach.reducedMass, reduced);
+    approach.cornerInverse = std::max(approach.cornerInverse, inverse);
+  }
+  return approach;
 }
 
 bool bounces(const IslandStep& step, double step_s) {

@@ -7,6 +7,16 @@ namespace springtower {
 /// Speed of a block's fastest corner against a velocity, m/s.
 double fastestCorner(const ParticleArray& velocity, std::size_t block, const Vec3& against);
 
+/// What may meet in an island during this frame, from the speeds at its begin: the largest over its pairs of each number.
+struct ApproachEstimate {
+  double speed = 0.0;          ///< m/s at which the blocks of a pair may meet
+  double reducedMass = 0.0;    ///< kg
+  double cornerInverse = 0.0;  ///< 1/kg, the inverse mass of two corners against each other
+  bool meeting = false;        ///< whether blocks that are apart may meet at all
+  int together = 0;            ///< most pairs of any one block that may begin to push: hit at once they add up
+};
+ApproachEstimate estimateApproach(const IslandStep& step);
+
 /// Whether a contact opens or closes as a whole, by more than an implicit step of `step_s` follows: in the midst of a bounce an
 /// implicit step throws a block back with more than it came with.
 bool bounces(const IslandStep& step, double step_s);

@@ -13,11 +13,6 @@ namespace springtower {
 
 namespace {
 
-// Whether explicit steps of this method have velocities half a step behind.
-bool isLeapfrog(Method method) {
-  return method == Method::semiImplicitEuler || isImplicit(method);
-}
-
 // A manifold as it stands at the positions now: frames of its blocks, and its points brought up to date on a copy.
 struct ManifoldNow {
   Manifold manifold;
@@ -34,7 +29,7 @@ struct ManifoldNow {
     const ContactSide up{&frames[0], &motion[0], &carriedBy[0]};
     const ContactSide low{&frames[1], &motion[1], &carriedBy[1]};
     const double behind = simulation.engine->memo.blockHistory[upper].lastExplicitStep_s;
-    const double kick = isLeapfrog(simulation.scene.settings.method) ? behind : 0.0;
+    const double kick = traitsOf(simulation.scene.settings.method).leapfrog ? behind : 0.0;
     const PointRows rows{manifold.points.data(), manifold.points.data() + 1};
     manifoldForces(manifold, up, low, law, {behind, 1.0, 1.0, kick}, reducedMass(simulation.model, stored), &rows, force);
     points = pointForces(manifold, up, low, law);
@@ -171,7 +166,7 @@ Energy energy(const Simulation& simulation) {
   for (std::size_t b = 0; b < model.blockCount(); ++b) {
     energy.springs += springEnergy(model, state.position, b);
     energy.gravity -= model.mass[b] * gravity.dot(centre(state.position, b));
-    const double kick = isLeapfrog(settings.method) && simulation.asleep[b] == 0
+    const double kick = traitsOf(settings.method).leapfrog && simulation.asleep[b] == 0
                             ? simulation.engine->memo.blockHistory[b].lastExplicitStep_s
                             : 0.0;
     for (std::size_t a = 0; a < 3; ++a) {

@@ -14,8 +14,9 @@ namespace springtower {
 
 /// What the points of contacts store in the steps of a method.
 constexpr PointKind pointKindOf(Method method) {
-  if (method == Method::xpbd) return PointKind::anchor;
-  return isRigid(method) ? PointKind::impulse : PointKind::penalty;
+  const MethodTraits traits = traitsOf(method);
+  if (traits.anchors) return PointKind::anchor;
+  return traits.family == MethodFamily::rigid ? PointKind::impulse : PointKind::penalty;
 }
 
 /// Lists all points of an island's touching manifolds at the places of engine.memo.frames, with arms, gaps, effective masses and

@@ -97,11 +97,12 @@ IslandFacts islandFacts(const IslandStep& step) {
   facts.blocks = step.blocks.size();
   facts.leftAlone = isLeftAlone(step);
   if (!facts.leftAlone) return facts;  // nothing else counts then
+  const IslandHistory before = mergedHistory(step.engine.memo.islandHistory, step.blocks);
+  facts.rigidBefore = before.rigid;
+  facts.rigidPinned = before.explicitFrames > 0;
   std::size_t fallen = 0;
   for (const std::int32_t block : step.blocks) {
     const BlockHistory& history = step.engine.memo.blockHistory[static_cast<std::size_t>(block)];
-    facts.rigidBefore = facts.rigidBefore || history.falls;
-    facts.rigidPinned = facts.rigidPinned || history.explicitFrames > 0;
     fallen += history.hasFallen ? 1U : 0U;
   }
   facts.mostlyFallen = 2 * fallen > facts.blocks;
@@ -122,7 +123,7 @@ IslandMode nextMode(ModeChange when, const IslandFacts& facts) {
 
 void setMode(IslandStep& step, IslandMode mode) {
   const bool falling = mode == IslandMode::rigid;
-  std::vector<BlockHistory>& history = step.engine.memo.blockHistory;
+  std::vector<IslandHistory>& history = step.engine.memo.islandHistory;
   const auto forEachContact = [&](PointKind kind, const auto& change) {
     for (const std::int32_t pair : step.pairs) {
       const auto at = static_cast<std::size_t>(pair);
@@ -133,15 +134,15 @@ void setMode(IslandStep& step, IslandMode mode) {
     }
   };
   const bool all = std::all_of(step.blocks.begin(), step.blocks.end(),
-                               [&](std::int32_t block) { return history[static_cast<std::size_t>(block)].falls; });
+                               [&](std::int32_t block) { return history[static_cast<std::size_t>(block)].rigid; });
   if (falling && all) {
     forEachContact(PointKind::penalty, penaltyToImpulse);  // of blocks that slept while a neighbour went back to springs
     return;
   }
   forEachContact(PointKind::impulse, impulseToPenalty);
-  for (const std::int32_t block : step.blocks) history[static_cast<std::size_t>(block)].falls = falling;
+  for (const std::int32_t block : step.blocks) history[static_cast<std::size_t>(block)].rigid = falling;
   if (!falling) return;
-  for (const std::int32_t block : step.blocks) history[static_cast<std::size_t>(block)].hasFallen = true;
+  for (const std::int32_t block : step.blocks) step.engine.memo.blockHistory[static_cast<std::size_t>(block)].hasFallen = true;
   step.gravity = step.simulation.scene.gravity.at(step.simulation.time_s);
   synchronise(step);
   forEachContact(PointKind::penalty, penaltyToImpulse);
@@ -161,7 +162,8 @@ IslandOutcome runFall(IslandStep& step, double begin_s) {
     history.lastExplicitStep_s = 0.0;
     history.lastImplicitStep_s = 0.0;
     history.explicitLast = true;
-    history.explicitFrames = std::max(0, history.explicitFrames - 1);
+    IslandHistory& island = step.engine.memo.islandHistory[static_cast<std::size_t>(block)];
+    island.explicitFrames = std::max(0, island.explicitFrames - 1);
   }
   step.engine.memo.newtonSystems[static_cast<std::size_t>(step.blocks.front())].forcesKnown = false;
   return outcome;

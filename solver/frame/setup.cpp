@@ -61,7 +61,7 @@ double foreseenSpectralRadius(const Simulation& simulation, const Stiffness& sti
 void chooseStiffness(Simulation& simulation) {
   const Settings& settings = simulation.scene.settings;
   LoadEstimate loads = estimateLoads(simulation.scene);
-  const bool stable = isImplicit(settings.method) || isRigid(settings.method);  // with any step
+  const bool stable = isStableForAnyStep(settings.method);
   simulation.fixedSubsteps = stable ? 0 : settings.substeps;
   simulation.tolerance_m = toleranceOf(simulation.scene);
   Stiffness stiffness = stiffnessForTolerance(loads, simulation.tolerance_m);
@@ -107,6 +107,7 @@ void sizeEngine(Simulation& simulation) {
   e.springRadius.resize(count);
   e.memo.previous = simulation.state.position;
   e.memo.blockHistory.assign(count, BlockHistory{});
+  e.memo.islandHistory.assign(count, IslandHistory{});
   e.sleep.windows.resize(count);
   e.scratch.newContactCount.assign(count, 0);
   e.sleep.awakeCount = count;
@@ -146,14 +147,15 @@ Simulation::Simulation(const Scene& given) : scene(given), engine(std::make_uniq
 
   sizeEngine(*this);
   Engine& e = *engine;
-  if (scene.settings.method == Method::report) {
+  const MethodTraits traits = traitsOf(scene.settings.method);
+  if (traits.family == MethodFamily::report) {
     e.report.resize(count);
-  } else if (isRigid(scene.settings.method)) {
+  } else if (traits.family == MethodFamily::rigid) {
     prepareRigid(*this);
   } else {
     prepareImplicit(*this);  // explicit methods start in the equilibrium that implicit steps find
   }
-  if (scene.settings.method == Method::midpoint || scene.settings.method == Method::rungeKutta4) {
+  if (traits.multiStage) {
     e.memo.carried.resize(count);
     e.memo.carriedMotion.resize(count);
     for (MotionState& stage : e.scratch.stage) stage = state;
@@ -164,7 +166,7 @@ Simulation::Simulation(const Scene& given) : scene(given), engine(std::make_uniq
 void kick(Simulation& simulation, std::size_t block, const Vec3& velocity) {
   for (std::size_t c = 0; c < kCorners; ++c) simulation.state.velocity.add(block, c, velocity);
   simulation.engine->memo.blockHistory[block].lastImplicitStep_s = 0.0;
-  simulation.engine->memo.blockHistory[block].explicitFrames = tuning::kExplicitFallbackFrames;
+  simulation.engine->memo.islandHistory[block].explicitFrames = tuning::kExplicitFallbackFrames;
   simulation.restTime_s[block] = 0.0;
   wake(simulation, block, WakeReason::kick);
 }

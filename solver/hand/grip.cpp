@@ -15,7 +15,7 @@ namespace {
 // springs.
 double bearable(double rate_rad_s, const Simulation& simulation) {
   const Settings& settings = simulation.scene.settings;
-  if (simulation.fixedSubsteps == 0 || isRigid(settings.method) || isImplicit(settings.method)) return rate_rad_s;
+  if (simulation.fixedSubsteps == 0 || isStableForAnyStep(settings.method)) return rate_rad_s;
   return std::min(rate_rad_s, tuning::kMaxFollowAngle * simulation.fixedSubsteps / settings.frame_s);
 }
 

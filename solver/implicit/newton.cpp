@@ -319,7 +319,7 @@ bool stepImplicit(IslandStep& step, bool finerFollow) {
   const bool carried = !islandOf(step).forcesKnown && isCarried(step, effective_s);
   if (!islandOf(step).forcesKnown && !carried)
     evaluateForces(step, step.simulation.state, step.simulation.state.velocity, 0.0, Memory::trial);
-  if (step.simulation.scene.settings.method == Method::implicitEuler) {
+  if (!traitsOf(step.simulation.scene.settings.method).twoStep) {
     predictEuler(step, effective_s);
   } else {
     predictBdf2(step, effective_s);
@@ -337,10 +337,9 @@ bool stepImplicit(IslandStep& step, bool finerFollow) {
     converged = solveStep(step, effective_s, false, how);
   }
   // Where a frame begins a force or the hand may jump, which is no ringing.
-  const bool jumps = step.engine.memo.blockHistory[static_cast<std::size_t>(step.blocks.front())].forced &&
+  const bool jumps = step.engine.memo.islandHistory[static_cast<std::size_t>(step.blocks.front())].forced &&
                      step.time_s == step.simulation.time_s;
-  if (converged && !jumps && step.simulation.scene.settings.method != Method::implicitEuler)
-    updateFrequencyEstimate(step, effective_s);
+  if (converged && !jumps && traitsOf(step.simulation.scene.settings.method).twoStep) updateFrequencyEstimate(step, effective_s);
   return finishStep(step, converged);
 }
 

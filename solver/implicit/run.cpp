@@ -61,20 +61,17 @@ int implicitSteps(const IslandStep& step, bool forced, bool known, bool heap) {
   const Settings& settings = step.simulation.scene.settings;
   if (settings.substeps > 0) return settings.substeps;
   const bool calm = isQuiescent(step) && !forced;
-  if (settings.method == Method::implicitEuler) return calm ? 1 : tuning::kStandardImplicitSteps;
-  std::int32_t present = 1;
-  for (const std::int32_t block : step.blocks) {
-    const BlockHistory& history = step.engine.memo.blockHistory[static_cast<std::size_t>(block)];
-    present = std::max(present, history.implicitSteps);
-    known = known && history.lastImplicitStep_s > 0.0;
-  }
+  if (!traitsOf(settings.method).twoStep) return calm ? 1 : tuning::kStandardImplicitSteps;
+  std::vector<IslandHistory>& histories = step.engine.memo.islandHistory;
+  const std::int32_t present = std::max(1, mergedHistory(histories, step.blocks).implicitSteps);
+  for (const std::int32_t block : step.blocks)
+    known = known && step.engine.memo.blockHistory[static_cast<std::size_t>(block)].lastImplicitStep_s > 0.0;
   int least = forced ? tuning::kMinForcedSteps : 1;
   if (!calm && touchesSleeping(step)) least = tuning::kStandardImplicitSteps;
   if (!calm && !known) least = std::max(least, heap ? tuning::kMinStepsAfterRigid : tuning::kMaxFrequencySteps);
   if (!calm && !forced) least = std::max(least, stepsForDisplacement(step));
   const int steps = std::max(least, stepsForFrequency(step, present));
-  for (const std::int32_t block : step.blocks)
-    step.engine.memo.blockHistory[static_cast<std::size_t>(block)].implicitSteps = steps;
+  for (const std::int32_t block : step.blocks) histories[static_cast<std::size_t>(block)].implicitSteps = steps;
   return steps;
 }
 
@@ -107,7 +104,7 @@ double turningSpeed(const AffineField& place, const AffineField& motion) {
 // For how many frames implicit steps are not tried again.
 void leaveImplicitSteps(IslandStep& step, bool heap) {
   for (const std::int32_t block : step.blocks)
-    step.engine.memo.blockHistory[static_cast<std::size_t>(block)].explicitFrames =
+    step.engine.memo.islandHistory[static_cast<std::size_t>(block)].explicitFrames =
         heap ? tuning::kRigidRetryFrames : tuning::kExplicitFallbackFrames;
 }
 
@@ -160,7 +157,7 @@ bool implicitStepsFit(const IslandStep& step, double step_s) {
   if (!touches || meetsSoon(step, step_s) || bounces(step, step_s)) return false;
   for (const std::int32_t block : step.blocks) {
     const auto b = static_cast<std::size_t>(block);
-    if (step.engine.memo.blockHistory[b].explicitFrames > 0) return false;
+    if (step.engine.memo.islandHistory[b].explicitFrames > 0) return false;
     const double turning = turningSpeed(affineField(simulation.state.position, b), affineField(simulation.state.velocity, b));
     if (turning * step_s > tuning::kMaxTurnPerStep) return false;
   }
@@ -175,7 +172,7 @@ IslandOutcome runImplicitSteps(IslandStep& step, bool heap, double& reached_s) {
   reached_s = 0.0;
   NewtonSystem& island = engine.memo.newtonSystems[static_cast<std::size_t>(step.blocks.front())];
   const bool forced = holdsTether(step) || isPushed(step);
-  const bool wasForced = engine.memo.blockHistory[static_cast<std::size_t>(step.blocks.front())].forced;
+  const bool wasForced = engine.memo.islandHistory[static_cast<std::size_t>(step.blocks.front())].forced;
   if (wasForced && !forced) resetHistory(step);
   int steps = implicitSteps(step, forced, forced == wasForced, heap);
   bool fits = implicitStepsFit(step, frame_s / steps);
@@ -184,7 +181,7 @@ IslandOutcome runImplicitSteps(IslandStep& step, bool heap, double& reached_s) {
     fits = implicitStepsFit(step, frame_s / steps);
   }
   for (const std::int32_t block : step.blocks) {
-    BlockHistory& history = engine.memo.blockHistory[static_cast<std::size_t>(block)];
+    IslandHistory& history = engine.memo.islandHistory[static_cast<std::size_t>(block)];
     history.explicitFrames = std::max(0, history.explicitFrames - 1);
     history.forced = forced;
   }

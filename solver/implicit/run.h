@@ -9,7 +9,7 @@ inline constexpr double kBdf2 = 2.0 / 3.0;
 
 /// The same for either implicit method: implicit Euler puts the end's forces into the whole step.
 constexpr double endShare(Method method) {
-  return method == Method::implicitEuler ? 1.0 : kBdf2;
+  return traitsOf(method).twoStep ? kBdf2 : 1.0;
 }
 
 /// Sizes what method `implicit` needs: histories, factors, and each block's own matrix.

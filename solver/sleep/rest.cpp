@@ -111,9 +111,9 @@ void fallAsleep(Simulation& simulation, std::size_t b) {
   Engine& engine = *simulation.engine;
   simulation.asleep[b] = 1;
   engine.sleep.checkedLoads.clear();
-  BlockHistory& history = engine.memo.blockHistory[b];
-  history.falls = history.hasFallen = false;
-  history.explicitFrames = 0;
+  engine.memo.blockHistory[b].hasFallen = false;
+  engine.memo.islandHistory[b].rigid = false;
+  engine.memo.islandHistory[b].explicitFrames = 0;
   --engine.sleep.awakeCount;
   for (std::size_t a = 0; a < 3; ++a) std::fill_n(simulation.state.velocity.values(a, b), kCorners, 0.0);
   engine.memo.frames[b] = blockFrame(simulation.state.position, b);
@@ -177,7 +177,7 @@ void putToSleep(Simulation& simulation) {
     if (!ready(block)) engine.scratch.restless.push_back(block);
   }
   const Settings& settings = simulation.scene.settings;
-  const bool nearCounts = settings.method == Method::report;
+  const bool nearCounts = traitsOf(settings.method).family == MethodFamily::report;
   if (settings.sleep == Sleep::on) {
     for (std::size_t at = 0; at < engine.pairs.size(); ++at) {
       const BlockPair& pair = engine.pairs.key[at];

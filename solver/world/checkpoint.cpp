@@ -19,6 +19,7 @@ void rewindBlock(Simulation& simulation, std::size_t b) {
   copyBlock(engine.checkpoint.state.position, b, simulation.state.position);
   copyBlock(engine.checkpoint.state.velocity, b, simulation.state.velocity);
   engine.memo.blockHistory[b] = engine.checkpoint.history[b];
+  engine.memo.islandHistory[b] = engine.checkpoint.islandHistory[b];
   if (!hasHistory(simulation)) return;
   copyBlock(engine.checkpoint.previous, b, engine.memo.previous);
   copyBlock(engine.checkpoint.previousVelocity, b, engine.memo.previousVelocity);
@@ -47,6 +48,7 @@ void prepareFrameStart(Simulation& simulation) {
   if (engine.checkpoint.state.position.blockCount() != simulation.model.blockCount()) {
     engine.checkpoint.state.resize(simulation.model.blockCount());
     engine.checkpoint.history.resize(simulation.model.blockCount());
+    engine.checkpoint.islandHistory.resize(simulation.model.blockCount());
     engine.checkpoint.stepTravel.resize(simulation.model.blockCount());
     if (hasHistory(simulation)) {
       engine.checkpoint.previous.resize(simulation.model.blockCount());
@@ -66,6 +68,7 @@ void saveFrameStart(IslandStep& step) {
     copyBlock(step.simulation.state.position, b, engine.checkpoint.state.position);
     copyBlock(step.simulation.state.velocity, b, engine.checkpoint.state.velocity);
     engine.checkpoint.history[b] = engine.memo.blockHistory[b];
+    engine.checkpoint.islandHistory[b] = engine.memo.islandHistory[b];
     if (!hasHistory(step.simulation)) continue;
     copyBlock(engine.memo.previous, b, engine.checkpoint.previous);
     copyBlock(engine.memo.previousVelocity, b, engine.checkpoint.previousVelocity);

@@ -25,6 +25,7 @@ struct SavedPairs {
 struct FrameStart {
   MotionState state;
   std::vector<BlockHistory> history;
+  std::vector<IslandHistory> islandHistory;
   ParticleArray previous;               ///< m, what implicit steps started from
   ParticleArray previousVelocity;       ///< m/s
   std::vector<double> stepTravel;       ///< m, of each block as a rigid step began

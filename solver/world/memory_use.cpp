@@ -72,8 +72,8 @@ std::size_t ofNewton(const NewtonSystem& island) {
 // Without what is counted by pair.
 std::size_t ofMemo(const Memo& memo) {
   std::size_t sum =
-      sumOf(memo.travelAtSweep, memo.pairStart, memo.blockPairStart, memo.blockPairs, memo.blockHistory, memo.previous,
-            memo.previousVelocity, memo.carried, memo.force, memo.frames, memo.motion, memo.carriedMotion);
+      sumOf(memo.travelAtSweep, memo.pairStart, memo.blockPairStart, memo.blockPairs, memo.blockHistory, memo.islandHistory,
+            memo.previous, memo.previousVelocity, memo.carried, memo.force, memo.frames, memo.motion, memo.carriedMotion);
   sum += sumOf(memo.sweep.order, memo.sweep.place, memo.sweep.columns, memo.sweep.awake, memo.sweep.renewed, memo.sweep.ascending,
                memo.sweep.outOfOrder);
   for (std::size_t a = 0; a < 3; ++a) sum += sumOf(memo.boxes.lower[a], memo.boxes.upper[a]);
@@ -103,7 +103,8 @@ std::size_t ofScratch(const Scratch& s) {
 
 std::size_t ofFrameStart(const FrameStart& start) {
   return bytesOf(start.state) + sizeof(SavedPairs) / kPageRows * start.savedPairs.rowsInUse() +
-         sumOf(start.history, start.previous, start.previousVelocity, start.stepTravel, start.reportContacts);
+         sumOf(start.history, start.islandHistory, start.previous, start.previousVelocity, start.stepTravel,
+               start.reportContacts);
 }
 
 // Columns of the pair table and all lists that have an entry a pair.

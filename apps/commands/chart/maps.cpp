@@ -40,7 +40,7 @@ Scene sceneOf(Method method, int rows, double tolerance_m, int steps) {
 
 double largestOmega(const Simulation& simulation) {
   double squared = 0.0;
-  for (const BlockHistory& history : simulation.engine->memo.blockHistory) squared = std::max(squared, history.spectralRadius);
+  for (const IslandHistory& history : simulation.engine->memo.islandHistory) squared = std::max(squared, history.spectralRadius);
   return std::sqrt(squared);
 }
 

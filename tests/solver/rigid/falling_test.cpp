@@ -16,8 +16,8 @@ namespace springtower {
 namespace {
 
 bool anyFalls(const Simulation& simulation) {
-  const std::vector<BlockHistory>& history = simulation.engine->memo.blockHistory;
-  return std::any_of(history.begin(), history.end(), [](const BlockHistory& block) { return block.falls; });
+  const std::vector<IslandHistory>& history = simulation.engine->memo.islandHistory;
+  return std::any_of(history.begin(), history.end(), [](const IslandHistory& island) { return island.rigid; });
 }
 
 class FineCollapseTest : public ::testing::TestWithParam<double> {};

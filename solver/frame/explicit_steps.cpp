@@ -1,0 +1,137 @@
+#include "solver/frame/explicit_steps.h"
+
+#include "core/tuning.h"
+#include "solver/block/inertia.h"
+#include "solver/contact/approach.h"
+#include "solver/contact/evaluate_forces.h"
+#include "solver/contact/query.h"
+#include "solver/contact/update.h"
+#include "solver/explicit/leapfrog.h"
+#include "solver/explicit/stable_step.h"
+#include "solver/reference/midpoint.h"
+#include "solver/reference/report_frame.h"
+#include "solver/reference/report_step.h"
+#include "solver/reference/runge_kutta4.h"
+#include "solver/world/stiffness.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace springtower {
+
+namespace {
+
+// What the hand's springs and dashpots add to the squared frequencies (1/s2) and damping rates (1/s) of an island.
+struct TetherRates {
+  double stiffness = 0.0;
+  double damping = 0.0;
+};
+
+TetherRates tetherRates(const IslandStep& step) {
+  if (!holdsTether(step)) return {};
+  const Tether& tether = step.simulation.tether;
+  const double mass = step.simulation.model.mass[index(tether.block)];
+  const double own = inverseMass(step.simulation.scene.settings.inertia).own;
+  return {std::max(tether.stiffness_n_m, own * tether.cornerStiffness_n_m) / mass,
+          std::max(tether.damping_n_s_m, own * tether.cornerDamping_n_s_m) / mass};
+}
+
+// By how much a further damping rate shortens the step that dt^2 K + 2 dt C < 4 allows.
+double shortening(double radius, double dampingTime_s, double damping) {
+  const auto longest = [&](double rate) { return std::sqrt(rate * rate + 4.0 * radius) - rate; };
+  return longest(dampingTime_s * radius + damping) / longest(dampingTime_s * radius);
+}
+
+// Chooses the number of steps of an island for this frame, and how stiff contacts born in it may be.
+int chooseSubsteps(IslandStep& step) {
+  Simulation& simulation = step.simulation;
+  const Settings& settings = simulation.scene.settings;
+  const bool isReport = traitsOf(settings.method).family == MethodFamily::report;
+  IslandHistory& record = step.engine.memo.islandHistory[static_cast<std::size_t>(step.blocks.front())];
+  const std::uint64_t signature = contactSignature(step.engine, step.pairs) ^ (step.blocks.size() << 1U);
+  if (signature != record.contactSignature || record.spectralRadius == 0.0) {
+    record.spectralRadius = spectralBound(simulation, step.blocks, step.pairs);
+    record.contactSignature = signature;
+  }
+  const double standing = record.spectralRadius;
+  const double stiffness = simulation.contactStiffness_n_m * (1.0 + settings.viscoelasticRatio);
+  const ApproachEstimate approach = isReport ? ApproachEstimate{} : estimateApproach(step);  // its contacts have no stiffness
+  const double depth = impactDepth_m(settings, simulation.tolerance_m, simulation.lengths.blockHeight_m);
+  const double wanted =
+      approach.reducedMass * approach.speed * approach.speed / (depth * depth * simulation.contactStiffness_n_m);
+  const double born = 2.0 * stiffness * approach.cornerInverse;  // what one new contact at rest stiffness adds
+  // Pairs of a block that are hit at once add up: all of them may be as stiff as at rest, or one as the impact wants it.
+  const double together = std::max(1, approach.together);
+
+  double allowed = 0.0;  // largest eigenvalue the step bears
+  int substeps = simulation.fixedSubsteps;
+  if (substeps > 0) {
+    allowed = stableSpectralRadius(settings.method, settings.frame_s / substeps, simulation.dampingTime_s, settings.stepMargin);
+  } else {
+    const TetherRates held = tetherRates(step);
+    const double begun = standing + (approach.meeting || wanted > 1.0 ? together * born : 0.0);
+    const double needed = std::max(begun, standing + (wanted > 1.0 ? wanted * born : 0.0));
+    const double margin = settings.stepMargin * (isReport ? tuning::kReportStepMargin : 1.0);
+    const auto stepsFor = [&](double radius) {
+      const double dt = stableStep(settings.method, radius + held.stiffness, simulation.dampingTime_s, margin) *
+                        shortening(radius + held.stiffness, simulation.dampingTime_s, held.damping);
+      return std::clamp(std::ceil(settings.frame_s / dt), 1.0, static_cast<double>(tuning::kMaxExplicitSubsteps));
+    };
+    substeps = static_cast<int>(std::min(stepsFor(needed), std::max<double>(tuning::kMaxImpactSubsteps, stepsFor(begun))));
+    allowed = stableSpectralRadius(settings.method, settings.frame_s / substeps, simulation.dampingTime_s, settings.stepMargin);
+    if (held.stiffness > 0.0) allowed = std::min(allowed, needed);
+  }
+  step.maxStiffening = born > 0.0 ? std::clamp((allowed - standing) / (together * born), 1.0, std::max(1.0, wanted)) : 1.0;
+  return substeps;
+}
+
+using StepFunction = void (*)(IslandStep&);
+
+// One explicit step of a method; of implicit methods, what takes over where implicit steps do not fit.
+StepFunction explicitStepOf(Method method) {
+  switch (method) {
+    case Method::midpoint:
+      return stepMidpoint;
+    case Method::rungeKutta4:
+      return stepRungeKutta4;
+    case Method::report:
+      return stepReport;
+    default:
+      return stepSemiImplicitEuler;
+  }
+}
+
+}  // namespace
+
+IslandOutcome runExplicitSteps(IslandStep& step, double begin_s) {
+  Simulation& simulation = step.simulation;
+  const Settings& settings = simulation.scene.settings;
+  const StepFunction takeStep = explicitStepOf(settings.method);
+  const bool isReport = traitsOf(settings.method).family == MethodFamily::report;
+  const double rest_s = settings.frame_s - begin_s;
+  IslandOutcome outcome;
+  outcome.substeps = std::max(1, static_cast<int>(std::ceil(chooseSubsteps(step) * rest_s / settings.frame_s - 1e-9)));
+  step.drift_s = rest_s / outcome.substeps;
+  double last = step.engine.memo.blockHistory[static_cast<std::size_t>(step.blocks.front())].lastExplicitStep_s;
+  step.usesActiveList = true;
+  step.activeListSteps = 0;
+  for (int substep = 0; substep < outcome.substeps; ++substep) {
+    step.time_s = simulation.time_s + begin_s + substep * step.drift_s;
+    step.gravity = simulation.scene.gravity.at(step.time_s);
+    step.kick_s = 0.5 * (last + step.drift_s);
+    step.advance_s = last;
+    takeStep(step);
+    last = step.drift_s;
+    outcome.inside = isReport ? acceptReportStep(step) : updateContacts(step, refreshTravelOfExplicitSteps(simulation));
+    if (!outcome.inside) break;
+  }
+  for (const std::int32_t block : step.blocks) {
+    BlockHistory& history = step.engine.memo.blockHistory[static_cast<std::size_t>(block)];
+    history.lastExplicitStep_s = last;
+    history.explicitLast = true;
+    history.lastImplicitStep_s = 0.0;
+  }
+  return outcome;
+}
+
+}  // namespace springtower
