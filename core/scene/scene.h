@@ -39,6 +39,11 @@ struct UserForce {
   Vec3 force = Vec3::Zero();  ///< N, world axes, constant
   double start_s = 0.0;       ///< s
   double end_s = 0.0;         ///< s
+
+  /// Whether it acts at a time, s: from its start on, and no more at its end.
+  [[nodiscard]] bool actsAt(double time_s) const { return start_s <= time_s && time_s < end_s; }
+  /// Whether it acts in some part of the time from `begin_s` to `end`, s.
+  [[nodiscard]] bool actsWithin(double begin_s, double end) const { return start_s < end && end_s > begin_s; }
 };
 
 /// What a scripted hand does in a move: draws a block of the tower out, lays down or drops the block it holds on a place of the

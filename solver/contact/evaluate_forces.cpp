@@ -111,7 +111,7 @@ std::uint64_t contactsInParallel(IslandStep& step, const Evaluation& evaluation)
 
 void addUserForces(IslandStep& step) {
   for (const UserForce& user : step.simulation.scene.forces) {
-    if (step.time_s < user.start_s || step.time_s >= user.end_s) continue;
+    if (!user.actsAt(step.time_s)) continue;
     const auto block = static_cast<std::size_t>(user.block);
     const std::int32_t island = step.engine.memo.islands.islandOf[block];
     if (island < 0 || island != step.engine.memo.islands.islandOf[static_cast<std::size_t>(step.blocks.front())]) continue;
@@ -162,7 +162,7 @@ bool isPushed(const IslandStep& step) {
   const std::vector<std::int32_t>& islandOf = step.engine.memo.islands.islandOf;
   const double end_s = step.simulation.time_s + step.simulation.scene.settings.frame_s;
   return std::any_of(step.simulation.scene.forces.begin(), step.simulation.scene.forces.end(), [&](const UserForce& user) {
-    return user.start_s < end_s && user.end_s > step.simulation.time_s &&
+    return user.actsWithin(step.simulation.time_s, end_s) &&
            islandOf[static_cast<std::size_t>(user.block)] == islandOf[static_cast<std::size_t>(step.blocks.front())];
   });
 }

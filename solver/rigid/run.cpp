@@ -180,7 +180,7 @@ void applyForces(IslandStep& step) {
   for (RigidBody& body : island.bodies) body.velocity += step.drift_s * step.gravity;
   const std::int32_t own = step.engine.memo.islands.islandOf[static_cast<std::size_t>(step.blocks.front())];
   for (const UserForce& user : step.simulation.scene.forces) {
-    if (step.time_s < user.start_s || step.time_s >= user.end_s) continue;
+    if (!user.actsAt(step.time_s)) continue;
     const auto b = static_cast<std::size_t>(user.block);
     if (step.engine.memo.islands.islandOf[b] != own) continue;
     RigidBody& body = island.bodies[static_cast<std::size_t>(step.engine.scratch.nodeOf[b])];

@@ -5,6 +5,7 @@
 #include "solver/block/inertia.h"
 #include "solver/contact/approach.h"
 #include "solver/sleep/load_change.h"
+#include "solver/world/scales.h"
 #include "solver/world/stage_clock.h"
 
 #include <algorithm>
@@ -14,17 +15,6 @@
 namespace springtower {
 
 namespace {
-
-double timeScale(const Simulation& s) {
-  return std::sqrt(s.lengths.blockHeight_m / std::max(s.scene.gravity.magnitude, 1e-9));
-}
-double speedScale(const Simulation& s) {
-  return std::sqrt(s.lengths.blockHeight_m * s.scene.gravity.magnitude);
-}
-
-bool acts(const UserForce& user, double begin_s, double frame_s) {
-  return user.start_s < begin_s + frame_s && user.end_s > begin_s;
-}
 
 // A bound from above of the speed of a block's fastest corner in its rigid motion, m/s: that motion has no more kinetic energy
 // than the corners, and the least moment of inertia is that about the longest axis.
@@ -46,8 +36,8 @@ double fastestRigidCorner(const Simulation& simulation, std::size_t b) {
 void judge(Simulation& simulation, std::size_t b) {
   const Settings& settings = simulation.scene.settings;
   SleepWindow& window = simulation.engine->sleep.windows[b];
-  const double slow = settings.restSpeed * speedScale(simulation);
-  const bool ends = window.age_s + settings.frame_s >= settings.restTime * timeScale(simulation);
+  const double slow = settings.restSpeed * speedScale_m_s(simulation);
+  const bool ends = window.age_s + settings.frame_s >= settings.restTime * restTimeScale_s(simulation);
   if (!ends && fastestRigidCorner(simulation, b) < slow) {  // the usual case, without the rigid motion itself
     simulation.restTime_s[b] += settings.frame_s;
     window.age_s += settings.frame_s;
@@ -63,7 +53,7 @@ void judge(Simulation& simulation, std::size_t b) {
   }
   simulation.restTime_s[b] += settings.frame_s;
   window.age_s += settings.frame_s;
-  if (window.age_s < settings.restTime * timeScale(simulation)) return;
+  if (window.age_s < settings.restTime * restTimeScale_s(simulation)) return;
   const double change = (motion.velocity - window.velocity).norm() + arm * (motion.spin - window.spin).norm();
   if (change > settings.restImbalance * simulation.scene.gravity.magnitude * window.age_s) simulation.restTime_s[b] = 0.0;
   begin();
@@ -82,7 +72,7 @@ void judgeAsReported(Simulation& simulation, std::size_t b) {
 bool isStruck(const Simulation& simulation, std::size_t at, std::int32_t awake, bool supported) {
   const BlockPair& pair = simulation.engine->pairs.key[at];
   const auto block = static_cast<std::size_t>(awake);
-  const double scale = speedScale(simulation);
+  const double scale = speedScale_m_s(simulation);
   const bool held = simulation.tether.block == blockId(block);
   const double speed =
       std::max(fastestCorner(simulation.state.velocity, block, Vec3::Zero()), held ? simulation.tether.velocity.norm() : 0.0);
@@ -104,7 +94,7 @@ bool isStruck(const Simulation& simulation, std::size_t at, std::int32_t awake, 
 
 double restNeeded(const Simulation& simulation) {
   return simulation.scene.settings.sleep == Sleep::report ? simulation.scene.settings.frame_s
-                                                          : simulation.scene.settings.restTime * timeScale(simulation);
+                                                          : simulation.scene.settings.restTime * restTimeScale_s(simulation);
 }
 
 void fallAsleep(Simulation& simulation, std::size_t b) {
@@ -166,7 +156,7 @@ void putToSleep(Simulation& simulation) {
     }
     const double frame_s = simulation.scene.settings.frame_s;
     return std::none_of(simulation.scene.forces.begin(), simulation.scene.forces.end(), [&](const UserForce& user) {
-      return user.block == block && acts(user, simulation.time_s - frame_s, frame_s);
+      return user.block == block && user.actsWithin(simulation.time_s - frame_s, simulation.time_s - frame_s + frame_s);
     });
   };
   if (std::none_of(engine.scratch.awakeBlocks.begin(), engine.scratch.awakeBlocks.end(), ready)) return;
@@ -226,7 +216,8 @@ void wakeForInputs(Simulation& simulation) {
     return;
   }
   for (const UserForce& user : simulation.scene.forces) {
-    if (acts(user, simulation.time_s, frame_s)) wake(simulation, static_cast<std::size_t>(user.block), WakeReason::force);
+    if (user.actsWithin(simulation.time_s, simulation.time_s + frame_s))
+      wake(simulation, static_cast<std::size_t>(user.block), WakeReason::force);
   }
   if (simulation.tether.block != kFloor) wake(simulation, index(simulation.tether.block), WakeReason::hand);
 }

@@ -1,0 +1,36 @@
+#include "solver/world/island_history.h"
+
+#include <array>
+#include <gtest/gtest.h>
+
+namespace springtower {
+namespace {
+
+// Blocks 1 and 3 were in an island that rigid steps carried, block 2 in one whose vibration needed six steps.
+TEST(IslandHistory, OfIslandsThatMergeTheStrongestCountsAndTheRestIsTheFirstBlocks) {
+  std::array<IslandHistory, 4> histories{};
+  histories[1] = {.explicitFrames = 2, .implicitSteps = 1, .forced = true, .spectralRadius = 7.0, .contactSignature = 5};
+  histories[2] = {.implicitSteps = 6, .spectralRadius = 9.0, .contactSignature = 8};
+  histories[3] = {.explicitFrames = 4, .rigid = true};
+  const std::array<std::int32_t, 3> blocks{1, 2, 3};
+
+  const IslandHistory merged = mergedHistory(histories, blocks);
+
+  EXPECT_EQ(merged.explicitFrames, 4);
+  EXPECT_EQ(merged.implicitSteps, 6);
+  EXPECT_TRUE(merged.rigid);
+  EXPECT_TRUE(merged.forced);
+  EXPECT_EQ(merged.spectralRadius, 7.0);
+  EXPECT_EQ(merged.contactSignature, 5U);
+}
+
+TEST(IslandHistory, ABlockThatIsAloneHasItsOwn) {
+  std::array<IslandHistory, 2> histories{};
+  histories[0].rigid = true;
+  const std::array<std::int32_t, 1> alone{1};
+
+  EXPECT_FALSE(mergedHistory(histories, alone).rigid);
+}
+
+}  // namespace
+}  // namespace springtower
