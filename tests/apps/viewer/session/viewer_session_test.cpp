@@ -1,0 +1,288 @@
+#include "apps/viewer/input/controls.h"
+#include "apps/viewer/session/recording.h"
+#include "apps/viewer/session/session.h"
+#include "core/error.h"
+#include "solver/metrics/measures.h"
+#include "tests/apps/commands/loose_tower.h"
+#include "tests/apps/viewer/session/viewer_play.h"
+#include "tests/support/program.h"
+
+#include <fstream>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace springtower {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr double kFrame_s = 1.0 / 60.0;
+
+// A session in which something happens: a block is pushed, and friction is changed on the way.
+Session playedSession(int frames) {
+  Session session(bitCodeScene(kLooseTower));
+  Hand hand = handOn(session, kLooseBlock);
+  Tuning tuning = session.tuning;
+  for (int i = 0; i < frames; ++i) {
+    if (i == 40) tuning.friction = 0.35;
+    hand.place.y() -= 0.001;
+    hand.limit_n = 3.0;
+    step(session, {i > 20 && i < 60 ? hand : Hand{}, tuning});
+  }
+  return session;
+}
+
+TEST(ViewerPacer, StepsAsManyFramesAsTimePasses) {
+  Pacer pacer;
+  int frames = 0;
+  for (int picture = 0; picture < 1000; ++picture) {
+    frames += pacer.due(0.01 + 0.004 * (picture % 3), kFrame_s, 1.0);
+    EXPECT_GE(pacer.share(kFrame_s), 0.0);
+    EXPECT_LT(pacer.share(kFrame_s), 1.0);
+  }
+  EXPECT_NEAR(frames * kFrame_s, 334 * 0.01 + 333 * (0.014 + 0.018), 2 * kFrame_s);
+  EXPECT_FALSE(pacer.slow);
+}
+
+TEST(ViewerPacer, ASlowPictureIsFollowedBySeveralFrames) {
+  Pacer pacer;
+  EXPECT_EQ(pacer.due(3.5 * kFrame_s, kFrame_s, 1.0), 3);
+  EXPECT_NEAR(pacer.share(kFrame_s), 0.5, 1e-9);
+}
+
+TEST(ViewerPacer, SaysWhenTheMachineIsTooSlow) {
+  Pacer pacer;
+  for (int i = 0; i < 100; ++i) {
+    const int frames = pacer.due(0.2, kFrame_s, 40.0);  // 2 frames of 40 ms for 12 that are due
+    EXPECT_EQ(frames, 2);
+  }
+  EXPECT_TRUE(pacer.slow);
+  EXPECT_NEAR(pacer.kept(), 2.0 / 12.0, 0.01);
+  // It recovers once frames get cheap.
+  for (int i = 0; i < 300; ++i) pacer.due(0.02, kFrame_s, 1.0);
+  EXPECT_FALSE(pacer.slow);
+}
+
+TEST(ViewerPacer, SlowMotionThatWasAskedForIsNotSlowness) {
+  Pacer pacer;
+  pacer.rate = 0.25;
+  int frames = 0;
+  for (int i = 0; i < 400; ++i) frames += pacer.due(0.01, kFrame_s, 1.0);
+  EXPECT_NEAR(frames, 60, 1);
+  EXPECT_FALSE(pacer.slow);
+}
+
+TEST(ViewerSession, PicturesLieBetweenTheLastTwoFrames) {
+  Scene scene = bitCodeScene("(010)");
+  scene.blocks[0].velocity = {1.0, 0.0, 0.0};
+  Session session(scene);
+  step(session, idle(session));
+  ParticleArray half;
+  between(session, 0.5, half);
+  const Vec3 middle = 0.5 * (session.before.at(0, 0) + session.simulation.state.position.at(0, 0));
+  EXPECT_LT((half.at(0, 0) - middle).norm(), 1e-15);
+  EXPECT_GT((session.before.at(0, 0) - session.simulation.state.position.at(0, 0)).norm(), 0.01);
+}
+
+TEST(ViewerSession, GoesBackAndForthToTheVeryStatesItHad) {
+  Session session = playedSession(100);
+  const std::vector<LoggedFrame> log = session.log;
+  ASSERT_EQ(log.size(), 100U);
+  for (const std::uint64_t frame : {99U, 45U, 44U, 70U, 1U, 100U, 30U}) {
+    goTo(session, frame);
+    EXPECT_EQ(session.frame, frame);
+    EXPECT_EQ(stateHash(session.simulation), log[frame - 1].hash) << frame;
+  }
+  goTo(session, 0);
+  EXPECT_EQ(session.tuning.friction, 0.4);
+  goTo(session, 50);
+  EXPECT_EQ(session.tuning.friction, 0.35);
+  // A step into another future forgets the old one.
+  step(session, idle(session));
+  EXPECT_EQ(session.log.size(), 51U);
+  EXPECT_NE(session.log.back().hash, log[50].hash);
+}
+
+// A long way costs what lies between keyframes, not all that was played, in either direction.
+TEST(ViewerSession, KeepsItsKeyframesUntilAnotherFutureBegins) {
+  Session session = playedSession(100);
+  const std::size_t keyframes = session.keyframes.size();
+  EXPECT_EQ(keyframes, 4U);  // of frames 0, 30, 60 and 90
+  goTo(session, 5);
+  EXPECT_EQ(session.keyframes.size(), keyframes);
+  const std::uint64_t steps = session.simulation.counters.steps;
+  goTo(session, 91);
+  EXPECT_EQ(session.keyframes.size(), keyframes);
+  EXPECT_GT(session.simulation.counters.steps, steps);
+  goTo(session, 45);
+  step(session, idle(session));
+  EXPECT_EQ(session.keyframes.size(), 2U);
+}
+
+TEST(ViewerSession, GoesBackOverAChangeOfMethodAndTolerance) {
+  Session session(bitCodeScene(kLooseTower));
+  Tuning tuning = session.tuning;
+  for (int i = 0; i < 80; ++i) {
+    if (i == 20) tuning.method = Method::midpoint;
+    if (i == 30) tuning.tolerance_m = 1e-4;
+    if (i == 40) tuning.method = Method::implicit;
+    step(session, {{}, tuning});
+  }
+  const std::vector<LoggedFrame> log = session.log;
+  EXPECT_EQ(session.simulation.scene.settings.method, Method::implicit);
+  for (const std::uint64_t frame : {35U, 25U, 75U, 10U, 45U, 80U}) {
+    goTo(session, frame);
+    EXPECT_EQ(stateHash(session.simulation), log[frame - 1].hash) << frame;
+  }
+}
+
+TEST(ViewerSession, ALiveChangeOfStiffnessHardlyMovesTheTower) {
+  Session session(towerScene(6));
+  wait(session, 90);
+  const ParticleArray before = session.simulation.state.position;
+  Tuning tuning = session.tuning;
+  tuning.method = Method::midpoint;
+  for (int i = 0; i < 60; ++i) step(session, {{}, tuning});
+  EXPECT_LT(largestCornerMove(before, session.simulation.state.position), 2e-4);
+}
+
+TEST(ViewerRecording, ReadsBackAndReplaysToTheSameStates) {
+  const Session session = playedSession(100);
+  SceneChoice choice;
+  choice.name = kLooseTower;
+  choice.players = 0;
+  const ScratchFolder scratch;
+  const std::string path = scratch.file("recording.jsonl");
+  {
+    std::ofstream stream(path);
+    writeRecording(stream, {choice, session.log});
+  }
+  Replay replay{readRecording(path), {}};
+  ASSERT_EQ(replay.recording.frames.size(), 100U);
+  Session again(sceneOf(replay.recording.choice), replay.recording.choice.players);
+  while (const auto input = nextInput(replay, again)) {
+    step(again, *input);
+    compare(replay, again);
+  }
+  EXPECT_EQ(again.frame, 100U);
+  EXPECT_FALSE(replay.differs);
+  EXPECT_EQ(stateHash(again.simulation), stateHash(session.simulation));
+}
+
+TEST(ViewerRecording, NamesTheFrameThatDiffers) {
+  const Session session = playedSession(60);
+  Replay replay{{{}, session.log}, {}};
+  replay.recording.frames[29].input.hand.place.y() += 1e-9;  // the hand holds something from frame 22 on
+  Session again(bitCodeScene(kLooseTower));
+  while (const auto input = nextInput(replay, again)) {
+    step(again, *input);
+    compare(replay, again);
+  }
+  ASSERT_TRUE(replay.differs);
+  EXPECT_EQ(*replay.differs, 30U);
+}
+
+TEST(ViewerRecording, BrokenFilesNameTheLine) {
+  const ScratchFolder scratch;
+  const std::string path = scratch.file("recording.jsonl");
+  const std::string head = R"({"springtower_recording":1,"scene":"tower:1","players":0})";
+  const std::pair<std::string, std::string> broken[] = {
+      {"", "empty"},
+      {R"({"scene":"tower:1"})", "line 1"},
+      {head + "\n{\"hash\":\"zz\"}", "line 2: hash"},
+      {head + "\n{\"hash\":\"0\"}\nnonsense", "line 3"},
+      {head + "\n" + R"({"hash":"0","hand":{"block":3,"place":[0,0,0],"turn":[1,0,0,0],"limit_n":5}})",
+       "found 3, allowed 0 to 2"}};
+  for (const auto& [text, expected] : broken) {
+    std::ofstream(path) << text;
+    try {
+      readRecording(path);
+      ADD_FAILURE() << text;
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.what(), HasSubstr(expected));
+    }
+  }
+  EXPECT_THROW(readRecording(scratch.file("none")), InputError);
+}
+
+TEST(ViewerControls, DragsInThePlaneOfTheScreenAndAlongTheView) {
+  Session session(bitCodeScene(kLooseTower));
+  Controls controls;
+  showAll(controls.camera, session.simulation.state.position);
+  const auto at = seenAt(controls.camera, controls.viewport, session.simulation.state.position.at(0, 1));
+  pointerMoved(controls, session, at->x() - 3.0, at->y() - 6.0);
+  ASSERT_TRUE(controls.hover);
+  const BlockId block = controls.hover->block;
+  buttonChanged(controls, session, Button::left, true);
+  ASSERT_EQ(controls.hand.block, block);
+  const Vec3 start = controls.hand.place;
+  const CameraFrame frame = cameraFrame(controls.camera);
+  pointerMoved(controls, session, controls.x + 100.0, controls.y - 50.0);
+  const Vec3 dragged = controls.hand.place - start;
+  EXPECT_NEAR(dragged.dot(frame.back), 0.0, 1e-12);
+  EXPECT_NEAR(dragged.dot(frame.right), 100.0 * metresPerPixel(controls.camera, controls.viewport, start), 1e-12);
+  // What is under the mouse stays under it.
+  const auto from = seenAt(controls.camera, controls.viewport, start);
+  const auto to = seenAt(controls.camera, controls.viewport, controls.hand.place);
+  EXPECT_NEAR(to->x() - from->x(), 100.0, 1e-6);
+  EXPECT_NEAR(to->y() - from->y(), -50.0, 1e-6);
+  // Also with the right button held the motion is along the view, towards the viewer when the mouse comes nearer.
+  buttonChanged(controls, session, Button::right, true);
+  const Vec3 before = controls.hand.place;
+  pointerMoved(controls, session, controls.x + 30.0, controls.y + 40.0);
+  EXPECT_NEAR((controls.hand.place - before).normalized().dot(frame.back), 1.0, 1e-12);
+  buttonChanged(controls, session, Button::right, false);
+  EXPECT_EQ(controls.hand.block, block);
+  // The look key turns the camera and leaves the hand alone.
+  const Vec3 kept = controls.hand.place;
+  const double azimuth = controls.camera.azimuth;
+  controls.look = true;
+  pointerMoved(controls, session, controls.x + 50.0, controls.y);
+  controls.look = false;
+  EXPECT_NE(controls.camera.azimuth, azimuth);
+  EXPECT_EQ(controls.hand.place, kept);
+  // The wheel turns the block: six steps are a quarter.
+  const Eigen::Quaterniond turn = controls.hand.turn;
+  wheelTurned(controls, 6.0);
+  EXPECT_NEAR(turn.angularDistance(controls.hand.turn), 0.5 * 3.14159265358979, 1e-9);
+  buttonChanged(controls, session, Button::left, false);
+  EXPECT_EQ(controls.hand.block, kFloor);
+}
+
+TEST(ViewerControls, ADragBesideTheBlocksGoesRound) {
+  Session session(bitCodeScene(kLooseTower));
+  Controls controls;
+  const Camera before = controls.camera;
+  pointerMoved(controls, session, 5.0, 5.0);
+  buttonChanged(controls, session, Button::left, true);
+  pointerMoved(controls, session, 105.0, 25.0);
+  EXPECT_EQ(controls.hand.block, kFloor);
+  EXPECT_LT(controls.camera.azimuth, before.azimuth);
+  EXPECT_GT(controls.camera.elevation, before.elevation);
+  buttonChanged(controls, session, Button::left, false);
+  wheelTurned(controls, 1.0);
+  EXPECT_LT(controls.camera.distance, before.distance);
+}
+
+// Looking is not touching: with camera and hover alone a tower moves as one that nobody looks at.
+TEST(ViewerControls, LookingMovesNothing) {
+  Session session(towerScene(6));
+  wait(session, 120);
+  const ParticleArray before = session.simulation.state.position;
+  Controls controls;
+  showAll(controls.camera, before);
+  int hovered = 0;
+  for (int i = 0; i < 120; ++i) {
+    controls.look = i % 3 == 0;
+    pointerMoved(controls, session, 640.0 + 200.0 * std::sin(0.3 * i), 400.0 + 150.0 * std::cos(0.2 * i));
+    if (i % 10 == 0) wheelTurned(controls, i % 20 == 0 ? 1.0 : -1.0);
+    if (i % 30 == 0) buttonChanged(controls, session, Button::middle, i % 60 == 0);
+    hovered += controls.hover ? 1 : 0;
+    step(session, {controls.hand, session.tuning});
+  }
+  EXPECT_GT(hovered, 10);
+  EXPECT_LT(largestCornerMove(before, session.simulation.state.position), 1e-5);
+}
+
+}  // namespace
+}  // namespace springtower
