@@ -64,7 +64,13 @@ constexpr std::string_view kRooms[] = {"core",
                                        "apps/commands/validate",
                                        "apps/commands/settings",
                                        "apps/cli",
-                                       "apps/viewer"};
+                                       "apps/viewer/session",
+                                       "apps/viewer/input",
+                                       "apps/viewer/view",
+                                       "apps/viewer/render",
+                                       "apps/viewer/io",
+                                       "apps/viewer/ui",
+                                       "apps/viewer/app"};
 
 std::string_view topOf(std::string_view path) {
   return path.substr(0, path.find('/'));

@@ -45,7 +45,7 @@ TEST(SourceRules, ARoomOfTheSolverKnowsThoseBeforeIt) {
   EXPECT_THAT(brokenRules("solver/contact/update.cpp", "#include \"solver/implicit/newton.h\"\n"),
               ElementsAre(HasSubstr("solver/contact must not know solver/implicit")));
   EXPECT_THAT(brokenRules("solver/contact/update.cpp", "#include \"solver/attic/old.h\"\n"), ElementsAre(HasSubstr("no place")));
-  EXPECT_THAT(brokenRules("apps/viewer/main.cpp", "#include \"solver/implicit/system.h\"\n"), IsEmpty());
+  EXPECT_THAT(brokenRules("apps/viewer/app/main.cpp", "#include \"solver/implicit/system.h\"\n"), IsEmpty());
 }
 
 TEST(SourceRules, TheOtherFoldersHaveAnOrderToo) {
@@ -57,7 +57,15 @@ TEST(SourceRules, TheOtherFoldersHaveAnOrderToo) {
   EXPECT_THAT(brokenRules("apps/plot/axis.cpp", "#include \"apps/commands/profile/profile.h\"\n"),
               ElementsAre(HasSubstr("apps/plot must not know apps/commands/profile")));
   EXPECT_THAT(brokenRules("apps/commands/validate/sleep.cpp", "#include \"apps/commands/run/report.h\"\n"), IsEmpty());
-  EXPECT_THAT(brokenRules("apps/viewer/ui/panels.cpp", "#include \"apps/viewer/state.h\"\n"), IsEmpty());
+  EXPECT_THAT(brokenRules("apps/viewer/ui/panels.cpp", "#include \"apps/viewer/view/state.h\"\n"), IsEmpty());
+  EXPECT_THAT(brokenRules("apps/viewer/view/state.cpp", "#include \"apps/viewer/render/render.h\"\n"),
+              ElementsAre(HasSubstr("apps/viewer/view must not know apps/viewer/render")));
+  // A folder in a room has the place of the room; one beside the rooms has none, nor has a file there.
+  EXPECT_THAT(brokenRules("apps/viewer/ui/plot/bars.cpp", "#include \"apps/viewer/ui/panels.h\"\n"), IsEmpty());
+  EXPECT_THAT(brokenRules("apps/viewer/io/film/gif.cpp", "#include \"apps/viewer/ui/panels.h\"\n"),
+              ElementsAre(HasSubstr("apps/viewer/io/film must not know apps/viewer/ui")));
+  EXPECT_THAT(brokenRules("apps/viewer/flat.cpp", "#include \"apps/viewer/session/session.h\"\n"),
+              ElementsAre(HasSubstr("no place")));
   EXPECT_THAT(brokenRules("apps/commands/attic/old.cpp", "#include \"apps/plot/plot.h\"\n"), ElementsAre(HasSubstr("no place")));
 }
 

@@ -1,0 +1,354 @@
+#include "apps/viewer/app/window.h"
+
+#include "apps/common/output_file.h"
+#include "apps/common/poses.h"
+#include "apps/viewer/ui/panels.h"
+#include "core/error.h"
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#include <backends/imgui_impl_glfw.h>
+#include <backends/imgui_impl_opengl3.h>
+#include <cmath>
+#include <epoxy/gl.h>
+#include <filesystem>
+#include <fmt/format.h>
+#include <imgui.h>
+
+namespace springtower {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr double kKeyOrbit = 0.05;  // rad a key press
+
+double secondsSince(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+// The window and what its callbacks need.
+struct Desk {
+  Viewer& viewer;
+  const ViewerFiles& files;
+  PanelDraft draft;
+  GLFWwindow* window = nullptr;
+  std::unique_ptr<Renderer> renderer = nullptr;
+  std::unique_ptr<Film> film = nullptr;
+  std::uint64_t filmedFrame = 0;
+  int films = 0;
+  int shots = 0;
+  bool shotWanted = false;
+  bool inspectionWanted = false;
+  bool filmWanted = false;
+};
+
+Desk& deskOf(GLFWwindow* window) {
+  return *static_cast<Desk*>(glfwGetWindowUserPointer(window));
+}
+
+std::string numbered(const Desk& desk, const char* name, int number, const char* ending) {
+  std::filesystem::create_directories(desk.files.folder);
+  return fmt::format("{}/{}-{:03}{}", desk.files.folder, name, number, ending);
+}
+
+// A place in the window as pixels of the picture, which has more of them on a fine screen.
+Eigen::Vector2d inPixels(const Desk& desk, double x, double y) {
+  int width = 1;
+  int height = 1;
+  glfwGetWindowSize(desk.window, &width, &height);
+  const Viewport& viewport = desk.viewer.controls.viewport;
+  return {x * viewport.width / std::max(width, 1), y * viewport.height / std::max(height, 1)};
+}
+
+void onCursor(GLFWwindow* window, double x, double y) {
+  Desk& desk = deskOf(window);
+  const Eigen::Vector2d at = inPixels(desk, x, y);
+  pointerMoved(desk.viewer.controls, desk.viewer.session, at.x(), at.y());
+}
+
+// A pull along the view wants more room than the screen has below a block: while it lasts the pointer is hidden and has no
+// bounds. It comes back where it was.
+void boundPointer(Desk& desk) {
+  Controls& controls = desk.viewer.controls;
+  const int wanted = controls.right && controls.hand.block != kFloor ? GLFW_CURSOR_DISABLED : GLFW_CURSOR_NORMAL;
+  if (glfwGetInputMode(desk.window, GLFW_CURSOR) == wanted) return;
+  glfwSetInputMode(desk.window, GLFW_CURSOR, wanted);
+  double x = 0.0;
+  double y = 0.0;
+  glfwGetCursorPos(desk.window, &x, &y);
+  const Eigen::Vector2d at = inPixels(desk, x, y);
+  controls.x = at.x();  // the jump is none of the hand's
+  controls.y = at.y();
+}
+
+void onButton(GLFWwindow* window, int button, int action, int) {
+  Desk& desk = deskOf(window);
+  const bool pressed = action == GLFW_PRESS;
+  if (pressed && ImGui::GetIO().WantCaptureMouse) return;
+  if (button > GLFW_MOUSE_BUTTON_MIDDLE) return;
+  const Button which = button == GLFW_MOUSE_BUTTON_LEFT    ? Button::left
+                       : button == GLFW_MOUSE_BUTTON_RIGHT ? Button::right
+                                                           : Button::middle;
+  buttonChanged(desk.viewer.controls, desk.viewer.session, which, pressed);
+  boundPointer(desk);
+}
+
+void onScroll(GLFWwindow* window, double, double steps) {
+  if (!ImGui::GetIO().WantCaptureMouse) wheelTurned(deskOf(window).viewer.controls, steps);
+}
+
+// Keys that may be held down.
+void onRepeatedKey(Viewer& viewer, int key) {
+  Controls& controls = viewer.controls;
+  switch (key) {
+    case GLFW_KEY_Q:
+      return turnHand(controls, TurnAxis::vertical, kKeyTurn);
+    case GLFW_KEY_E:
+      return turnHand(controls, TurnAxis::vertical, -kKeyTurn);
+    case GLFW_KEY_W:
+      return turnHand(controls, TurnAxis::right, -kKeyTurn);
+    case GLFW_KEY_S:
+      return turnHand(controls, TurnAxis::right, kKeyTurn);
+    case GLFW_KEY_A:
+      return turnHand(controls, TurnAxis::view, kKeyTurn);
+    case GLFW_KEY_D:
+      return turnHand(controls, TurnAxis::view, -kKeyTurn);
+    case GLFW_KEY_LEFT:
+      return orbit(controls.camera, -kKeyOrbit, 0.0);
+    case GLFW_KEY_RIGHT:
+      return orbit(controls.camera, kKeyOrbit, 0.0);
+    case GLFW_KEY_UP:
+      return orbit(controls.camera, 0.0, kKeyOrbit);
+    case GLFW_KEY_DOWN:
+      return orbit(controls.camera, 0.0, -kKeyOrbit);
+    case GLFW_KEY_EQUAL:
+      return zoom(controls.camera, 1.0);
+    case GLFW_KEY_MINUS:
+      return zoom(controls.camera, -1.0);
+    case GLFW_KEY_N:
+      viewer.paused = viewer.once = true;
+      return;
+    case GLFW_KEY_LEFT_BRACKET:
+      return travel(viewer, viewer.session.frame == 0 ? 0 : viewer.session.frame - 1);
+    case GLFW_KEY_RIGHT_BRACKET:
+      return travel(viewer, viewer.session.frame + 1);
+    default:
+      return;
+  }
+}
+
+void onPressedKey(Desk& desk, int key) {
+  Viewer& viewer = desk.viewer;
+  switch (key) {
+    case GLFW_KEY_SPACE:
+      viewer.paused = !viewer.paused && viewer.session.failure.empty();
+      return;
+    case GLFW_KEY_R:
+      return restart(viewer, viewer.choice);
+    case GLFW_KEY_T:
+      viewer.pacer.rate = nextRate(viewer.pacer.rate);
+      return;
+    case GLFW_KEY_BACKSPACE:
+      return undo(viewer);
+    case GLFW_KEY_O:
+      viewer.overlay = static_cast<Overlay>((static_cast<std::size_t>(viewer.overlay) + 1) % kOverlays);
+      return;
+    case GLFW_KEY_F:
+      viewer.arrows = !viewer.arrows;
+      return;
+    case GLFW_KEY_TAB:
+      viewer.panels = !viewer.panels;
+      return;
+    case GLFW_KEY_P:
+      desk.shotWanted = true;
+      return;
+    case GLFW_KEY_I:
+      desk.inspectionWanted = true;
+      return;
+    case GLFW_KEY_V:
+      desk.filmWanted = true;
+      return;
+    case GLFW_KEY_ESCAPE:
+      glfwSetWindowShouldClose(desk.window, GLFW_TRUE);
+      return;
+    default:
+      return;
+  }
+}
+
+void onKey(GLFWwindow* window, int key, int, int action, int) {
+  Desk& desk = deskOf(window);
+  if (key == GLFW_KEY_LEFT_SHIFT || key == GLFW_KEY_RIGHT_SHIFT) desk.viewer.controls.look = action != GLFW_RELEASE;
+  if (action == GLFW_RELEASE || ImGui::GetIO().WantTextInput) return;
+  if (action == GLFW_PRESS) onPressedKey(desk, key);
+  onRepeatedKey(desk.viewer, key);
+}
+
+void writeShot(Desk& desk, const Image& image) {
+  const std::string path = numbered(desk, "shot", ++desk.shots, ".png");
+  writePng(path, "screenshot", image);
+  desk.viewer.message = "written: " + path;
+}
+
+// What is seen, as numbers: for tests, and for a look at a tower elsewhere. The report comes last: when it is there, all is.
+void writeInspection(Desk& desk, const Picture& picture) {
+  Viewer& viewer = desk.viewer;
+  const Viewport& viewport = viewer.controls.viewport;
+  const double frame_s = viewer.session.scene.settings.frame_s;
+  const int number = ++desk.shots;
+  writeBlocksSeen(numbered(desk, "seen", number, ".pgm"), "inspection",
+                  desk.renderer->blocksSeen(picture, viewer.controls.camera, viewport), viewport);
+  OutputFile poses(numbered(desk, "poses", number, ".csv"), "inspection");
+  PoseWriter(poses.stream(), frame_s, frame_s).frame(viewer.session.simulation);
+  poses.commit();
+  OutputFile report(numbered(desk, "report", number, ".json"), "inspection");
+  writeViewerReport(report.stream(), viewer);
+  report.commit();
+}
+
+void saveRecording(Desk& desk) {
+  const std::string path = numbered(desk, "recording", ++desk.shots, ".jsonl");
+  OutputFile file(path, "recording");
+  const Session& session = desk.viewer.session;
+  const auto end = session.log.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(session.frame, session.log.size()));
+  writeRecording(file.stream(), {desk.viewer.choice, {session.log.begin(), end}});
+  file.commit();
+  desk.viewer.message = "written: " + path;
+}
+
+void toggleFilm(Desk& desk) {
+  if (desk.film) {
+    desk.film->finish();
+    desk.film.reset();
+    desk.viewer.message = "the film is written";
+    return;
+  }
+  const std::string path = desk.files.film && desk.films == 0 ? *desk.files.film : numbered(desk, "film", desk.films + 1, ".mp4");
+  desk.film = std::make_unique<Film>(path, desk.viewer.controls.viewport,
+                                     static_cast<int>(std::lround(1.0 / desk.viewer.session.scene.settings.frame_s)));
+  ++desk.films;
+  desk.viewer.message = "filming: " + path;
+}
+
+// Files that cannot be written are told, not fatal: the game goes on.
+template <class Action>
+void tell(Desk& desk, const Action& action) {
+  try {
+    action();
+  } catch (const InputError& error) {
+    desk.viewer.message = error.what();
+  } catch (const std::filesystem::filesystem_error& error) {
+    desk.viewer.message = error.what();
+  }
+}
+
+void writePicture(Desk& desk, const Picture& picture, const PanelWishes& wishes) {
+  const Viewport& viewport = desk.viewer.controls.viewport;
+  if (desk.shotWanted || wishes.screenshot) tell(desk, [&] { writeShot(desk, Renderer::read(viewport)); });
+  if (desk.inspectionWanted) tell(desk, [&] { writeInspection(desk, picture); });
+  if (desk.filmWanted || wishes.film) tell(desk, [&] { toggleFilm(desk); });
+  if (wishes.recording) tell(desk, [&] { saveRecording(desk); });
+  desk.shotWanted = desk.inspectionWanted = desk.filmWanted = false;
+  if (!desk.film || desk.filmedFrame == desk.viewer.session.frame) return;
+  desk.filmedFrame = desk.viewer.session.frame;
+  desk.film->add(Renderer::read(viewport));
+}
+
+void drawWindow(Desk& desk) {
+  const Clock::time_point start = Clock::now();
+  Viewer& viewer = desk.viewer;
+  Viewport& viewport = viewer.controls.viewport;
+  glfwGetFramebufferSize(desk.window, &viewport.width, &viewport.height);
+  viewport = {std::max(viewport.width, 1), std::max(viewport.height, 1)};
+  const Picture picture = pictureOf(viewer);
+  desk.renderer->draw(picture, viewer.controls.camera, viewport);
+  ImGui_ImplOpenGL3_NewFrame();
+  ImGui_ImplGlfw_NewFrame();
+  ImGui::NewFrame();
+  const PanelWishes wishes = drawPanels(viewer, desk.draft, desk.film != nullptr);
+  ImGui::Render();
+  ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+  writePicture(desk, picture, wishes);
+  viewer.picture_ms = static_cast<float>(1e3 * secondsSince(start));
+  glfwSwapBuffers(desk.window);
+}
+
+// GLFW and its window stay until the program ends, which gives all back: what a driver keeps in its own variables would count as
+// lost memory once the driver is unloaded, and hide what we lose.
+void startGlfw() {
+  if (glfwInit() == GLFW_TRUE) return;
+  const char* why = nullptr;
+  glfwGetError(&why);
+  throw InputError(fmt::format("no window: {}; without a display use --headless", why == nullptr ? "unknown" : why));
+}
+
+struct ImGuiUse {
+  explicit ImGuiUse(GLFWwindow* window) {
+    ImGui::CreateContext();
+    ImGui::GetIO().IniFilename = nullptr;
+    ImGui_ImplGlfw_InitForOpenGL(window, true);
+    ImGui_ImplOpenGL3_Init("#version 330 core");
+  }
+  ImGuiUse(const ImGuiUse&) = delete;
+  ImGuiUse& operator=(const ImGuiUse&) = delete;
+  ~ImGuiUse() {
+    ImGui_ImplOpenGL3_Shutdown();
+    ImGui_ImplGlfw_Shutdown();
+    ImGui::DestroyContext();
+  }
+};
+
+// A window whose context is current, with four samples a pixel unless the processor has to draw them.
+GLFWwindow* openedWindow(const Viewport& size) {
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
+  glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+  glfwWindowHint(GLFW_VISIBLE, GLFW_FALSE);
+  for (const int samples : {4, 0}) {
+    glfwWindowHint(GLFW_SAMPLES, samples);
+    GLFWwindow* window = glfwCreateWindow(size.width, size.height, "springtower-viewer", nullptr, nullptr);
+    if (window == nullptr) continue;
+    glfwMakeContextCurrent(window);
+    if (samples == 0 || !drawsInSoftware()) {
+      glfwShowWindow(window);
+      return window;
+    }
+    glfwDestroyWindow(window);
+  }
+  const char* why = nullptr;
+  glfwGetError(&why);
+  throw InputError(fmt::format("no window: {}; without OpenGL 3.3 use springtower run", why == nullptr ? "unknown" : why));
+}
+
+}  // namespace
+
+void runWindow(Viewer& viewer, const ViewerFiles& files, const Viewport& size, Clock::time_point started) {
+  startGlfw();
+  Desk desk{viewer, files, PanelDraft(viewer.choice)};
+  desk.window = openedWindow(size);
+  glfwSwapInterval(1);
+  glfwSetWindowUserPointer(desk.window, &desk);
+  glfwSetCursorPosCallback(desk.window, onCursor);
+  glfwSetMouseButtonCallback(desk.window, onButton);
+  glfwSetScrollCallback(desk.window, onScroll);
+  glfwSetKeyCallback(desk.window, onKey);
+  const ImGuiUse imgui(desk.window);
+  desk.renderer = std::make_unique<Renderer>();
+  if (files.film) tell(desk, [&] { toggleFilm(desk); });
+
+  Clock::time_point last = Clock::now();
+  while (glfwWindowShouldClose(desk.window) == GLFW_FALSE) {
+    glfwPollEvents();
+    boundPointer(desk);
+    advance(viewer, std::chrono::duration<double>(Clock::now() - std::exchange(last, Clock::now())).count());
+    drawWindow(desk);
+    if (++viewer.watch.pictures > 1) continue;
+    viewer.watch.firstPicture_s = secondsSince(started);
+    fmt::print("first picture after {:.3f} s\n", viewer.watch.firstPicture_s);
+    std::fflush(stdout);
+  }
+  if (desk.film) desk.film->finish();
+  desk.renderer.reset();
+}
+
+}  // namespace springtower

@@ -1,0 +1,35 @@
+#pragma once
+
+#include "apps/viewer/io/output.h"
+#include "apps/viewer/view/state.h"
+
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace springtower {
+
+/// Where the viewer writes, and what it was asked to write at the end.
+struct ViewerFiles {
+  std::string folder = "out";  ///< screenshots, films, recordings
+  std::optional<std::string> film;
+  std::optional<std::string> record;
+  std::optional<std::string> report;
+  std::optional<std::string> poses;
+};
+
+/// Opens a window of this size and runs the viewer in it until the user closes it. `started`: when the program began. Throws
+/// InputError when there is no display.
+void runWindow(Viewer& viewer, const ViewerFiles& files, const Viewport& size, std::chrono::steady_clock::time_point started);
+
+/// Steps a number of frames without a window and writes every `every`th picture as frame-00001.png ... into a folder.
+struct HeadlessRun {
+  int frames = 60;
+  int every = 1;
+  std::optional<std::string> folder;
+};
+void runHeadless(Viewer& viewer, const ViewerFiles& files, const Viewport& size, const HeadlessRun& run,
+                 std::chrono::steady_clock::time_point started);
+
+}  // namespace springtower

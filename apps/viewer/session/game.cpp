@@ -1,0 +1,195 @@
+#include "apps/viewer/session/game.h"
+
+#include "solver/block/inertia.h"
+#include "solver/statics/tilt_margin.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <numeric>
+
+namespace springtower {
+namespace {
+
+constexpr double kRowSlack = 1.0 / 3.0;   // of a block's height, that a block in a row may be off its height
+constexpr double kFlat = 0.95;            // least vertical part of the axis that points up
+constexpr double kFloorSlack = 0.02;      // of a block's height, above the floor
+constexpr double kQuietSpeed_m_s = 5e-3;  // of any corner, while a turn ends
+constexpr double kQuietTime_s = 0.5;      // how long it has to last
+constexpr double kLooseInWeights = 0.5;   // a loose block carries less than this of its own weight
+
+double heightOf(const Simulation& simulation, std::size_t block) {
+  return simulation.model.dimensions[block].z();
+}
+
+double lowestCorner(const ParticleArray& position, std::size_t block) {
+  const double* z = position.values(2, block);
+  return *std::min_element(z, z + kCorners);
+}
+
+bool touchesFloor(const Simulation& simulation, std::size_t block) {
+  return lowestCorner(simulation.state.position, block) < kFloorSlack * heightOf(simulation, block);
+}
+
+double meanHeight(const Simulation& simulation) {
+  double sum = 0.0;
+  for (const Vec3& dimensions : simulation.model.dimensions) sum += dimensions.z();
+  return sum / static_cast<double>(simulation.model.blockCount());
+}
+
+void beginTurn(Game& game, const Simulation& simulation, std::uint64_t frame) {
+  const std::size_t blocks = simulation.model.blockCount();
+  game.phase = Phase::choose;
+  game.block = kFloor;
+  game.quiet_s = 0.0;
+  game.turnFrame = frame;
+  game.turnCentre.resize(blocks);
+  game.turnRow.resize(blocks);
+  std::vector<int> count;
+  for (std::size_t b = 0; b < blocks; ++b) {
+    game.turnCentre[b] = centre(simulation.state.position, b);
+    game.turnRow[b] = rowOf(simulation, b);
+    if (game.turnRow[b] < 0) continue;
+    const auto row = static_cast<std::size_t>(game.turnRow[b]);
+    if (row >= count.size()) count.resize(row + 1);
+    ++count[row];
+  }
+  game.topRow = -1;
+  for (std::size_t row = 0; row < count.size(); ++row) {
+    if (count[row] >= 3) game.topRow = static_cast<int>(row);
+  }
+}
+
+bool quiet(const Simulation& simulation) {
+  for (std::size_t b = 0; b < simulation.model.blockCount(); ++b) {
+    if (simulation.asleep[b] == 0 && rigidMotion(simulation.state, b).cornerSpeed > kQuietSpeed_m_s) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+int rowOf(const Simulation& simulation, std::size_t block) {
+  const Vec3 up = meanEdge(simulation.state.position, block, 2);
+  const double height = meanHeight(simulation);
+  const double level = centre(simulation.state.position, block).z() / height - 0.5;
+  const double row = std::round(level);
+  const bool flat = std::abs(up.z()) > kFlat * up.norm();
+  return flat && std::abs(level - row) < kRowSlack && row >= 0.0 ? static_cast<int>(row) : -1;
+}
+
+Game newGame(const Simulation& simulation, int players, std::uint64_t frame) {
+  Game game;
+  game.players = std::clamp(players, 0, kMaxPlayers);
+  game.onFloor.resize(simulation.model.blockCount());
+  for (std::size_t b = 0; b < game.onFloor.size(); ++b) game.onFloor[b] = touchesFloor(simulation, b) ? 1 : 0;
+  beginTurn(game, simulation, frame);
+  return game;
+}
+
+bool mayTake(const Game& game, BlockId block) {
+  if (game.players == 0) return true;
+  if (game.phase == Phase::over || block == kFloor) return false;
+  if (game.phase == Phase::moving) return block == game.block;
+  const int row = game.turnRow[index(block)];
+  return row >= 0 && row < game.topRow;
+}
+
+bool followGame(Game& game, const Simulation& simulation, BlockId held, std::uint64_t frame) {
+  if (game.players == 0 || game.phase == Phase::over) return false;
+  if (game.phase == Phase::choose && held != kFloor) {
+    const std::size_t b = index(held);
+    const double moved = (centre(simulation.state.position, b) - game.turnCentre[b]).norm();
+    if (moved > 0.5 * simulation.model.dimensions[b].y()) {
+      game.phase = Phase::moving;
+      game.block = held;
+    }
+  }
+  for (std::size_t b = 0; b < simulation.model.blockCount(); ++b) {
+    const bool moving = blockId(b) == game.block || (game.phase == Phase::choose && blockId(b) == held);
+    if (moving || game.onFloor[b] != 0 || !touchesFloor(simulation, b)) continue;
+    game.phase = Phase::over;
+    game.fallen = blockId(b);
+    return false;
+  }
+  if (game.phase != Phase::moving) return false;
+  const bool onTop = held == kFloor && rowOf(simulation, index(game.block)) > game.topRow;
+  game.quiet_s = onTop && quiet(simulation) ? game.quiet_s + simulation.scene.settings.frame_s : 0.0;
+  if (game.quiet_s < kQuietTime_s) return false;
+  ++game.moves;
+  game.player = (game.player + 1) % game.players;
+  game.onFloor[index(game.block)] = 0;
+  beginTurn(game, simulation, frame);
+  return true;
+}
+
+std::string describe(const Game& game) {
+  if (game.players == 0) return "no game: take any block";
+  const int player = game.player + 1;
+  switch (game.phase) {
+    case Phase::choose:
+      if (game.topRow < 1) return fmt::format("player {}: there is no block below a complete row", player);
+      return fmt::format("player {}: draw a block from the lowest {} rows", player, game.topRow);
+    case Phase::moving:
+      return fmt::format("player {}: lay block {} on top", player, index(game.block));
+    case Phase::over:
+      return fmt::format("player {} loses after {} moves: block {} fell", player, game.moves, index(game.fallen));
+  }
+  return {};
+}
+
+std::vector<Hint> hints(const Simulation& simulation, std::span<const ContactForce> contacts) {
+  const std::size_t blocks = simulation.model.blockCount();
+  std::vector<Hint> all(blocks);
+  for (std::size_t b = 0; b < blocks; ++b) all[b].block = blockId(b);
+  for (const ContactForce& contact : contacts) {
+    const double drag = simulation.scene.staticFriction * contact.normalForce;
+    // A contact presses on the face below it from above, whichever of its blocks the engine calls upper.
+    const double load = contact.normalForce * contact.normal.z();
+    all[index(contact.upper)].drag_n += drag;
+    if (load < 0.0) all[index(contact.upper)].load_n -= load;
+    if (contact.lower == kFloor) continue;
+    all[index(contact.lower)].drag_n += drag;
+    if (load > 0.0) all[index(contact.lower)].load_n += load;
+  }
+  const double gravity = simulation.scene.gravity.magnitude;
+  for (std::size_t b = 0; b < blocks; ++b) {
+    all[b].loose = all[b].load_n < kLooseInWeights * simulation.model.mass[b] * gravity;
+  }
+  return all;
+}
+
+std::optional<WithoutBlock> withoutBlock(const Simulation& simulation, std::span<const ContactForce> contacts, BlockId block) {
+  const Vec3 gravity = simulation.scene.gravity.at(simulation.time_s);
+  const std::size_t blocks = simulation.model.blockCount();
+  if (gravity.norm() == 0.0 || blocks < 2) return {};
+  Scene rest = simulation.scene;
+  rest.forces.clear();
+  rest.blocks.clear();
+  for (std::size_t b = 0; b < blocks; ++b) {
+    if (blockId(b) == block) continue;
+    BlockSpec& spec = rest.blocks.emplace_back();
+    spec.centre = centre(simulation.state.position, b);
+    spec.dimensions = simulation.model.dimensions[b];
+    spec.orientation = orientationOf(simulation.state.position, b);
+    spec.mass = simulation.model.mass[b];
+  }
+  const auto renumbered = [&](BlockId b) { return b == kFloor || index(b) < index(block) ? b : blockId(index(b) - 1); };
+  std::vector<FacePair> facings;
+  for (const ContactForce& contact : contacts) {
+    if (contact.upper == block || contact.lower == block) continue;
+    facings.push_back({renumbered(contact.upper), renumbered(contact.lower), contact.normal, {{contact.point, 0.0}}});
+  }
+  return WithoutBlock{staticsModel(rest, facings), gravity.normalized()};
+}
+
+double tiltBorne(const WithoutBlock& question) {
+  constexpr double kTolerance_deg = 0.05;
+  constexpr double kNever_deg = -90.0;
+  std::vector<std::size_t> usable(question.model.points.size());
+  std::iota(usable.begin(), usable.end(), std::size_t{0});
+  const std::optional<StabilityMargin> margin = tiltMargin(question.model, usable, question.gravity, kTolerance_deg);
+  return margin ? margin->tilt_deg : kNever_deg;
+}
+
+}  // namespace springtower

@@ -1,0 +1,195 @@
+#include "apps/viewer/session/session.h"
+
+#include "core/error.h"
+#include "solver/sleep/rest.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+namespace springtower {
+namespace {
+
+constexpr std::uint64_t kKeyEvery = 30;    // frames between keyframes
+constexpr std::uint64_t kKeyDense = 1800;  // of the last frames that keep all of theirs
+constexpr std::uint64_t kKeySparse = 180;  // frames between keyframes before
+constexpr double kPictureTime_s = 0.1;
+constexpr double kPaceMemory_s = 1.0;
+constexpr double kKept = 0.95;
+
+bool needsRebuild(const Tuning& a, const Tuning& b) {
+  return a.method != b.method || a.tolerance_m != b.tolerance_m;
+}
+
+// Another method or stiffness is another simulation, which takes the blocks over as they lie and move; contacts start anew.
+void rebuild(Session& session, const Tuning& tuning) {
+  Simulation next(withTuning(session.scene, tuning));
+  next.state = session.simulation.state;
+  session.simulation = std::move(next);
+  session.tuning = tuning;
+}
+
+void tune(Session& session, const Tuning& tuning) {
+  if (tuning == session.tuning) return;
+  if (needsRebuild(tuning, session.tuning)) {
+    rebuild(session, tuning);
+    return;
+  }
+  Simulation& simulation = session.simulation;
+  simulation.scene.staticFriction = tuning.friction;
+  simulation.scene.kineticFriction = tuning.friction;
+  simulation.scene.settings.sleep = tuning.sleep;
+  for (std::size_t b = 0; b < simulation.asleep.size(); ++b) wake(simulation, b, WakeReason::settings);
+  session.tuning = tuning;
+}
+
+void keep(Session& session, bool turnStart) {
+  // After going back, frames that have their keyframe already are stepped again.
+  if (!session.keyframes.empty() && session.keyframes.back().frame >= session.frame) {
+    if (session.keyframes.back().frame == session.frame && turnStart) session.keyframes.back().turnStart = true;
+    return;
+  }
+  session.keyframes.push_back(
+      {session.frame, session.tuning, session.grip, session.game, turnStart, takeSnapshot(session.simulation)});
+  std::erase_if(session.keyframes, [&](const Keyframe& key) {
+    return !key.turnStart && key.frame + kKeyDense < session.frame && key.frame % kKeySparse != 0;
+  });
+}
+
+// One frame of physics and game, without the past.
+void advance(Session& session, const FrameInput& input) {
+  const auto start = std::chrono::steady_clock::now();
+  Simulation& simulation = session.simulation;
+  tune(session, input.tuning);
+  session.before = simulation.state.position;
+  const BlockId held = mayTake(session.game, input.hand.block) ? input.hand.block : kFloor;
+  if (held == kFloor) {
+    session.grip = {};
+    letGo(simulation);
+  } else {
+    hold(input.hand, session.contacts, session.grip, simulation);
+  }
+  stepFrame(simulation);
+  session.gripForce = gripForce(simulation);
+  session.contacts = contactForces(simulation);
+  session.hold = held == kFloor ? Hold::none : holdOf(session.contacts, held);
+  ++session.frame;
+  const bool turnEnded = followGame(session.game, simulation, held, session.frame);
+  session.frame_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  if (turnEnded || session.frame % kKeyEvery == 0) keep(session, turnEnded);
+}
+
+// The last keyframe at or before a frame; the first one is of frame 0.
+const Keyframe& keyBefore(const Session& session, std::uint64_t frame) {
+  const auto after = std::upper_bound(session.keyframes.begin(), session.keyframes.end(), frame,
+                                      [](std::uint64_t f, const Keyframe& key) { return f < key.frame; });
+  return *(after - 1);
+}
+
+void restore(Session& session, const Keyframe& key) {
+  if (needsRebuild(key.tuning, session.tuning)) rebuild(session, key.tuning);
+  session.tuning = key.tuning;
+  const Scene tuned = withTuning(session.scene, key.tuning);
+  session.simulation.scene.staticFriction = tuned.staticFriction;
+  session.simulation.scene.kineticFriction = tuned.kineticFriction;
+  session.simulation.scene.settings.sleep = tuned.settings.sleep;
+  restoreSnapshot(session.simulation, *key.snapshot);
+  session.frame = key.frame;
+  session.grip = key.grip;
+  session.game = key.game;
+  session.gripForce = {};
+  session.hold = Hold::none;
+  session.before = session.simulation.state.position;
+  session.contacts = contactForces(session.simulation);
+}
+
+}  // namespace
+
+Session::Session(const Scene& given, int players)
+    : scene(given),
+      tuning(tuningOf(given)),
+      simulation(withTuning(given, tuning)),
+      before(simulation.state.position),
+      contacts(contactForces(simulation)),
+      game(newGame(simulation, players, 0)) {
+  keep(*this, true);
+}
+
+Tuning tuningOf(const Scene& scene) {
+  return {scene.settings.method, scene.settings.sleep, toleranceOf(scene), scene.staticFriction};
+}
+
+Scene withTuning(Scene scene, const Tuning& tuning) {
+  const Tuning own = tuningOf(scene);
+  scene.settings.method = tuning.method;
+  scene.settings.sleep = tuning.sleep;
+  if (tuning.tolerance_m != own.tolerance_m) {
+    scene.settings.tolerance_m = tuning.tolerance_m;
+    scene.settings.substeps = 0;
+  }
+  // A scene may give two coefficients; they stay two until the user sets one.
+  if (tuning.friction != own.friction) {
+    scene.staticFriction = tuning.friction;
+    scene.kineticFriction = tuning.friction;
+  }
+  return scene;
+}
+
+void step(Session& session, const FrameInput& input) {
+  if (!session.failure.empty()) return;
+  while (session.keyframes.back().frame > session.frame) session.keyframes.pop_back();
+  try {
+    advance(session, input);
+  } catch (const DivergenceError& error) {
+    session.failure = error.what();
+    return;
+  }
+  // A future that was gone back from ends here.
+  session.log.resize(session.frame);
+  session.log.back() = {input, stateHash(session.simulation)};
+}
+
+void goTo(Session& session, std::uint64_t frame) {
+  const Keyframe key = keyBefore(session, frame);
+  if (frame < session.frame || key.frame > session.frame || !session.failure.empty()) restore(session, key);
+  session.failure.clear();
+  while (session.frame < frame) advance(session, session.log[session.frame].input);
+}
+
+std::optional<std::uint64_t> undoFrame(const Session& session) {
+  const Game& game = session.game;
+  if (game.players == 0) return {};
+  const bool begun = game.phase != Phase::choose;
+  if (begun) return game.turnFrame;
+  for (auto key = session.keyframes.rbegin(); key != session.keyframes.rend(); ++key) {
+    if (key->turnStart && key->frame < game.turnFrame && key->game.players > 0) return key->frame;
+  }
+  return {};
+}
+
+void between(const Session& session, double share, ParticleArray& position) {
+  const ParticleArray& now = session.simulation.state.position;
+  position.resize(now.blockCount());
+  for (std::size_t a = 0; a < 3; ++a) {
+    for (std::size_t i = 0; i < now.component[a].size(); ++i) {
+      const double start = session.before.component[a][i];
+      position.component[a][i] = start + share * (now.component[a][i] - start);
+    }
+  }
+}
+
+int Pacer::due(double elapsed_s, double frame_s, double frame_ms) {
+  const double wanted = rate * elapsed_s;
+  waiting_s += wanted;
+  const int most = std::max(1, static_cast<int>(kPictureTime_s / std::max(1e-3 * frame_ms, 1e-6)));
+  const int frames = std::min(static_cast<int>(waiting_s / frame_s), most);
+  waiting_s -= frames * frame_s;
+  waiting_s = std::min(waiting_s, frame_s * (1.0 - 1e-9));  // what is left over is dropped: slow motion
+  const double fade = std::exp(-elapsed_s / kPaceMemory_s);
+  wanted_s = fade * wanted_s + wanted;
+  done_s = fade * done_s + frames * frame_s;
+  slow = wanted_s > 0.2 * rate && done_s < kKept * wanted_s;
+  return frames;
+}
+
+}  // namespace springtower

@@ -1,0 +1,107 @@
+#pragma once
+
+#include "apps/viewer/session/game.h"
+#include "solver/hand/grip.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace springtower {
+
+/// What a user may change while the scene runs.
+struct Tuning {
+  Method method = Method::semiImplicitEuler;
+  Sleep sleep = Sleep::on;
+  double tolerance_m = kBlockTolerance_m;
+  double friction = 0.4;
+  bool operator==(const Tuning&) const = default;
+};
+
+/// All that acts on one frame from outside: the input that a recording keeps.
+struct FrameInput {
+  Hand hand;
+  Tuning tuning;
+};
+
+/// One frame of the past: what acted on it, and the state it led to.
+struct LoggedFrame {
+  FrameInput input;
+  std::uint64_t hash = 0;  ///< stateHash after the frame
+};
+
+/// A state that can be gone back to.
+struct Keyframe {
+  std::uint64_t frame = 0;  ///< frames done
+  Tuning tuning;
+  Grip grip;
+  Game game;
+  bool turnStart = false;  ///< the first state of a turn of the game; never thinned out
+  std::shared_ptr<const Snapshot> snapshot;
+};
+
+/// A running scene with its past. Frame by frame it is a function of the scene and the inputs alone, so going back is to restore
+/// the last keyframe before and to step the logged inputs again; undo, history, recording and replay all are that.
+struct Session {
+  explicit Session(const Scene& scene, int players = 0);
+
+  Scene scene;  ///< as it started
+  Tuning tuning;
+  Simulation simulation;
+  std::uint64_t frame = 0;             ///< frames done
+  ParticleArray before;                ///< m, positions one frame ago: pictures lie between them and the present ones
+  std::vector<ContactForce> contacts;  ///< as they act now
+  Grip grip;
+  GripForce gripForce;  ///< of the last frame
+  Hold hold = Hold::none;
+  Game game;
+  std::vector<LoggedFrame> log;    ///< [frame]; longer than `frame` after going back
+  std::deque<Keyframe> keyframes;  ///< ascending
+  double frame_ms = 0.0;           ///< what the last frame took
+  std::string failure;             ///< why the simulation ended; empty while it goes on
+};
+
+/// The tuning that a scene starts with.
+Tuning tuningOf(const Scene& scene);
+
+/// The scene with a tuning put over it.
+Scene withTuning(Scene scene, const Tuning& tuning);
+
+/// Steps one frame. A hand that the game does not allow to take its block is left out. Does nothing after a failure; a divergence
+/// becomes one. What was logged after the present frame is forgotten.
+void step(Session& session, const FrameInput& input);
+
+/// Goes to another frame of the log; the game and the hand's grip go with it. What was logged after it stays until the next step,
+/// so one can go forth again. Precondition: frame <= session.log.size().
+void goTo(Session& session, std::uint64_t frame);
+
+/// The frame that undoing the last move leads to: the begin of this turn, or of the one before when nothing has been drawn yet.
+/// Empty when there is no move to undo.
+std::optional<std::uint64_t> undoFrame(const Session& session);
+
+/// Positions between the last two frames, m; `share` 0 is the frame before, 1 the present one.
+void between(const Session& session, double share, ParticleArray& position);
+
+/// Turns passing time into frames of fixed length. The physics never waits for a picture: a slow picture is followed by several
+/// frames. When the machine cannot keep up, time is dropped and `speed` tells by how much.
+struct Pacer {
+  double rate = 1.0;       ///< simulated over real time that is asked for: 1, or less for slow motion
+  double waiting_s = 0.0;  ///< simulated time that is due and not stepped yet, less than a frame after `due`
+  double wanted_s = 0.0;   ///< simulated time asked for, of late
+  double done_s = 0.0;     ///< and stepped, of late; both fade over a second
+  bool slow = false;       ///< whether the machine does not keep up: less than 95 % of what was asked for
+
+  /// How many frames are due after `elapsed_s` more real seconds, at most what takes `frame_ms` each for the time a picture may
+  /// take (a tenth of a second in all, but at least one).
+  int due(double elapsed_s, double frame_s, double frame_ms);
+  /// Simulated time over what was asked for, of late, 0..1.
+  [[nodiscard]] double kept() const { return wanted_s > 0.0 ? std::min(1.0, done_s / wanted_s) : 1.0; }
+  /// Where between the last two frames the picture is, 0..1.
+  [[nodiscard]] double share(double frame_s) const { return waiting_s / frame_s; }
+};
+
+}  // namespace springtower

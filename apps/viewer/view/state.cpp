@@ -1,0 +1,200 @@
+#include "apps/viewer/view/state.h"
+
+#include "core/error.h"
+#include "core/version.h"
+#include "solver/metrics/measures.h"
+
+#include <cmath>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <ostream>
+
+namespace springtower {
+namespace {
+
+constexpr std::uint64_t kMeasureEvery = 6;
+
+void keepBar(Viewer& viewer, const StageTimes& before) {
+  FrameBar& bar = viewer.bars[viewer.bar];
+  bar = {};
+  for (std::size_t i = 0; i < kStages; ++i) {
+    bar.stage_ms[i] = static_cast<float>(1e3 * (viewer.session.simulation.stageTimes.seconds[i] - before.seconds[i]));
+  }
+  bar.frame_ms = static_cast<float>(viewer.session.frame_ms);
+  viewer.bar = (viewer.bar + 1) % kBars;
+}
+
+void measure(Viewer& viewer) {
+  const Session& session = viewer.session;
+  const ParticleArray& position = session.simulation.state.position;
+  if (!viewer.watch.measures || session.frame % kMeasureEvery != 0) return;
+  viewer.watch.mostMove_m = std::max(viewer.watch.mostMove_m, largestCornerMove(viewer.start, position));
+  const Penetration found = maxPenetration(position, session.scene.floor, viewer.workspace);
+  if (found.depth <= viewer.watch.deepest.depth) return;
+  viewer.watch.deepest = found;
+  viewer.watch.deepestTime_s = session.simulation.time_s;
+}
+
+void stepOnce(Viewer& viewer) {
+  Session& session = viewer.session;
+  FrameInput input{viewer.controls.hand, viewer.tuning};
+  input.hand.limit_n = viewer.limit_n;
+  if (viewer.replay) {
+    const std::optional<FrameInput> recorded = nextInput(*viewer.replay, session);
+    if (recorded) {
+      input = *recorded;
+      viewer.tuning = input.tuning;
+    }
+  }
+  const StageTimes before = session.simulation.stageTimes;
+  try {
+    step(session, input);
+  } catch (const InputError& error) {  // a tuning that the scene does not bear
+    viewer.message = error.what();
+    viewer.tuning = session.tuning;
+    viewer.paused = true;
+    return;
+  }
+  ++viewer.watch.frames;
+  keepBar(viewer, before);
+  if (viewer.replay) compare(*viewer.replay, session);
+  if (!session.failure.empty()) {
+    ++viewer.watch.failures;
+    viewer.message = session.failure;
+    viewer.paused = true;
+    letGo(viewer.controls);
+    return;
+  }
+  measure(viewer);
+}
+
+}  // namespace
+
+Viewer::Viewer(SceneChoice given, const Tuning& wanted)
+    : choice(std::move(given)),
+      tuning(wanted),
+      session(withTuning(sceneOf(choice), wanted), choice.players),
+      start(session.simulation.state.position) {
+  showAll(controls.camera, start);
+  between(session, 1.0, shown);
+}
+
+void advance(Viewer& viewer, double elapsed_s) {
+  const double frame_s = viewer.session.scene.settings.frame_s;
+  int frames = 0;
+  if (viewer.paused) {
+    frames = viewer.once ? 1 : 0;
+    viewer.once = false;
+    viewer.pacer.waiting_s = 0.0;
+  } else {
+    frames = viewer.pacer.due(elapsed_s, frame_s, viewer.session.frame_ms);
+  }
+  for (int i = 0; i < frames; ++i) stepOnce(viewer);
+  updateHover(viewer.controls, viewer.session);
+}
+
+void restart(Viewer& viewer, const SceneChoice& choice) {
+  try {
+    const Scene scene = sceneOf(choice);
+    const bool another = choice.name != viewer.choice.name;
+    Session next(withTuning(scene, viewer.tuning), choice.players);
+    viewer.session = std::move(next);
+    viewer.choice = choice;
+    viewer.start = viewer.session.simulation.state.position;
+    if (another) showAll(viewer.controls.camera, viewer.start);
+    viewer.message.clear();
+    viewer.replay.reset();
+    viewer.pacer.waiting_s = 0.0;
+    letGo(viewer.controls);
+  } catch (const InputError& error) {
+    viewer.message = error.what();
+  }
+}
+
+void travel(Viewer& viewer, std::uint64_t frame) {
+  if (frame > viewer.session.log.size()) return;
+  letGo(viewer.controls);
+  goTo(viewer.session, frame);
+  viewer.tuning = viewer.session.tuning;
+  viewer.paused = true;
+  viewer.message.clear();
+}
+
+void undo(Viewer& viewer) {
+  const std::optional<std::uint64_t> frame = undoFrame(viewer.session);
+  if (!frame) {
+    viewer.message = "there is no move to take back";
+    return;
+  }
+  travel(viewer, *frame);
+  viewer.paused = false;
+  viewer.message = "the last move is taken back";
+}
+
+Picture pictureOf(Viewer& viewer) {
+  const Session& session = viewer.session;
+  between(session, viewer.paused ? 1.0 : viewer.pacer.share(session.scene.settings.frame_s), viewer.shown);
+  Picture picture;
+  picture.floor = session.scene.floor;
+  picture.highlighted = viewer.controls.hover ? static_cast<std::int32_t>(viewer.controls.hover->block) : -1;
+  blockMesh(viewer.shown, blockColours(session, viewer.overlay).colour, picture.blocks);
+  if (viewer.arrows) addContactArrows(session, viewer.controls.camera, picture.marks);
+  addHand(session, viewer.controls.hand, viewer.shown, viewer.controls.camera, picture.marks);
+  return picture;
+}
+
+std::vector<std::string> notices(const Viewer& viewer) {
+  std::vector<std::string> lines;
+  if (viewer.session.game.players > 0) lines.push_back(describe(viewer.session.game));
+  if (viewer.paused) lines.emplace_back("paused (space goes on, n steps a frame)");
+  if (!viewer.paused && viewer.pacer.slow) {
+    lines.push_back(
+        fmt::format("slow motion: this machine reaches {:.0f} % of the speed asked for", 100.0 * viewer.pacer.kept()));
+  }
+  if (!viewer.paused && viewer.pacer.rate < 1.0) lines.push_back(fmt::format("slow motion: 1/{:.0f}", 1.0 / viewer.pacer.rate));
+  if (viewer.replay) {
+    const std::size_t frames = viewer.replay->recording.frames.size();
+    if (viewer.session.frame < frames) lines.push_back(fmt::format("replay: frame {} of {}", viewer.session.frame, frames));
+    if (viewer.replay->differs) lines.push_back(fmt::format("the replay differs first in frame {}", *viewer.replay->differs));
+  }
+  if (!viewer.message.empty()) lines.push_back(viewer.message);
+  return lines;
+}
+
+void writeViewerReport(std::ostream& stream, const Viewer& viewer) {
+  using Json = nlohmann::ordered_json;
+  const Session& session = viewer.session;
+  const Watch& watch = viewer.watch;
+  const Camera& camera = viewer.controls.camera;
+  const ParticleArray& position = session.simulation.state.position;
+  bool finite = true;
+  for (const auto& values : position.component) {
+    for (const double value : values) finite = finite && std::isfinite(value);
+  }
+  Json json = {{"version", kVersion},
+               {"scene", viewer.choice.name},
+               {"frames", session.frame},
+               {"frames_stepped", watch.frames},
+               {"pictures", watch.pictures},
+               {"first_picture_s", watch.firstPicture_s},
+               {"finite", finite},
+               {"divergences", watch.failures},
+               {"max_penetration_all_mm", 1e3 * watch.deepest.depth},
+               {"max_penetration_time_s", watch.deepestTime_s},
+               {"most_move_mm", 1e3 * std::max(watch.mostMove_m, largestCornerMove(viewer.start, position))},
+               {"moves", session.game.moves},
+               {"game", describe(session.game)},
+               {"held_block", static_cast<int>(viewer.controls.hand.block)},
+               {"grip_n", session.gripForce.force.norm()},
+               {"camera",
+                {{"target_m", {camera.target.x(), camera.target.y(), camera.target.z()}},
+                 {"azimuth", camera.azimuth},
+                 {"elevation", camera.elevation},
+                 {"distance_m", camera.distance},
+                 {"field_of_view", camera.fieldOfView}}},
+               {"state_hash", fmt::format("{:016x}", stateHash(session.simulation))}};
+  json["replay_differs_in_frame"] = viewer.replay && viewer.replay->differs ? Json(*viewer.replay->differs) : Json(nullptr);
+  stream << json.dump(2) << '\n';
+}
+
+}  // namespace springtower

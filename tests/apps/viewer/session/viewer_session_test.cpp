@@ -1,0 +1,208 @@
+#include "apps/viewer/session/recording.h"
+#include "apps/viewer/session/session.h"
+#include "core/error.h"
+#include "solver/metrics/measures.h"
+#include "tests/apps/commands/loose_tower.h"
+#include "tests/apps/viewer/session/viewer_play.h"
+#include "tests/support/program.h"
+
+#include <fstream>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace springtower {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr double kFrame_s = 1.0 / 60.0;
+
+// A session in which something happens: a block is pushed, and friction is changed on the way.
+Session playedSession(int frames) {
+  Session session(bitCodeScene(kLooseTower));
+  Hand hand = handOn(session, kLooseBlock);
+  Tuning tuning = session.tuning;
+  for (int i = 0; i < frames; ++i) {
+    if (i == 40) tuning.friction = 0.35;
+    hand.place.y() -= 0.001;
+    hand.limit_n = 3.0;
+    step(session, {i > 20 && i < 60 ? hand : Hand{}, tuning});
+  }
+  return session;
+}
+
+TEST(ViewerPacer, StepsAsManyFramesAsTimePasses) {
+  Pacer pacer;
+  int frames = 0;
+  for (int picture = 0; picture < 1000; ++picture) {
+    frames += pacer.due(0.01 + 0.004 * (picture % 3), kFrame_s, 1.0);
+    EXPECT_GE(pacer.share(kFrame_s), 0.0);
+    EXPECT_LT(pacer.share(kFrame_s), 1.0);
+  }
+  EXPECT_NEAR(frames * kFrame_s, 334 * 0.01 + 333 * (0.014 + 0.018), 2 * kFrame_s);
+  EXPECT_FALSE(pacer.slow);
+}
+
+TEST(ViewerPacer, ASlowPictureIsFollowedBySeveralFrames) {
+  Pacer pacer;
+  EXPECT_EQ(pacer.due(3.5 * kFrame_s, kFrame_s, 1.0), 3);
+  EXPECT_NEAR(pacer.share(kFrame_s), 0.5, 1e-9);
+}
+
+TEST(ViewerPacer, SaysWhenTheMachineIsTooSlow) {
+  Pacer pacer;
+  for (int i = 0; i < 100; ++i) {
+    const int frames = pacer.due(0.2, kFrame_s, 40.0);  // 2 frames of 40 ms for 12 that are due
+    EXPECT_EQ(frames, 2);
+  }
+  EXPECT_TRUE(pacer.slow);
+  EXPECT_NEAR(pacer.kept(), 2.0 / 12.0, 0.01);
+  // It recovers once frames get cheap.
+  for (int i = 0; i < 300; ++i) pacer.due(0.02, kFrame_s, 1.0);
+  EXPECT_FALSE(pacer.slow);
+}
+
+TEST(ViewerPacer, SlowMotionThatWasAskedForIsNotSlowness) {
+  Pacer pacer;
+  pacer.rate = 0.25;
+  int frames = 0;
+  for (int i = 0; i < 400; ++i) frames += pacer.due(0.01, kFrame_s, 1.0);
+  EXPECT_NEAR(frames, 60, 1);
+  EXPECT_FALSE(pacer.slow);
+}
+
+TEST(ViewerSession, PicturesLieBetweenTheLastTwoFrames) {
+  Scene scene = bitCodeScene("(010)");
+  scene.blocks[0].velocity = {1.0, 0.0, 0.0};
+  Session session(scene);
+  step(session, idle(session));
+  ParticleArray half;
+  between(session, 0.5, half);
+  const Vec3 middle = 0.5 * (session.before.at(0, 0) + session.simulation.state.position.at(0, 0));
+  EXPECT_LT((half.at(0, 0) - middle).norm(), 1e-15);
+  EXPECT_GT((session.before.at(0, 0) - session.simulation.state.position.at(0, 0)).norm(), 0.01);
+}
+
+TEST(ViewerSession, GoesBackAndForthToTheVeryStatesItHad) {
+  Session session = playedSession(100);
+  const std::vector<LoggedFrame> log = session.log;
+  ASSERT_EQ(log.size(), 100U);
+  for (const std::uint64_t frame : {99U, 45U, 44U, 70U, 1U, 100U, 30U}) {
+    goTo(session, frame);
+    EXPECT_EQ(session.frame, frame);
+    EXPECT_EQ(stateHash(session.simulation), log[frame - 1].hash) << frame;
+  }
+  goTo(session, 0);
+  EXPECT_EQ(session.tuning.friction, 0.4);
+  goTo(session, 50);
+  EXPECT_EQ(session.tuning.friction, 0.35);
+  // A step into another future forgets the old one.
+  step(session, idle(session));
+  EXPECT_EQ(session.log.size(), 51U);
+  EXPECT_NE(session.log.back().hash, log[50].hash);
+}
+
+// A long way costs what lies between keyframes, not all that was played, in either direction.
+TEST(ViewerSession, KeepsItsKeyframesUntilAnotherFutureBegins) {
+  Session session = playedSession(100);
+  const std::size_t keyframes = session.keyframes.size();
+  EXPECT_EQ(keyframes, 4U);  // of frames 0, 30, 60 and 90
+  goTo(session, 5);
+  EXPECT_EQ(session.keyframes.size(), keyframes);
+  const std::uint64_t steps = session.simulation.counters.steps;
+  goTo(session, 91);
+  EXPECT_EQ(session.keyframes.size(), keyframes);
+  EXPECT_GT(session.simulation.counters.steps, steps);
+  goTo(session, 45);
+  step(session, idle(session));
+  EXPECT_EQ(session.keyframes.size(), 2U);
+}
+
+TEST(ViewerSession, GoesBackOverAChangeOfMethodAndTolerance) {
+  Session session(bitCodeScene(kLooseTower));
+  Tuning tuning = session.tuning;
+  for (int i = 0; i < 80; ++i) {
+    if (i == 20) tuning.method = Method::midpoint;
+    if (i == 30) tuning.tolerance_m = 1e-4;
+    if (i == 40) tuning.method = Method::implicit;
+    step(session, {{}, tuning});
+  }
+  const std::vector<LoggedFrame> log = session.log;
+  EXPECT_EQ(session.simulation.scene.settings.method, Method::implicit);
+  for (const std::uint64_t frame : {35U, 25U, 75U, 10U, 45U, 80U}) {
+    goTo(session, frame);
+    EXPECT_EQ(stateHash(session.simulation), log[frame - 1].hash) << frame;
+  }
+}
+
+TEST(ViewerSession, ALiveChangeOfStiffnessHardlyMovesTheTower) {
+  Session session(towerScene(6));
+  wait(session, 90);
+  const ParticleArray before = session.simulation.state.position;
+  Tuning tuning = session.tuning;
+  tuning.method = Method::midpoint;
+  for (int i = 0; i < 60; ++i) step(session, {{}, tuning});
+  EXPECT_LT(largestCornerMove(before, session.simulation.state.position), 2e-4);
+}
+
+TEST(ViewerRecording, ReadsBackAndReplaysToTheSameStates) {
+  const Session session = playedSession(100);
+  SceneChoice choice;
+  choice.name = kLooseTower;
+  choice.players = 0;
+  const ScratchFolder scratch;
+  const std::string path = scratch.file("recording.jsonl");
+  {
+    std::ofstream stream(path);
+    writeRecording(stream, {choice, session.log});
+  }
+  Replay replay{readRecording(path), {}};
+  ASSERT_EQ(replay.recording.frames.size(), 100U);
+  Session again(sceneOf(replay.recording.choice), replay.recording.choice.players);
+  while (const auto input = nextInput(replay, again)) {
+    step(again, *input);
+    compare(replay, again);
+  }
+  EXPECT_EQ(again.frame, 100U);
+  EXPECT_FALSE(replay.differs);
+  EXPECT_EQ(stateHash(again.simulation), stateHash(session.simulation));
+}
+
+TEST(ViewerRecording, NamesTheFrameThatDiffers) {
+  const Session session = playedSession(60);
+  Replay replay{{{}, session.log}, {}};
+  replay.recording.frames[29].input.hand.place.y() += 1e-9;  // the hand holds something from frame 22 on
+  Session again(bitCodeScene(kLooseTower));
+  while (const auto input = nextInput(replay, again)) {
+    step(again, *input);
+    compare(replay, again);
+  }
+  ASSERT_TRUE(replay.differs);
+  EXPECT_EQ(*replay.differs, 30U);
+}
+
+TEST(ViewerRecording, BrokenFilesNameTheLine) {
+  const ScratchFolder scratch;
+  const std::string path = scratch.file("recording.jsonl");
+  const std::string head = R"({"springtower_recording":1,"scene":"tower:1","players":0})";
+  const std::pair<std::string, std::string> broken[] = {
+      {"", "empty"},
+      {R"({"scene":"tower:1"})", "line 1"},
+      {head + "\n{\"hash\":\"zz\"}", "line 2: hash"},
+      {head + "\n{\"hash\":\"0\"}\nnonsense", "line 3"},
+      {head + "\n" + R"({"hash":"0","hand":{"block":3,"place":[0,0,0],"turn":[1,0,0,0],"limit_n":5}})",
+       "found 3, allowed 0 to 2"}};
+  for (const auto& [text, expected] : broken) {
+    std::ofstream(path) << text;
+    try {
+      readRecording(path);
+      ADD_FAILURE() << text;
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.what(), HasSubstr(expected));
+    }
+  }
+  EXPECT_THROW(readRecording(scratch.file("none")), InputError);
+}
+
+}  // namespace
+}  // namespace springtower
