@@ -34,13 +34,13 @@ namespace springtower {
 
 namespace {
 
-// What may meet in an island during this frame.
+// Possible first contacts of an island in this frame.
 struct ApproachEstimate {
-  double speed = 0.0;          // m/s, largest at which any two of its near blocks may meet
+  double speed = 0.0;          // m/s, largest closing speed of any two of its near blocks
   double reducedMass = 0.0;    // kg, largest
-  double cornerInverse = 0.0;  // 1/kg, largest: the inverse mass of two corners against each other
-  bool meeting = false;        // whether blocks that are apart may meet at all
-  int together = 0;            // most pairs of any one block that may begin to push: hit at once they add up
+  double cornerInverse = 0.0;  // 1/kg, largest: sum of the inverse masses of two corners
+  bool meeting = false;        // whether separated blocks may touch at all
+  int together = 0;            // largest number of pairs of one block that may make first contact; simultaneous ones add up
 };
 
 ApproachEstimate approachOf(const IslandStep& step) {
@@ -58,7 +58,7 @@ ApproachEstimate approachOf(const IslandStep& step) {
     const BlockPair& pair = pairs.key[at];
     const auto a = static_cast<std::size_t>(pair.a);
     const double massA = simulation.model.mass[a];
-    // A block that has been at rest is held; another may be in free fall.
+    // A block that has been at rest is supported; any other may be in free fall.
     bool resting = simulation.restTime_s[a] > 0.0;
     double speed = 0.0;
     double reduced = massA;
@@ -81,7 +81,7 @@ ApproachEstimate approachOf(const IslandStep& step) {
     const bool mayMeet = apart && pairs.clearance[at] - (travel - pairs.travelAtCheck[at]) < speed * frame_s;
     if (apart && !mayMeet) continue;
     if (apart || !anyPointTouches(contactOf(step.engine, at))) {
-      for (const std::int32_t block : {pair.a, pair.b}) {  // sleepers may be those of other islands as well, and do not move
+      for (const std::int32_t block : {pair.a, pair.b}) {  // sleeping blocks may belong to other islands as well, and do not move
         if (!sleeps(simulation, block))
           approach.together = std::max(approach.together, ++newContacts[static_cast<std::size_t>(block)]);
       }
@@ -94,7 +94,7 @@ ApproachEstimate approachOf(const IslandStep& step) {
   return approach;
 }
 
-// What the hand's springs and dashpots add to the squared frequencies (1/s2) and damping rates (1/s) of an island.
+// Contribution of the hand's springs and dashpots to the squared frequencies (1/s2) and damping rates (1/s) of an island.
 struct TetherRates {
   double stiffness = 0.0;
   double damping = 0.0;
@@ -109,13 +109,13 @@ TetherRates tetherRates(const IslandStep& step) {
           std::max(tether.damping_n_s_m, own * tether.cornerDamping_n_s_m) / mass};
 }
 
-// By how much a further damping rate shortens the step that dt^2 K + 2 dt C < 4 allows.
+// Factor by which an additional damping rate shortens the step that dt^2 K + 2 dt C < 4 allows.
 double shortening(double radius, double dampingTime_s, double damping) {
   const auto longest = [&](double rate) { return std::sqrt(rate * rate + 4.0 * radius) - rate; };
   return longest(dampingTime_s * radius + damping) / longest(dampingTime_s * radius);
 }
 
-// Chooses the number of steps of an island for this frame, and how stiff contacts born in it may be.
+// Chooses the number of steps of an island for this frame, and the largest stiffening of contacts made in it.
 int chooseSubsteps(IslandStep& step) {
   Simulation& simulation = step.simulation;
   const Settings& settings = simulation.scene.settings;
@@ -128,15 +128,16 @@ int chooseSubsteps(IslandStep& step) {
   const double standing = record.spectralRadius;
   const double stiffness = simulation.contactStiffness_n_m * (1.0 + settings.viscoelasticRatio);
   const ApproachEstimate approach =
-      settings.method == Method::report ? ApproachEstimate{} : approachOf(step);  // its contacts have no stiffness
+      settings.method == Method::report ? ApproachEstimate{} : approachOf(step);  // contacts of method `report` have no stiffness
   const double depth = impactDepth_m(settings, simulation.tolerance_m, simulation.lengths.blockHeight_m);
   const double wanted =
       approach.reducedMass * approach.speed * approach.speed / (depth * depth * simulation.contactStiffness_n_m);
-  const double born = 2.0 * stiffness * approach.cornerInverse;  // what one new contact at rest stiffness adds
-  // Pairs of a block that are hit at once add up: all of them may be as stiff as at rest, or one as the impact wants it.
+  const double born = 2.0 * stiffness * approach.cornerInverse;  // contribution of one new contact of resting stiffness
+  // Simultaneous contacts of a block add up: the step is stable either for all of them at resting stiffness, or for one with the
+  // stiffening of the impact.
   const double together = std::max(1, approach.together);
 
-  double allowed = 0.0;  // largest eigenvalue the step bears
+  double allowed = 0.0;  // largest stable eigenvalue of the chosen step
   int substeps = simulation.fixedSubsteps;
   if (substeps > 0) {
     allowed = stableSpectralRadius(settings.method, settings.frame_s / substeps, simulation.dampingTime_s, settings.stepMargin);
@@ -162,7 +163,7 @@ void stepIsland(Method method, IslandStep& step) {
   switch (method) {
     case Method::implicit:
     case Method::implicitEuler:
-    case Method::implicitEigen:  // what implicit steps do not fit
+    case Method::implicitEigen:  // where implicit steps do not fit
     case Method::semiImplicitEuler:
       stepSemiImplicitEuler(step);
       return;
@@ -175,10 +176,10 @@ void stepIsland(Method method, IslandStep& step) {
     case Method::report:
       stepReport(step);
       return;
-    case Method::rigidPgs:  // these step through runRigidSteps
+    case Method::rigidPgs:  // these are advanced by runRigidSteps
     case Method::rigidLcp:
     case Method::xpbd:
-    case Method::automatic:  // is another one by now
+    case Method::automatic:  // replaced by a concrete method before
       return;
   }
 }
@@ -238,7 +239,7 @@ IslandOutcome runIsland(IslandStep& step) {
   return outcome;
 }
 
-// Block turned inside out or flattened: the mean edges' volume against that of its dimensions.
+// Throws if a block is turned inside out or flattened: the volume of its mean edges against that of its dimensions.
 void checkShapes(const Simulation& simulation, std::span<const std::int32_t> blocks) {
   for (const std::int32_t block : blocks) {
     const auto b = static_cast<std::size_t>(block);
@@ -307,8 +308,8 @@ void stepFrame(Simulation& simulation) {
     double margin = tuning::kSweepMargin * simulation.lengths.blockHeight_m;
     findNearPairs(simulation, margin);
     while (true) {
-      // The frame is run again where something was hit and left its swept box, with a wider one, so that no meeting is missed;
-      // and where supports of sleepers failed, with these awake.
+      // The frame is run again with a larger swept box where a block was hit and left its own, so that no contact is missed; and
+      // with sleeping blocks awake where their supports failed.
       if (wakeOnImpact(simulation)) findNearPairs(simulation, margin);
       const bool inside = runIslands(simulation);
       const bool failed = inside && wakeFailedSupports(simulation);
