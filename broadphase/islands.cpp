@@ -47,7 +47,8 @@ bool updateIslands(Islands& islands, std::span<const BlockPair> edges, std::span
     if (!isAsleep(edge.a) && !isAsleep(edge.b)) unite(islands.parent, edge);
   }
 
-  // A root is the smallest block of its island, so it comes first and numbers its island. start[i + 1] counts island i.
+  // A root is the smallest block of its island, so it comes first and determines the number of its island. start[i + 1] counts
+  // island i.
   islands.islandOf.assign(asleep.size(), -1);
   islands.start.assign(1, 0);
   for (std::int32_t block = 0; block < count; ++block) {
@@ -63,7 +64,8 @@ bool updateIslands(Islands& islands, std::span<const BlockPair> edges, std::span
   }
   std::partial_sum(islands.start.begin(), islands.start.end(), islands.start.begin());
 
-  // Filling moves each start to the end of its island, which is where the next one starts; then they move back by one.
+  // Filling moves each start to the end of its island, which is the start of the next one; afterwards they are shifted back by
+  // one.
   islands.blocks.resize(static_cast<std::size_t>(islands.start.back()));
   for (std::int32_t block = 0; block < count; ++block) {
     if (!isAsleep(block)) at(islands.blocks, at(islands.start, at(islands.islandOf, block))++) = block;

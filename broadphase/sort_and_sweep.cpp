@@ -14,16 +14,17 @@ namespace {
 using Entry = SortAndSweep::Entry;
 using Column = SortAndSweep::Column;
 
-// A column's key: 8 bits of level, 28 bits of place along either axis across the columns, all counted from their least.
+// A column's key: 8 bits of level, 28 bits of index along either axis perpendicular to the columns, all counted from their
+// smallest value.
 constexpr int kMinLevel = -127;
 constexpr int kGreatestLevel = 127;
 constexpr int kPlaceBits = 28;
 constexpr double kPlaces = 1 << kPlaceBits;
 
-// The difference of the ends of a box may have been rounded down; this much wider it is no less than the true extent.
+// The computed extent of a box may have been rounded down; enlarged by this factor it is at least the true extent.
 constexpr double kRoundUp = 1.0 + 4.0 * std::numeric_limits<double>::epsilon();
 
-// The exponent e of 2^(e-1) <= width < 2^e. The comparison with a power of two is exact even where the width was rounded, so no
+// The exponent e of 2^(e-1) <= width < 2^e. The comparison with a power of two is exact even if the width was rounded, so no
 // column is missed.
 int levelOf(double width) {
   const auto exponent = static_cast<int>(std::bit_cast<std::uint64_t>(width) >> 52);
@@ -34,7 +35,8 @@ double columnWidth(int level) {
   return std::bit_cast<double>(static_cast<std::uint64_t>(level + 1023) << 52);
 }
 
-// Places far out are cut off, which keeps their order: blocks there share columns and are told apart by their boxes.
+// Indices beyond the range are clamped, which keeps their order: distant blocks share columns and are distinguished by their
+// boxes.
 std::uint64_t placeOf(double coordinate, int level) {
   const double place = std::floor(coordinate * columnWidth(-level)) + 0.5 * kPlaces;
   return static_cast<std::uint64_t>(std::clamp(place, 0.0, kPlaces - 1.0));
@@ -79,7 +81,7 @@ bool overlap(const Entry& a, const Entry& b) {
   return all;
 }
 
-// Puts an entry where its new value belongs in an order that is otherwise sorted; returns by how many places others moved.
+// Moves an entry to the place of its new value in an otherwise sorted order; returns the number of entries shifted.
 std::size_t insert(SortAndSweep& sweep, const Entry& entry) {
   auto& order = sweep.order;
   auto& place = sweep.place;
@@ -117,7 +119,7 @@ const Column* findColumn(const Column* from, const Column* end, std::uint64_t ke
   return std::lower_bound(from, end, key, [](const Column& column, std::uint64_t value) { return column.key < value; });
 }
 
-// Calls visit(column) for every column that may hold a block whose box meets this one: those from one column's width below its
+// Calls visit(column) for every column that may contain a block whose box meets this one: those from one column's width below its
 // lower corner to its upper corner, on each level.
 template <class Visit>
 void visitColumns(const SortAndSweep& sweep, const Entry& entry, Visit visit) {
@@ -145,11 +147,11 @@ void visitColumns(const SortAndSweep& sweep, const Entry& entry, Visit visit) {
   }
 }
 
-// Takes over the boxes of all blocks awake now or in the last call, whose boxes may have become those of sleeping blocks since.
+// Updates the boxes of all blocks that are awake now or were in the last call; the latter may have fallen asleep with new boxes.
 void update(SortAndSweep& sweep, const SweptBoxes& boxes, std::span<const std::uint8_t> asleep) {
   auto& order = sweep.order;
   bool columnsChanged = sweep.columns.empty();
-  // Moving few blocks far or many a little is cheaper than sorting; when everything moved far it is not.
+  // Moving few blocks far or many a little is cheaper than sorting; if everything has moved far it is not.
   constexpr std::size_t kMovesPerBlock = 16;
   const std::size_t mostMoves = kMovesPerBlock * order.size();
   std::size_t moves = 0;
@@ -199,7 +201,7 @@ void reset(SortAndSweep& sweep, const SweptBoxes& boxes) {
   for (std::size_t a = 0; a < 3; ++a) {
     for (std::size_t b = 0; b < count; ++b) extent[a] += boxes.upper[a][b] - boxes.lower[a][b];
   }
-  // Of equal axes the last: things stand on one another along z.
+  // Among equal axes the last: blocks are stacked along z.
   sweep.axis = 2;
   for (const std::size_t a : {std::size_t{1}, std::size_t{0}}) {
     if (extent[a] < extent[sweep.axis]) sweep.axis = a;
@@ -211,7 +213,7 @@ void reset(SortAndSweep& sweep, const SweptBoxes& boxes) {
   sweep.columns.clear();
   sweep.columns.reserve(count + 1);
   sweep.renewed.reserve(count);
-  // All count as awake until the first call has seen the flags.
+  // All count as awake until the first call reads the flags.
   sweep.awake.resize(count);
   std::iota(sweep.awake.begin(), sweep.awake.end(), 0);
 }
@@ -234,7 +236,7 @@ std::uint64_t findPairs(SortAndSweep& sweep, const SweptBoxes& boxes, std::span<
       const double from = entry.lower[2] - column.thickest;
       const Entry* other = std::lower_bound(begin, end, from, [](const Entry& e, double value) { return e.lower[2] < value; });
       for (; other != end && other->lower[2] <= entry.upper[2]; ++other) {
-        // Two blocks that are both awake find one another; the pair is the first one's.
+        // Two awake blocks find one another twice; the pair is counted for the first.
         if (other->asleep == 0 && other->block <= block) continue;
         ++tests;
         if (!overlap(entry, *other)) continue;
@@ -249,7 +251,7 @@ std::uint64_t findPairs(SortAndSweep& sweep, const SweptBoxes& boxes, std::span<
   }
   if (sweep.outOfOrder.empty()) {
     pairs.swap(ascending);
-    ascending.reserve(pairs.capacity());  // the two change places: as large as one has grown, the other will be
+    ascending.reserve(pairs.capacity());  // the two are swapped, so both need the larger capacity
     return tests;
   }
   std::sort(sweep.outOfOrder.begin(), sweep.outOfOrder.end());

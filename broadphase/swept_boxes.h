@@ -22,12 +22,12 @@ struct SweptBoxes {
   [[nodiscard]] std::size_t blockCount() const { return lower[0].size(); }
 };
 
-/// Computes, for each listed block, the box of its corners now, grown on every side by its reach: how far (m) any of its corners
-/// may travel before one can be outside,
+/// Computes, for each listed block, the bounding box of its present corners, grown on every side by its reach: the distance (m)
+/// that any of its corners may travel before one can be outside,
 ///   reach = speed duration + gravity duration^2 / 2 + margin,
-/// with the speed of its fastest corner. The margin is there for what contacts and springs may add. A block about to sleep takes
-/// duration 0: its box as it lies, grown by the margin. Other blocks keep their boxes and reaches.
-/// `gravity` in m/s2, `duration_s` and `margin_m` not negative; boxes and reach are [blocks]; the blocks' state is finite.
+/// with the speed of its fastest corner. The margin allows for the effect of contacts and springs. A block about to sleep has
+/// duration 0: its present box, grown by the margin. Other blocks keep their boxes and reaches. `gravity` in m/s2, `duration_s`
+/// and `margin_m` not negative; boxes and reach are [blocks]; the blocks' state is finite.
 void computeSweptBoxes(const MotionState& state, std::span<const std::int32_t> blocks, double gravity, double duration_s,
                        double margin_m, SweptBoxes& boxes, std::span<double> reach);
 

@@ -9,7 +9,7 @@ namespace springtower {
 
 namespace {
 
-// The box that a group of corners sweeps.
+// The box swept by a group of corners.
 struct Sweep {
   double lower[3];
   double upper[3];
@@ -44,7 +44,7 @@ MovingPoint moving(const MovingBlock& block, int corner) {
   return {block.start.at(corner), block.end.at(corner)};
 }
 
-// The features of one block that come near the other's whole sweep: few, where two blocks stand side by side.
+// The features of one block near the other's whole sweep: few, where two blocks stand side by side.
 template <std::size_t Features, std::size_t Count>
 struct NearFeatures {
   std::array<Sweep, Features> sweep;

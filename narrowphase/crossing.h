@@ -11,9 +11,9 @@ struct MovingBlock {
   CornerView end;
 };
 
-/// Whether any corner of one block meets a face triangle of the other, or any two edges meet, within a step: all 192 point-face
-/// and 144 edge-edge pairs, culled in the report's stages (swept boxes, coplanarity, the full cubic test; Table 5.2), each
-/// counted. Stops at the first pair that meets. Conservative: never misses (narrowphase/exact/time_of_impact.h).
+/// Whether any corner of one block touches a face triangle of the other, or any two edges touch, within a step: all 192
+/// point-face and 144 edge-edge pairs, culled in the report's stages (swept boxes, coplanarity, the full cubic test; Table 5.2),
+/// each counted. Stops at the first pair that touches. Conservative: never misses (narrowphase/exact/time_of_impact.h).
 bool featuresMeet(const MovingBlock& a, const MovingBlock& b, Counters& counters);
 
 }  // namespace springtower

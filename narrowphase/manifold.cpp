@@ -10,8 +10,8 @@ namespace springtower {
 
 namespace {
 
-// A corner of the clipped polygon: its place on the reference face (the clip's coordinates), on the incident face, and its
-// height.
+// A corner of the clipped polygon: its position on the reference face (the coordinates of the clip), on the incident face, and
+// its height.
 struct ClipPoint {
   double s;
   double t;
@@ -48,7 +48,7 @@ struct Lengths {
   double v;
 };
 
-// How far a corner is from the segment between two others on the incident face, squared, m2.
+// Squared distance of a corner from the segment between two others on the incident face, m2.
 double squaredDistance(const ClipPoint& corner, const ClipPoint& from, const ClipPoint& to, const Lengths& lengths) {
   const double sideU = (to.u - from.u) * lengths.u;
   const double sideV = (to.v - from.v) * lengths.v;
@@ -61,8 +61,8 @@ double squaredDistance(const ClipPoint& corner, const ClipPoint& from, const Cli
   return u * u + v * v;
 }
 
-// Takes out the corners between which and their neighbours an edge is straight. They carry nothing that these would not, and
-// where edges of both faces coincide they come and go with every rounding error. Returns how many are left.
+// Removes corners at which an edge is straight. They add no support to that of their neighbours, and where edges of both faces
+// coincide they appear and vanish with rounding errors. Returns how many are left.
 std::size_t dropStraight(double radius, const Lengths& lengths, std::size_t count, Polygon& corners) {
   std::size_t i = 0;
   while (i < count && count > 2) {
@@ -80,7 +80,7 @@ std::size_t dropStraight(double radius, const Lengths& lengths, std::size_t coun
 
 constexpr std::array<std::array<double, 2>, 4> kCornerPlaces = {{{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}}};
 
-// One point, whatever it stores: only the vector turns round where the blocks have changed roles.
+// Transfers one point of any kind: only the displacement changes its sign where upper and lower were swapped.
 void carryPoint(const PenaltyRow& from, std::size_t lane, double side, PenaltyRow& to, std::size_t toLane) {
   for (std::size_t a = 0; a < 3; ++a) to.displacement[a][toLane] = side * from.displacement[a][lane];
   to.maxwellDepth[toLane] = from.maxwellDepth[lane];

@@ -13,10 +13,10 @@ inline constexpr std::size_t kManifoldPoints = 8;  // two rectangles overlap in 
 inline constexpr std::size_t kRowPoints = 4;       // points that fill one SIMD register
 inline constexpr std::size_t kManifoldRows = kManifoldPoints / kRowPoints;
 
-/// What a pair of blocks (or a block and the floor) is to one another.
+/// Contact state of a pair of blocks (or a block and the floor).
 enum class PairPhase : std::uint8_t { separated, face, edge };
 
-/// What the points of a contact store, by the steps that move its blocks.
+/// What the points of a contact store, depending on the steps that move its blocks.
 enum class PointKind : std::uint8_t { penalty, impulse, anchor };
 
 /// `touching` of a point that touches without a normal force: it overlaps, but damping cancels the spring while the blocks
@@ -32,32 +32,32 @@ struct PenaltyRow {
   FourValues maxwellDepth;   ///< m, relaxed part of the elastic depth in the Maxwell branch; its force is k_v (elastic - relaxed)
   FourValues restDepth;      ///< m, depth of zero force
   FourValues stiffening;     ///< stiffness over the resting one, >= 1 after an impact
-  FourValues touching;       ///< 1 where it pushes, kUnpressed where it only touches, else 0 (a double, to serve as a lane)
-  FourValues slipRatio;      ///< 0 where it sticks; else the share of friction left by the cone
+  FourValues touching;       ///< 1 where it pushes, kUnpressed where it only touches, otherwise 0 (a double, to serve as a lane)
+  FourValues slipRatio;      ///< 0 where it sticks; otherwise the share of friction left by the cone
 };
 
-/// Four points as impulses (methods rigid-pgs and rigid-lcp, and what falls).
+/// Four points as impulses (methods rigid-pgs and rigid-lcp, and islands in rigid mode).
 struct ImpulseRow {
   FourVectors friction;    ///< N, mean over the step, on upper
   FourValues normalForce;  ///< N, mean over the step
-  FourValues restDepth;    ///< m, overlap that is left as it is
-  FourValues stiffening;   ///< not used; 1, or as the springs before it left it
-  FourValues untouched;    ///< 0: no springs hold energy
-  FourValues slipping;     ///< not 0 where friction is at its bound
+  FourValues restDepth;    ///< m, allowed overlap, which is not pushed out
+  FourValues stiffening;   ///< not used; 1, or the value of the springs before it
+  FourValues untouched;    ///< 0: no springs store energy
+  FourValues slipping;     ///< non-zero where friction is at its bound
 };
 
 /// Four points as position constraints (method xpbd).
 struct AnchorRow {
-  FourVectors displacement;   ///< m, tangential, since the point took hold
+  FourVectors displacement;   ///< m, tangential, since the point began to stick
   FourValues normalForce;     ///< N, mean over the step
   FourValues firstFriction;   ///< N, on upper along the first tangent
   FourValues secondFriction;  ///< N, along the second
-  FourValues untouched;       ///< 0: no springs hold energy
-  FourValues slipping;        ///< 1 where friction is at its bound, else 0
+  FourValues untouched;       ///< 0: no springs store energy
+  FourValues slipping;        ///< 1 where friction is at its bound, otherwise 0
 };
 
-/// Four points of a contact. Which of the three it is says `kind` of its manifold; as all members have one layout, any may be
-/// read (copies, hashes) whichever was written.
+/// Four points of a contact. `kind` of the manifold selects the member; as all members have one layout, any may be read (copies,
+/// hashes) whichever was written.
 union alignas(32) PointRow {
   PenaltyRow penalty{};
   ImpulseRow impulse;
@@ -66,13 +66,13 @@ union alignas(32) PointRow {
 using PointRows = std::array<PointRow*, kManifoldRows>;
 using ConstPointRows = std::array<const PointRow*, kManifoldRows>;
 
-/// Where four points lie on the incident face.
+/// Positions of four points on the incident face.
 struct alignas(32) PlaceRow {
   FourValues u{};  ///< along its first side, -1/2..1/2
   FourValues v{};  ///< along its second side
 };
 
-/// Which features of which blocks touch: `upper` rests on `lower` (names only: up is along the normal). A face manifold holds
+/// Which features of which blocks touch: `upper` rests on `lower` (labels only: upwards is along the normal). A face manifold has
 /// points of upper's incident face against the plane of lower's reference face (or the floor); its points are corners of the
 /// overlap of the two faces: corners of one block over the other's face, and crossings of their edges. An edge manifold is one
 /// point where two edges cross.
@@ -86,7 +86,7 @@ struct ManifoldShape {
   PointKind kind = PointKind::penalty;
 };
 
-/// Rows that hold this many points.
+/// Number of rows for this many points.
 constexpr std::size_t rowsFor(std::int32_t count) {
   return (static_cast<std::size_t>(count) + kRowPoints - 1) / kRowPoints;
 }
@@ -105,7 +105,7 @@ struct Manifold : ManifoldShape {
   std::array<PointRow, kManifoldRows> points;
 };
 
-/// A contact manifold where it lies, to be read. Rows past those of its points may be null.
+/// A read-only view of a stored contact manifold. Rows past those of its points may be null.
 struct ContactView : ManifoldShape {
   std::array<const PlaceRow*, kManifoldRows> place{};
   ConstPointRows points{};
@@ -139,12 +139,12 @@ inline void setVectorAt(FourVectors& values, std::size_t point, const Vec3& valu
   for (std::size_t a = 0; a < 3; ++a) values[a][laneOf(point)] = value[static_cast<Eigen::Index>(a)];
 }
 
-/// How a penalty point touches: 1, kUnpressed or 0; 0 of impulses and anchors.
+/// `touching` of a penalty point: 1, kUnpressed or 0; 0 of impulses and anchors.
 inline double touchingAt(const ContactView& manifold, std::size_t point) {
   return manifold.penalty(point).touching[laneOf(point)];
 }
 
-/// Whether friction of a point is at its bound, whatever the point stores.
+/// Whether friction of a point is at its bound, for any kind of point.
 inline bool slipsAt(const ContactView& manifold, std::size_t point) {
   return manifold.penalty(point).slipRatio[laneOf(point)] != 0.0;
 }
@@ -169,32 +169,32 @@ FaceFrame faceFrame(const CornerView& block, int face);
 /// The face of a block whose outward normal is most opposed to a direction.
 int incidentFaceOf(const CornerView& block, const Vec3& normal);
 
-/// Sizes the geometry of manifolds is judged by, m. Edges that bend by less than a twentieth of mergeRadius are straight.
+/// Length limits for the construction of manifolds, m. Edges that bend by less than a twentieth of mergeRadius count as straight.
 struct ManifoldLimits {
-  double mergeRadius;  ///< points closer than this on the incident face are one
-  double reach;        ///< points farther than this above the reference plane are left out
+  double mergeRadius;  ///< points closer than this on the incident face are merged
+  double reach;        ///< points farther than this above the reference plane are omitted
 };
 
-/// Begins a manifold anew, without points: `upper`, `lower` and `kind` stay. What its points will store are springs that are not
-/// pressed, or impulses and anchors without forces.
+/// Resets a manifold to one without points; `upper`, `lower` and `kind` are kept. Points added later start as unloaded springs,
+/// or as impulses and anchors without forces.
 void startManifold(Manifold& manifold, PairPhase phase, int incidentFace, int referenceFace);
 
 /// Overlap of upper's incident face with lower's reference face: clips the one against the sides of the other (Sutherland &
-/// Hodgman 1974), merges points that coincide and leaves out those along a straight edge. Fills u, v, count and names; the memory
-/// of all points starts empty. No overlap gives count 0.
+/// Hodgman 1974), merges coinciding points and drops those along a straight edge. Fills u, v, count and features; the state of
+/// all points is reset. Without overlap count is 0.
 void buildFaceManifold(const CornerView& upper, const CornerView& lower, int incidentFace, int referenceFace,
                        const ManifoldLimits& limits, Manifold& manifold);
 
-/// The four corners of a block's lowest face against the floor z = 0; those higher than limits.reach are left out.
+/// The four corners of a block's lowest face against the floor z = 0, without those higher than limits.reach.
 void buildFloorManifold(const CornerView& upper, const ManifoldLimits& limits, Manifold& manifold);
 
-/// Hands what the points of an old manifold store to those of a new one of the same pair: each new point takes that of the
-/// nearest old point within `radius` (m, in space). Roles may have swapped. The corners are those of the blocks a manifold names
-/// as upper.
+/// Transfers the state of the points of an old manifold to a new one of the same pair (warm start): each new point takes that of
+/// the nearest old point within `radius` (m, in space). Upper and lower may have been swapped. The corners are those of each
+/// manifold's upper block.
 void carryMemory(const ContactView& old, const CornerView& oldUpper, Manifold& fresh, const CornerView& freshUpper,
                  double radius);
 
-/// Place of a manifold's point in space, m: on the incident face (face manifolds only).
+/// Position of a manifold's point in space, m: on the incident face (face manifolds only).
 Vec3 pointOnIncidentFace(const ContactView& manifold, const CornerView& upper, std::size_t point);
 
 }  // namespace springtower

@@ -12,7 +12,7 @@ namespace springtower {
 
 namespace {
 
-// Mean edges and face normals: in a sheared block the normal of a face is not the direction of the edges that cross it.
+// Mean edges and face normals: in a sheared block a face normal is not parallel to the edges that leave the face.
 struct Frame {
   Vec3 centre;
   std::array<Vec3, 3> axis;
@@ -37,7 +37,7 @@ Frame frameOf(const CornerView& block) {
   return frame;
 }
 
-// Where a block's corners lie along a direction, four and four.
+// Positions of a block's corners along a direction, in two groups of four.
 SPRINGTOWER_INLINE void project(const Vec3& normal, const CornerView& block, Lanes& first, Lanes& second) {
   Lanes x, y, z;
   load(block.x, x);
@@ -60,7 +60,7 @@ SPRINGTOWER_INLINE double gapOf(const Vec3& normal, const CornerView& upper, con
          std::max(std::max(most[0], most[1]), std::max(most[2], most[3]));
 }
 
-// The edge of a block along an axis that lies farthest towards a direction.
+// The edge of a block along an axis that is farthest in a direction.
 int extremeEdge(const Frame& frame, std::size_t axis, const Vec3& towards) {
   const std::size_t first = axis == 0 ? 1 : 0;
   const std::size_t second = axis == 2 ? 1 : 2;

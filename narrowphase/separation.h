@@ -19,24 +19,25 @@ inline CornerView cornersOf(const ParticleArray& array, std::size_t block) {
 
 /// Gap between two blocks along a unit direction `normal` that points from `lower` to `upper`, m; negative where they overlap.
 /// For corners that move linearly the gap along a fixed direction is concave in time (a minimum of linear functions), so a
-/// direction that separates at both ends of a step separates all through it: Baraff's witness (report 2.3.4).
+/// direction that separates at both ends of a step separates throughout it: Baraff's witness (report 2.3.4).
 double gapAlong(const Vec3& normal, const CornerView& upper, const CornerView& lower);
 
-/// What separates two blocks best, by the fifteen separating axes of two cuboids (report 2.3.3), on the blocks' actual corners.
-/// Separations are gaps in m (negative: overlap along that axis). Normals are unit and point from block b to block a.
+/// The best separating directions of two blocks, from the fifteen separating axes of two cuboids (report 2.3.3), for the blocks'
+/// actual corners. Separations are gaps in m (negative: overlap along that axis). Normals are unit and point from block b to
+/// block a.
 struct Separation {
   double faceA = 0.0;  ///< best over a's face normals
   double faceB = 0.0;  ///< best over b's face normals
   double edge = 0.0;   ///< best over crossed edges; minus infinity where all are nearly parallel
-  int faceOfA = 0;     ///< a's face that looks at b
-  int faceOfB = 0;     ///< b's face that looks at a
+  int faceOfA = 0;     ///< a's face towards b
+  int faceOfB = 0;     ///< b's face towards a
   int edgeOfA = 0;
   int edgeOfB = 0;
   Vec3 normalFaceA;
   Vec3 normalFaceB;
   Vec3 normalEdge;
 
-  /// The largest of the three: a lower bound of the distance where positive.
+  /// The largest of the three: where positive, a lower bound of the distance.
   [[nodiscard]] double best() const { return std::max(edge, std::max(faceA, faceB)); }
   [[nodiscard]] const Vec3& bestNormal() const {
     if (edge > faceA && edge > faceB) return normalEdge;

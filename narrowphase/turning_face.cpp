@@ -87,7 +87,7 @@ TurningGap gapAlongTurningFace(const Vec3& normal, const MovingBlock& a, const M
     const Lanes most = lower[0][k] > lower[1][k] ? lower[0][k] : lower[1][k];
     const double here = std::min(std::min(least[0], least[1]), std::min(least[2], least[3])) -
                         std::max(std::max(most[0], most[1]), std::max(most[2], most[3]));
-    gap.least = std::min(here, gap.least);  // where the face has no area neither is a number
+    gap.least = std::min(here, gap.least);  // NaN for a face without area
   }
   return gap;
 }

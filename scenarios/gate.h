@@ -7,8 +7,8 @@
 
 namespace springtower {
 
-/// A tower whose instructions are counted (bench/gate_scenes.cpp) and whose bits are pinned (tests/pinned), so that both look at
-/// the same frames.
+/// A tower whose instructions are counted (bench/gate_scenes.cpp) and whose bits are pinned (tests/pinned); both use the same
+/// frames.
 struct GateTower {
   std::string_view name;
   int rows;
@@ -20,7 +20,7 @@ struct GateTower {
 /// All of them.
 std::span<const GateTower> gateTowers();
 
-/// Its scene for a method, awake throughout.
+/// Its scene for a method, without sleep.
 Scene sceneOf(const GateTower& gate, Method method);
 
 }  // namespace springtower

@@ -89,7 +89,7 @@ Scene thinWallScene() {
   return scene;
 }
 
-// Without sines: no mathematical library has a say in it.
+// Without sines, so that it does not depend on a mathematical library.
 Scene heapScene(int blocks) {
   constexpr double kSpacing_m = 0.09;
   RandomStream random(1, 0);

@@ -30,7 +30,7 @@ constexpr SizeNumber rows(int usual) {
 }
 
 constexpr SizeNumber towers(int usual) {
-  return {"towers", usual, 1, 1800};  // no more blocks than a scene may have
+  return {"towers", usual, 1, 1800};  // limited by the number of blocks of a scene
 }
 
 TowerOptions uneven(TowerOptions options) {
@@ -171,7 +171,7 @@ std::string nameWithSize(const Scenario& scenario, const std::string& size) {
   return size.empty() ? std::string(scenario.name) : fmt::format("{}:{}", scenario.name, size);
 }
 
-// Empty for anything but as many whole numbers as the scene has, with an x between them.
+// Empty unless the text has as many whole numbers as the scene, with an x between them.
 std::optional<ScenarioSize> parsedSize(const Scenario& scenario, std::string_view text) {
   ScenarioSize size{};
   const std::size_t count = numberCount(scenario);
@@ -264,7 +264,7 @@ Scene sceneNamed(const std::string& name, const TowerOptions& options) {
   const std::string_view head = std::string_view(name).substr(0, colon);
   const Scenario* scenario = findScenario(head);
   if (scenario == nullptr) {
-    // What has neither a dot nor a slash and is no file was meant as a name.
+    // An argument without dot and slash that is no file is taken as a name.
     std::error_code error;
     const bool isName =
         !name.starts_with('(') && name.find_first_of("./") == std::string::npos && !std::filesystem::exists(name, error);
@@ -272,7 +272,7 @@ Scene sceneNamed(const std::string& name, const TowerOptions& options) {
     return sceneFromName(name, options);
   }
   if (colon == std::string::npos) return makeScene(*scenario, usualSize(*scenario), options);
-  if (scenario->name == "tower") return sceneFromName(name, options);  // it says what is wrong in words of its own
+  if (scenario->name == "tower") return sceneFromName(name, options);  // its own message explains the error
   const std::string_view text = std::string_view(name).substr(colon + 1);
   const std::optional<ScenarioSize> size = parsedSize(*scenario, text);
   if (!size) throw sizeError(*scenario, text);

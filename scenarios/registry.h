@@ -11,16 +11,16 @@ namespace springtower {
 
 /// One number of a scene's size.
 struct SizeNumber {
-  std::string_view what = {};  ///< that it counts, in the plural; empty: there is no such number
-  int usual = 0;               ///< without a size after the name
+  std::string_view what = {};  ///< what it counts, in the plural; empty: there is no such number
+  int usual = 0;               ///< default, without a size after the name
   int least = 0;
   int most = 0;
 };
 
-/// The numbers of a size, in the order in which they are written; those that a scene does not have are 0.
+/// The numbers of a size, in the order of notation; those that a scene does not have are 0.
 using ScenarioSize = std::array<int, 2>;
 
-/// A kind of scene that has a name: the command line, the viewer, charts and tests draw on the same ones.
+/// A kind of scene with a name, common to the command line, the viewer, charts and tests.
 struct Scenario {
   std::string_view name;  ///< letters and hyphens
   std::string_view what;  ///< one sentence, without its full stop
@@ -29,29 +29,30 @@ struct Scenario {
   Scene (*make)(const ScenarioSize& size, const TowerOptions& options);
 };
 
-/// All of them, in the order in which they are listed.
+/// All scenarios, in the order of listing.
 std::span<const Scenario> scenarios();
 
-/// The scenario of a name, or null.
+/// The scenario with a name, or null.
 const Scenario* findScenario(std::string_view name);
 
-/// The size it has unless told otherwise.
+/// The default size.
 ScenarioSize usualSize(const Scenario& scenario);
 
-/// A size as it is written: `18` of a tower, `20x12` of a wall; empty where there is none.
+/// A size in its notation: `18` of a tower, `20x12` of a wall; empty where there is none.
 std::string sizeText(const Scenario& scenario, const ScenarioSize& size);
 
-/// How it is written, such as `wall:COLUMNSxCOURSES`; the name alone where it has no size.
+/// Notation, such as `wall:COLUMNSxCOURSES`; only the name where it has no size.
 std::string usageOf(const Scenario& scenario);
 
-/// The sizes that are allowed, such as `1 to 900 columns, 1 to 100 courses`; empty where it has none.
+/// The allowed sizes, such as `1 to 900 columns, 1 to 100 courses`; empty where it has none.
 std::string allowedSizes(const Scenario& scenario);
 
-/// Makes the scene, named as it is written. Throws InputError for a size or options that are not allowed.
+/// Makes the scene; its name is the notation. Throws InputError for a size or options that are not allowed.
 Scene makeScene(const Scenario& scenario, const ScenarioSize& size, const TowerOptions& options = {});
 
-/// A scene from what a user names: `NAME` or `NAME:SIZE` of the above, a bit code, or a TOML file. A name goes before a file that
-/// is called the same, which is found by its path (./wall). Throws InputError, for an unknown name with all that is allowed.
+/// A scene from a user's argument: `NAME` or `NAME:SIZE` of the above, a bit code, or a TOML file. A scenario takes precedence
+/// over a file of the same name, which can be given by its path (./wall). Throws InputError; for an unknown name it lists
+/// everything that is allowed.
 Scene sceneNamed(const std::string& name, const TowerOptions& options = {});
 
 }  // namespace springtower

@@ -9,7 +9,7 @@
 namespace springtower {
 namespace {
 
-// The collapsing tower leans by a little more than it can stand; a short one would slide before.
+// Tilt of the collapsing tower beyond its limit; a short tower would slide first.
 constexpr double kBeyondStanding_deg = 0.6;
 constexpr double kMaxTilt_deg = 30.0;
 

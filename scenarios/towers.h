@@ -6,55 +6,54 @@
 
 namespace springtower {
 
-/// Standard deviation of the heights of a tower that is called uneven, m.
+/// Standard deviation of the heights of an uneven tower, m.
 inline constexpr double kUnevenHeightsSigma_m = 0.0002;
-/// Between the towers of a grid whose towers are never to meet, from axis to axis, m.
+/// Distance between the axes of the towers of a grid, large enough that they never touch, m.
 inline constexpr double kTowerSpacing_m = 0.3;
-/// The tilt of gravity at which a tower of 18 rows topples, but does not slide, degrees.
+/// The tilt of gravity at which a tower of 18 rows topples without sliding, degrees.
 inline constexpr double kTopplingTilt_deg = 14.5;
 
-/// The same scene in which nothing sleeps.
+/// The same scene without sleep.
 Scene awake(Scene scene);
 
-/// The same scene under gravity that leans by an angle, degrees, towards +x.
+/// The same scene with gravity tilted by an angle, degrees, towards +x.
 Scene leaning(Scene scene, double tilt_deg);
 
-/// The same scene under gravity that swings by an angle, degrees, so many times a second.
+/// The same scene with gravity that oscillates with an amplitude, degrees, and a frequency, Hz.
 Scene swaying(Scene scene, double amplitude_deg, double frequency_hz);
 
-/// The same scene with all blocks higher by a length, m: they fall together.
+/// The same scene with all blocks raised by a length, m: they fall together.
 Scene raised(Scene scene, double by_m);
 
 /// The same tower with every other row, from the second on, heavier by a factor.
 Scene withHeavyRows(Scene scene, double factor);
 
-/// The scene's blocks `along` times along x and `across` times along y, `spacing_m` apart. Copies follow one another along y
-/// first. Precondition: both are positive.
+/// The scene's blocks `along` times along x and `across` times along y, `spacing_m` apart. Copies are in order of y first.
+/// Precondition: both are positive.
 Scene grid(Scene one, int along, int across, double spacing_m);
 
-/// The scene's blocks so many times, kTowerSpacing_m apart, on the smallest square that holds them; copies follow one another
-/// along x first. Precondition: `copies` is positive.
+/// The scene's blocks `copies` times, kTowerSpacing_m apart, on the smallest square that holds them; copies are in order of x
+/// first. Precondition: `copies` is positive.
 Scene squareOf(Scene one, int copies);
 
-/// Full towers of 18 rows end against end along x: the blocks along it meet those of the next tower with their small faces, so
-/// that all is one island. Throws InputError for options that are not allowed.
+/// Full towers of 18 rows end against end along x: their lengthwise blocks touch those of the next tower with their small faces,
+/// so that everything is one island. Throws InputError for options that are not allowed.
 Scene touchingTowersScene(int towers, const TowerOptions& options = {});
 
-/// Twelve rows, half of them with blocks missing. Throws InputError for options that are not allowed.
+/// Twelve rows, half of them with missing blocks. Throws InputError for options that are not allowed.
 Scene towerWithHolesScene(const TowerOptions& options = {});
 
-/// The tilt of gravity by which a tower of so many rows leans a little more than it can stand, degrees. No more than 30: a short
-/// tower would slide before.
+/// A tilt of gravity slightly beyond the limit of a tower of so many rows, degrees. At most 30: a short tower would slide first.
 double collapseTilt_deg(int rows);
 
-/// Six rows, and a block that is shot at them lengthwise at 5 m/s.
+/// Six rows, and a block shot at them lengthwise at 5 m/s.
 Scene shotTowerScene();
 
-/// Two rows that sleep by the time a block hits them, which falls from 21 m for some 2 s.
+/// Two rows, and a block that falls on them from 21 m after some 2 s, when they sleep.
 Scene sleeperHitScene();
 
-/// The number of the middle block of the middle row, which those who pull a block out take. Precondition: the scene is a tower
-/// with that block, and its last block lies in the last row.
+/// The index of the middle block of the middle row, the one that pull scenes pull out. Precondition: the scene is a tower with
+/// that block, and its last block is in the last row.
 std::size_t middleBlock(const Scene& tower);
 
 }  // namespace springtower

@@ -5,9 +5,9 @@
 namespace springtower {
 namespace {
 
-constexpr int kPileCells = 6;  // of three blocks side by side, along and across
+constexpr int kPileCells = 6;  // of three blocks side by side, in both directions
 static_assert(kPileRowBlocks == kPileCells * kPileCells * 3);
-constexpr double kPileFit = 1.002;  // from block to block of a row, in their lengths
+constexpr double kPileFit = 1.002;  // spacing of the blocks of a row, in their lengths
 
 Scene pyramidOf(const BlockSpec& brick, int rows) {
   const double pitch_m = brick.dimensions.x() + kWallGap_m;

@@ -30,7 +30,7 @@ bool clipToRoots(const BernsteinCubic& piece, TimeInterval& part) {
   if (c3 < -piece.error) skippedAtEnd = firstCrossing(-c3, -c2, -c1, -c0, piece.error);
   if (skippedAtStart + skippedAtEnd > 1.0 + 8.0 * std::numeric_limits<double>::epsilon()) return false;
 
-  // The sums below are rounded; moving them outwards by one part in 2^52 keeps every root inside.
+  // The sums below are rounded; moving the bounds outwards by one part in 2^52 keeps every root inside.
   constexpr double kOutwards = std::numeric_limits<double>::epsilon();
   const double from = (part.from + width * skippedAtStart) * (1.0 - kOutwards);
   const double to = (part.to - width * skippedAtEnd) * (1.0 + kOutwards);

@@ -9,8 +9,8 @@
 
 namespace springtower {
 
-/// A cubic polynomial on t in [0, 1] in Bernstein form, sum of c_i C(3,i) t^i (1-t)^(3-i), known up to an absolute error: the
-/// true polynomial and this one differ by at most `error` everywhere on [0, 1].
+/// A cubic polynomial on t in [0, 1] in Bernstein form, sum of c_i C(3,i) t^i (1-t)^(3-i), with an absolute error bound: the true
+/// polynomial and this one differ by at most `error` everywhere on [0, 1].
 struct BernsteinCubic {
   std::array<double, 4> coefficients;
   double error;
@@ -68,10 +68,10 @@ inline bool coplanarityCubicMayVanish(const MovingPoint& a, const MovingPoint& b
 /// Coefficients a, b, c, d of a t^3 + b t^2 + c t + d (report Eq. 4.10) of a cubic in Bernstein form.
 std::array<double, 4> powerCoefficients(const BernsteinCubic& cubic);
 
-/// Bezier clipping (Sederberg and Nishita 1990): shrinks `part` to where the convex hull of the control polygon of `piece`,
-/// widened by its error, reaches zero. `piece` is a cubic on `part` alone: its s in [0, 1] is the time part.from + s (part.to -
-/// part.from). Every root that lies in `part` stays in it: bounds are rounded outwards. Returns false if the cubic has no root in
-/// `part`, which is left as it was. Converges quadratically to a simple root.
+/// Bezier clipping (Sederberg and Nishita 1990): shrinks `part` to the interval in which the convex hull of the control polygon
+/// of `piece`, widened by its error, reaches zero. `piece` is the cubic restricted to `part`: its s in [0, 1] is the time
+/// part.from + s (part.to - part.from). Every root in `part` remains in it: bounds are rounded outwards. Returns false if the
+/// cubic has no root in `part`, which is then unchanged. Converges quadratically to a simple root.
 bool clipToRoots(const BernsteinCubic& piece, TimeInterval& part);
 
 }  // namespace springtower

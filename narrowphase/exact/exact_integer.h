@@ -9,12 +9,12 @@
 
 namespace springtower {
 
-/// A whole number of at most 64 * Capacity bits: sign and magnitude, least significant limb first, no allocation. Only the limbs
-/// in use are ever read, copied or written, so small numbers in a large capacity are cheap.
+/// An integer of at most 64 * Capacity bits: sign and magnitude, least significant limb first, no allocation. Only the limbs in
+/// use are ever read, copied or written, so small numbers in a large capacity are cheap.
 ///
-/// A product has the sum of its factors' capacities, so it always fits. A sum keeps the larger capacity of its terms: whoever
-/// builds the first numbers leaves bits free at the top (products add up the free bits of their factors), enough for all sums to
-/// come.
+/// A product has the sum of its factors' capacities, so it always fits. A sum keeps the larger capacity of its terms: the first
+/// numbers of a computation must have enough free bits at the top for all later sums (products add up the free bits of their
+/// factors).
 template <std::size_t Capacity>
 struct Integer {
   std::array<std::uint64_t, Capacity> limbs;
@@ -22,7 +22,7 @@ struct Integer {
   bool negative = false;
 
   Integer() {
-    // Not needed, but free, and compilers that unroll short loops no longer warn of limbs that are never read.
+    // Not required, but free, and it avoids warnings of compilers that unroll short loops and report limbs that are never read.
     if constexpr (Capacity <= 4) limbs.fill(0);
   }
   Integer(std::int64_t value) : Integer() {
@@ -55,7 +55,7 @@ struct Integer {
 
 __extension__ typedef unsigned __int128 DoubleLimb;
 
-/// -1, 0 or 1 as |a| is smaller than, equal to or larger than |b|.
+/// -1, 0 or 1 if |a| is smaller than, equal to or larger than |b|.
 template <std::size_t A, std::size_t B>
 int compareMagnitudes(const Integer<A>& a, const Integer<B>& b) {
   if (a.size != b.size) return a.size < b.size ? -1 : 1;
@@ -64,7 +64,7 @@ int compareMagnitudes(const Integer<A>& a, const Integer<B>& b) {
   return 0;
 }
 
-/// |larger| + |smaller|, with the sign given, for larger.size >= smaller.size.
+/// |larger| + |smaller|, with the given sign, for larger.size >= smaller.size.
 template <std::size_t Sum, std::size_t A, std::size_t B>
 Integer<Sum> addMagnitudes(const Integer<A>& larger, const Integer<B>& smaller, bool negative) {
   Integer<Sum> sum;
@@ -84,7 +84,7 @@ Integer<Sum> addMagnitudes(const Integer<A>& larger, const Integer<B>& smaller, 
   return sum;
 }
 
-/// |larger| - |smaller|, with the sign given, for |larger| > |smaller|.
+/// |larger| - |smaller|, with the given sign, for |larger| > |smaller|.
 template <std::size_t Difference, std::size_t A, std::size_t B>
 Integer<Difference> subtractMagnitudes(const Integer<A>& larger, const Integer<B>& smaller, bool negative) {
   Integer<Difference> difference;
@@ -144,7 +144,7 @@ Integer<A + B> operator*(const Integer<A>& a, const Integer<B>& b) {
   return product;
 }
 
-/// a * 2^bits, in a number of the capacity named.
+/// a * 2^bits, in a number of the given capacity.
 template <std::size_t Result, std::size_t A>
 Integer<Result> shiftedLeft(const Integer<A>& a, std::uint32_t bits) {
   Integer<Result> result;

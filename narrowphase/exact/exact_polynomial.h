@@ -5,11 +5,11 @@
 #include <array>
 #include <cstdint>
 
-/// Signs of polynomials with integer coefficients, at and between the roots of other ones, decided without rounding.
+/// Signs of polynomials with integer coefficients, at and between the roots of others, determined without rounding.
 namespace springtower::exact {
 
-/// Time is cut into at most 2^kMaxDepth parts. Two different roots of polynomials of one query are told apart long before that;
-/// if not, they count as equal, which can only turn a miss by 2^-1024 of the step into a contact.
+/// Time is divided into at most 2^kMaxDepth parts. Different roots of the polynomials of one query are separated at a much
+/// smaller depth; if not, they count as equal, which can only turn a miss by 2^-1024 of the step into a contact.
 constexpr std::uint32_t kMaxDepth = 1024;
 constexpr std::size_t kTimeCapacity = kMaxDepth / 64 + 1;
 
@@ -33,7 +33,7 @@ struct DyadicTime {
   bool isPoint = false;
 };
 
-/// One root of a polynomial without multiple roots: the time itself, or an open interval that holds no other root of it.
+/// One root of a polynomial without multiple roots: the time itself, or an open interval that contains no other root of it.
 template <int Degree, std::size_t Capacity>
 struct Root {
   const Polynomial<Degree, Capacity>* polynomial;
@@ -99,8 +99,8 @@ int signAtStart(const Polynomial<Degree, Capacity>& polynomial, const DyadicTime
   return value.sign();
 }
 
-/// Number of changes of sign in a sequence, zeros left out. For Bernstein coefficients it is the number of roots in the open
-/// interval, or more by an even number (Descartes' rule).
+/// Number of sign changes in a sequence, zeros omitted. For Bernstein coefficients it is the number of roots in the open
+/// interval, or larger by an even number (Descartes' rule).
 template <std::size_t Size>
 int signVariations(const std::array<int, Size>& signs) {
   int variations = 0;
@@ -209,7 +209,7 @@ void refine(Root<Degree, Capacity>& root) {
     const DyadicTime start{shiftedLeft<kTimeCapacity>(root.at.index, kGuessedBits) + Integer<1>(cell),
                            root.at.depth + kGuessedBits};
     const DyadicTime end{start.index + Integer<1>(1), start.depth};
-    // At the ends of the old interval there may be another root; what counts is the sign just inside.
+    // There may be another root at the ends of the old interval; the sign just inside is the relevant one.
     const int signAtFirst = cell == 0 ? root.signBefore : signAtStart(*root.polynomial, start);
     const int signAtLast = cell == kCells - 1 ? -root.signBefore : signAtStart(*root.polynomial, end);
     if (signAtFirst != -root.signBefore && signAtLast != root.signBefore) {

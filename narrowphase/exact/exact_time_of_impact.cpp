@@ -14,8 +14,8 @@ namespace {
 
 using namespace exact;
 
-// A double is a whole multiple of 2^-1074 below 2^1024, so in the worst common unit a coordinate has 2098 bits and a velocity
-// 2100. 34 limbs leave 76 bits free for sums, and products leave more.
+// A double is an integer multiple of 2^-1074 below 2^1024, so with the worst common unit a coordinate has 2098 bits and a
+// velocity 2100. 34 limbs leave 76 bits free for sums, and products leave more.
 constexpr std::size_t kCoordinate = 34;
 using Coordinate = Integer<kCoordinate>;
 using Linear = Polynomial<1, kCoordinate>;
@@ -109,10 +109,10 @@ Cubic coplanarityCubic(const ExactPolygon<Vertices>& polygon) {
   return cubic;
 }
 
-/// Whether the polygon holds the origin at a time at which both lie in one plane. Proof for the four cases: (1) polygon with an
-/// area: the turns are the signed areas of the triangles it makes with the origin, in every projection that does not flatten it,
-/// and all zero in the others; (2) on a line that misses the origin: the turns around it sum to zero, and are not all zero; (3)
-/// on a line through the origin: all turns are zero and the coordinates decide; (4) a single point: the same.
+/// Whether the polygon contains the origin at a time at which both lie in one plane. Proof for the four cases: (1) polygon with
+/// an area: the turns are the signed areas of the triangles it makes with the origin, in every projection that does not flatten
+/// it, and all zero in the others; (2) on a line that misses the origin: the turns around it sum to zero, and are not all zero;
+/// (3) on a line through the origin: all turns are zero and the coordinates decide; (4) a single point: the same.
 template <std::size_t Vertices, class Root>
 bool holdsOrigin(const ExactPolygon<Vertices>& polygon, Root& time) {
   for (std::size_t axis = 0; axis < 3; ++axis) {

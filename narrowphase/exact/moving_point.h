@@ -12,8 +12,8 @@ struct MovingPoint {
   Vec3 end;
 };
 
-/// The largest difference of one coordinate between any two of four moving points, both at the start or both at the end (m): the
-/// size of a query. It does not change when all points are moved by the same offset.
+/// The size of a query: the largest difference of one coordinate between any two of four moving points, both at the start or both
+/// at the end (m). It is invariant under translation of all points.
 inline double queryExtent(const MovingPoint& a, const MovingPoint& b, const MovingPoint& c, const MovingPoint& d) {
   const Vec3 start = a.start.cwiseMax(b.start).cwiseMax(c.start).cwiseMax(d.start) -
                      a.start.cwiseMin(b.start).cwiseMin(c.start).cwiseMin(d.start);
@@ -21,8 +21,8 @@ inline double queryExtent(const MovingPoint& a, const MovingPoint& b, const Movi
   return std::max(start.maxCoeff(), end.maxCoeff());
 }
 
-/// Whether the axis-aligned box swept by a point meets the one swept by the triangle a b c (report 4.4.3). Only coordinates as
-/// given are compared, so nothing is rounded and no margin is needed: false proves that the features never meet.
+/// Whether the axis-aligned box swept by a point meets the one swept by the triangle a b c (report 4.4.3). Only given coordinates
+/// are compared, so nothing is rounded and no margin is needed: false proves that the features never touch.
 inline bool pointTriangleBoxesOverlap(const MovingPoint& point, const MovingPoint& a, const MovingPoint& b,
                                       const MovingPoint& c) {
   for (int axis = 0; axis < 3; ++axis) {
@@ -34,7 +34,7 @@ inline bool pointTriangleBoxesOverlap(const MovingPoint& point, const MovingPoin
   return true;
 }
 
-/// Whether the axis-aligned boxes swept by the edges a-b and c-d meet (report 4.4.3). False proves that the edges never meet.
+/// Whether the axis-aligned boxes swept by the edges a-b and c-d meet (report 4.4.3). False proves that the edges never touch.
 inline bool edgeEdgeBoxesOverlap(const MovingPoint& a, const MovingPoint& b, const MovingPoint& c, const MovingPoint& d) {
   for (int axis = 0; axis < 3; ++axis) {
     const double lowSecond = std::min({c.start[axis], c.end[axis], d.start[axis], d.end[axis]});

@@ -26,7 +26,7 @@ std::array<std::string, kColumns> columnNames() {
   return names;
 }
 
-/// A line of the file under work, for messages.
+/// The current line of the file, for messages.
 struct Place {
   const std::string& path;
   std::size_t line;

@@ -11,14 +11,14 @@ namespace {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
-/// Added to every error bound: more than underflow can cost where all factors are below 1e100.
+/// Added to every error bound: more than the effect of underflow where all factors are below 1e100.
 constexpr double kUnderflow = 1e-200;
 
-/// Parts of the step looked at before exact arithmetic takes over. A simple crossing needs about five.
+/// Parts of the step examined before exact arithmetic. A simple crossing needs about five.
 constexpr int kMaxParts = 24;
 
 /// The differences of two features, as a convex planar polygon whose vertices move in straight lines: triangle minus point, or
-/// edge minus edge (a parallelogram). The features share a point when it holds the origin.
+/// edge minus edge (a parallelogram). The features share a point when it contains the origin.
 template <int Vertices>
 struct MovingPolygon {
   std::array<Vec3, Vertices> start, end;
@@ -42,7 +42,7 @@ MovingPolygon<Vertices> differences(const std::array<const MovingPoint*, Vertice
   return polygon;
 }
 
-/// A polygon's vertices at the two ends of a part of the step. Each coordinate is wrong by at most `error`.
+/// A polygon's vertices at the two ends of a part of the step. Each coordinate has an error of at most `error`.
 template <int Vertices>
 struct PolygonPart {
   std::array<Vec3, Vertices> from, to;
@@ -65,8 +65,8 @@ BernsteinCubic coplanarityCubic(const PolygonPart<Vertices>& part) {
   return determinantCubic(part.from[0], part.from[1], part.from[2], part.to[0], part.to[1], part.to[2], part.error);
 }
 
-/// A vector from the origin to about the nearest point of a polygon, of any length. Only a guess: whoever uses it checks the
-/// result.
+/// A vector from the origin to approximately the nearest point of a polygon, of any length. It is a guess; the caller verifies
+/// the result.
 template <int Vertices>
 Vec3 directionToPolygon(const std::array<Vec3, Vertices>& vertices) {
   const Vec3 normal = (vertices[1] - vertices[0]).cross(vertices[2] - vertices[1]);
@@ -89,8 +89,8 @@ Vec3 directionToPolygon(const std::array<Vec3, Vertices>& vertices) {
   return nearest;
 }
 
-/// Whether one fixed axis proves that the polygon does not hold the origin during a part of the step: every vertex moves in a
-/// straight line, so it is enough to look at both ends.
+/// Whether one fixed axis proves that the polygon does not contain the origin during a part of the step: every vertex moves in a
+/// straight line, so the two ends are sufficient.
 template <int Vertices>
 bool isSeparated(const PolygonPart<Vertices>& part) {
   std::array<Vec3, Vertices> middle;
@@ -104,9 +104,9 @@ bool isSeparated(const PolygonPart<Vertices>& part) {
   return true;
 }
 
-/// Whether the polygon holds the origin at every time of a part of the step at which both lie in one plane: seen along a fixed
-/// direction all turns (vertex i, vertex i + 1, origin) are strictly to the same side. Each is a quadratic in time, positive
-/// if its Bernstein coefficients are.
+/// Whether the polygon contains the origin at every time of a part of the step at which both lie in one plane: seen along a fixed
+/// direction all turns (vertex i, vertex i + 1, origin) are strictly to the same side. Each is a quadratic in time, positive if
+/// its Bernstein coefficients are.
 template <int Vertices>
 bool holdsOriginWhenCoplanar(const PolygonPart<Vertices>& part) {
   const auto& [from, to, inputError] = part;
@@ -127,7 +127,7 @@ bool holdsOriginWhenCoplanar(const PolygonPart<Vertices>& part) {
 }
 
 /// Whether the cubic certainly changes its sign within `time`, widened to both sides by four times its width, and the polygon
-/// holds the origin whenever that happens: then there is a contact in the widened interval.
+/// contains the origin whenever that happens: then there is a contact in the widened interval.
 template <int Vertices>
 bool isCertainContact(const MovingPolygon<Vertices>& polygon, const TimeInterval& time) {
   const double margin = std::max(4.0 * (time.to - time.from), 4.0 * kEpsilon);
@@ -145,8 +145,9 @@ struct Refined {
   double time;
 };
 
-/// Walks the parts of the step in the order of time. A part is shrunk to where the cubic can have roots; it is dropped if there
-/// are none or an axis separates the features in it, and halved if it did not shrink much, until the features hardly move in it.
+/// Processes the parts of the step in the order of time. A part is shrunk to the interval in which the cubic can have roots; it
+/// is dropped if there are none or an axis separates the features in it, and halved if it did not shrink much, until the features
+/// hardly move in it.
 template <int Vertices>
 Refined refine(BernsteinCubic cubic, const MovingPolygon<Vertices>& polygon) {
   const double smallest = 0.0625 * kContactError * polygon.size;

@@ -5,13 +5,13 @@
 
 namespace springtower {
 
-/// Whether two moving features touch or cross within a step, and when first: `time` in [0, 1], 1 if there is no hit.
+/// Whether two moving features touch or cross within a step, and the first time: `time` in [0, 1], 1 if there is no hit.
 struct TimeOfImpact {
   bool hit;
   double time;
 };
 
-/// What decided a query, in the order in which it is tried; for counting.
+/// The stage that decided a query, in the order of evaluation; for counting.
 enum class DecidedBy {
   boxes,       ///< the swept boxes do not meet
   cubic,       ///< the coplanarity cubic has no root in [0, 1]
@@ -19,24 +19,25 @@ enum class DecidedBy {
   exact        ///< exact arithmetic (exact_time_of_impact.h)
 };
 
-/// The stated error e of a time of impact: at the reported time the features are no farther apart than kContactError times the
-/// query's size (queryExtent). The answer `hit` itself has no error: the hits are exactly the queries in which the closed
-/// features share a point at some time in [0, 1], for all finite coordinates.
+/// The stated error e of a time of impact: at the reported time the features are at most kContactError times the query's size
+/// (queryExtent) apart. `hit` itself has no error: the hits are exactly the queries in which the closed features share a point at
+/// some time in [0, 1], for all finite coordinates.
 constexpr double kContactError = 1e-10;
 
 /// First time at which a moving point and a moving triangle a b c share a point (report 4.4.1).
 /// - Never misses: touching counts, and so do degenerate triangles, coplanar motion, zero motion, contact at t = 0 and t = 1.
-/// - Never late: `time` is not after the exact time, and earlier by no more than the features need to move by kContactError.
+/// - Never late: `time` is not after the exact time, and earlier by at most the time in which the features move by kContactError.
 /// - Does not depend on the order of a, b, c, apart from an error of that size in `time`.
-/// Coordinates must be finite (if one is not, the answer is a hit at 0, or a miss if the boxes of other coordinates prove it) and
-/// rounding to nearest. Takes no locks, allocates nothing, keeps no state. Method: the culls; then the cubic's roots are isolated
-/// by Bezier clipping and bisection, each part of the step being discarded if a fixed axis separates the features throughout; a
-/// certified simple crossing is a hit; whatever doubles cannot decide goes to exact arithmetic. `decidedBy` may be null.
+/// Coordinates must be finite (if one is not, the result is a hit at 0, or a miss if the boxes of other coordinates prove it),
+/// and the rounding mode must be to nearest. Takes no locks, allocates nothing, has no state. Method: the culls; then the cubic's
+/// roots are isolated by Bezier clipping and bisection, and each part of the step is discarded if a fixed axis separates the
+/// features throughout; a certified simple crossing is a hit; cases that doubles cannot decide go to exact arithmetic.
+/// `decidedBy` may be null.
 TimeOfImpact pointTriangleTimeOfImpact(const MovingPoint& point, const MovingPoint& a, const MovingPoint& b, const MovingPoint& c,
                                        DecidedBy* decidedBy = nullptr);
 
-/// First time at which two moving edges a-b and c-d share a point (report 4.4.2). As above: parallel and collinear edges and
-/// edges of no length included.
+/// First time at which two moving edges a-b and c-d share a point (report 4.4.2). As above, including parallel and collinear
+/// edges and edges of zero length.
 TimeOfImpact edgeEdgeTimeOfImpact(const MovingPoint& a, const MovingPoint& b, const MovingPoint& c, const MovingPoint& d,
                                   DecidedBy* decidedBy = nullptr);
 

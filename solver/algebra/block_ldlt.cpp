@@ -34,7 +34,7 @@ SPRINGTOWER_INLINE void add(float factor, const Row& row, Row& to) {
   to.high += factor * row.high;
 }
 
-// Four rows that are worked on together: enough for their sums to hide one another's latency, and few enough for the registers.
+// Four rows processed together: enough for their sums to hide one another's latency, and few enough for the registers.
 struct Rows {
   Row a, b, c, d;
 };
@@ -85,7 +85,7 @@ SPRINGTOWER_INLINE void product(const float* s, const float* t, float* c) {
   }
 }
 
-// Four by four at a time.
+// Transposes four by four at a time.
 SPRINGTOWER_INLINE void transpose(const float* from, float* to) {
   for (std::size_t i = 0; i < kNodeSize; i += 4) {
     for (std::size_t k = 0; k < kNodeSize; k += 4) {
@@ -110,7 +110,7 @@ SPRINGTOWER_INLINE void transpose(const float* from, float* to) {
   }
 }
 
-// A row without its entry p, and a row with nothing but that one.
+// Splits a row into its entry p alone and the rest.
 using OctetOfPlaces = std::int32_t __attribute__((vector_size(32)));
 using QuadOfPlaces = std::int32_t __attribute__((vector_size(16)));
 SPRINGTOWER_INLINE void split(std::int32_t p, const Row& row, float entry, Row& without, Row& alone) {
@@ -123,7 +123,7 @@ SPRINGTOWER_INLINE void split(std::int32_t p, const Row& row, float entry, Row& 
 }
 
 // Gauss-Jordan without pivoting, in place; for positive definite blocks every pivot is positive. Rows are changed as vectors
-// only: a number stored into a row would hold up the next load of it.
+// only: storing a single number into a row would stall the next load of it.
 SPRINGTOWER_INLINE bool invert(float* m) {
   bool positive = true;
   for (std::size_t p = 0; p < kNodeSize; ++p) {
@@ -162,7 +162,7 @@ SPRINGTOWER_INLINE void subtractTransposed(const float* t, const float* x, float
   storeRow(sum, y);
 }
 
-// The sum of each of four quads' lanes.
+// The sum over the lanes of each of four quads.
 SPRINGTOWER_INLINE void laneSums(const Quad& a, const Quad& b, const Quad& c, const Quad& d, Quad& result) {
   const Quad ab = __builtin_shufflevector(a, b, 0, 4, 2, 6) + __builtin_shufflevector(a, b, 1, 5, 3, 7);
   const Quad cd = __builtin_shufflevector(c, d, 0, 4, 2, 6) + __builtin_shufflevector(c, d, 1, 5, 3, 7);
@@ -206,7 +206,7 @@ std::int32_t find(const BlockCholesky& matrix, std::int32_t column, std::int32_t
   return static_cast<std::int32_t>(std::lower_bound(first, last, row) - matrix.row.begin());
 }
 
-// The pattern of A below the diagonal by columns: edgeRow[edgeStart[j] .. edgeStart[j + 1]], by counting.
+// The pattern of A below the diagonal by columns: edgeRow[edgeStart[j] .. edgeStart[j + 1]], by a counting sort.
 void findColumns(std::span<const BlockPair> edges, BlockCholesky& matrix) {
   const auto ends = [&](const BlockPair& edge) {
     const std::int32_t p = matrix.position[static_cast<std::size_t>(edge.a)];
@@ -234,8 +234,8 @@ bool findPattern(std::span<const std::int32_t> order, std::span<const BlockPair>
   for (std::size_t k = 0; k < count; ++k) matrix.position[static_cast<std::size_t>(order[k])] = static_cast<std::int32_t>(k);
   findColumns(edges, matrix);
 
-  // The pattern of L: column j is its own part of A and what the columns leave that have j as their first row below the diagonal
-  // (their parent in the elimination tree).
+  // The pattern of L: column j is the union of its own part of A and the remainders of the columns whose first row below the
+  // diagonal is j (their parent in the elimination tree).
   matrix.columnStart.assign(1, 0);
   matrix.row.clear();
   matrix.mark.assign(count, -1);

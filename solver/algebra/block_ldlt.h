@@ -9,23 +9,24 @@
 
 namespace springtower {
 
-inline constexpr std::size_t kNodeSize = 12;                       // freedoms of a node
+inline constexpr std::size_t kNodeSize = 12;                       // degrees of freedom of a node
 inline constexpr std::size_t kNodeMatrix = kNodeSize * kNodeSize;  // floats of a block of the matrix, row by row
 
-/// Where a pair of nodes stands in the matrix: which stored block, and whether the pair's first node is that block's row.
+/// Position of a pair of nodes in the matrix: which stored block, and whether the pair's first node is that block's row.
 struct BlockSlot {
   std::int32_t at = -1;
   bool firstIsRow = true;
 };
 
 /// A symmetric positive definite matrix of 12 x 12 blocks, and its factors A = L D L^T in place (block elimination without
-/// pivoting; George & Liu 1981). In float: it is an approximate inverse whose errors the exact residual sees.
+/// pivoting; George & Liu 1981). In float: it serves as an approximate inverse, and its errors are corrected through the exact
+/// residual.
 struct BlockCholesky {
-  std::vector<std::int32_t> position;     ///< of each node in the order of elimination
-  std::vector<std::int32_t> node;         ///< and back
+  std::vector<std::int32_t> position;     ///< of each node in the elimination order
+  std::vector<std::int32_t> node;         ///< inverse of `position`
   std::vector<std::int32_t> columnStart;  ///< blocks below the diagonal of column j are columnStart[j] .. columnStart[j + 1]
   std::vector<std::int32_t> row;          ///< their rows, ascending
-  std::vector<std::int32_t> targetStart;  ///< per block: where its updates' targets are listed
+  std::vector<std::int32_t> targetStart;  ///< per block: start of the list of targets of its updates
   std::vector<std::int32_t> target;       ///< blocks (>= 0) or diagonals (-1 - row) that elimination updates, in order
   std::size_t products = 0;               ///< of 12 x 12 blocks that a factorisation takes
   AlignedVector<float> diagonal;          ///< [nodes][144]; after factorisation the inverse of D
@@ -37,32 +38,31 @@ struct BlockCholesky {
   [[nodiscard]] std::size_t blockCount() const { return row.size(); }
 };
 
-/// Finds which blocks fill in, and how many products of 12 x 12 blocks a factorisation takes (matrix.products), for nodes in this
-/// order of elimination; the first part of `analyse`. Returns false where these are more than `mostProducts`.
+/// Finds the fill and the number of 12 x 12 block products of a factorisation (matrix.products) for this elimination order; the
+/// first part of `analyse`. Returns false if there are more than `mostProducts`.
 bool findPattern(std::span<const std::int32_t> order, std::span<const BlockPair> edges, std::size_t mostProducts,
                  BlockCholesky& matrix);
 
-/// Lists what each elimination updates and sizes the matrix, for the pattern that `findPattern` found; the second part of
+/// Lists the updates of each elimination and sizes the matrix, for the pattern that `findPattern` found; the second part of
 /// `analyse`.
 void listUpdates(BlockCholesky& matrix);
 
-/// Lays out the matrix for nodes in this order of elimination (a permutation: order[k] is the k-th node) that are coupled by
-/// `edges`, and all blocks that fill in. Returns false, and lays out nothing, where factorising would take more than
-/// `mostProducts` products of 12 x 12 blocks.
+/// Lays out the matrix for an elimination order (a permutation: order[k] is the k-th node) of nodes coupled by `edges`, including
+/// all fill. Returns false, and lays out nothing, if factorising would take more than `mostProducts` products of 12 x 12 blocks.
 bool analyse(std::span<const std::int32_t> order, std::span<const BlockPair> edges, std::size_t mostProducts,
              BlockCholesky& matrix);
 
 /// Whether the layout has a block for each of these pairs of nodes.
 bool holds(const BlockCholesky& matrix, std::span<const BlockPair> edges);
 
-/// The slot of a coupled pair of nodes.
+/// The block of a coupled pair of nodes.
 BlockSlot slotOf(const BlockCholesky& matrix, std::int32_t first, std::int32_t second);
 
 /// Sets all entries to zero.
 void clear(BlockCholesky& matrix);
 
-/// Factorises what `diagonal` (full blocks) and `lower` hold. Precondition: positive definite. Returns false where a pivot is not
-/// positive.
+/// Factorises the matrix in `diagonal` (full blocks) and `lower`. Precondition: positive definite. Returns false where a pivot is
+/// not positive.
 bool factorise(BlockCholesky& matrix);
 
 /// Solves A x = b in place; `values` holds 12 numbers a node, by node.

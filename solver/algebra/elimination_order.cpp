@@ -12,7 +12,7 @@ namespace springtower {
 
 namespace {
 
-// A cut of a sorted set: nodes before `at` that have no neighbour behind it, those that have one, and those behind.
+// A cut of a sorted set at position `at`: nodes before it without a neighbour behind it, the separator, and the nodes behind.
 struct Cut {
   std::size_t at = 0;
   double cost = std::numeric_limits<double>::infinity();
@@ -43,7 +43,7 @@ void sortAlong(Eigen::Index axis, std::span<const Vec3> centre, std::span<std::i
   });
 }
 
-// Fills space.reach for a sorted set whose nodes' places are known.
+// Fills space.reach for a sorted set; precondition: space.place is filled for its nodes.
 void findReach(std::span<const std::int32_t> sorted, DissectionSpace& space) {
   space.reach.resize(sorted.size());
   for (std::size_t i = 0; i < sorted.size(); ++i) {
@@ -55,12 +55,12 @@ void findReach(std::span<const std::int32_t> sorted, DissectionSpace& space) {
   }
 }
 
-// The best cut of a sorted set: a small separator, in the middle if there is a choice.
+// The best cut of a sorted set: a small separator, near the middle among equals.
 Cut bestCut(std::span<const std::int32_t> sorted, DissectionSpace& space) {
   const std::size_t count = sorted.size();
   for (std::size_t i = 0; i < count; ++i) space.place[static_cast<std::size_t>(sorted[i])] = static_cast<std::int32_t>(i);
   findReach(sorted, space);
-  // Node i is in the separators of the cuts behind it up to the farthest neighbour.
+  // Node i is in the separator of every cut behind it up to its farthest neighbour.
   space.change.assign(count + 1, 0);
   for (std::size_t i = 0; i < count; ++i) {
     const auto reach = static_cast<std::size_t>(std::max<std::int32_t>(space.reach[i], 0));
@@ -82,8 +82,7 @@ Cut bestCut(std::span<const std::int32_t> sorted, DissectionSpace& space) {
   return best;
 }
 
-// Orders a set of nodes in place: what lies before the best cut, what lies behind it, and between them, last, what couples the
-// two.
+// Orders a set of nodes in place: those before the best cut, those behind it, and last the separator.
 void dissect(std::span<std::int32_t> nodes, std::span<const Vec3> centre, DissectionSpace& space) {
   if (nodes.size() <= tuning::kMaxUncutNodes) return;
   Cut best;

@@ -9,18 +9,18 @@
 
 namespace springtower {
 
-/// Working space of a dissection; vectors grow and are kept.
+/// Working space of a dissection; its storage is reused.
 struct DissectionSpace {
   std::vector<std::int32_t> neighbourStart;  ///< neighbours of node i are neighbour[neighbourStart[i] .. neighbourStart[i + 1]]
   std::vector<std::int32_t> neighbour;
-  std::vector<std::int32_t> sorted;  ///< a set along an axis
-  std::vector<std::int32_t> best;    ///< and along the axis on which it is cut
+  std::vector<std::int32_t> sorted;  ///< a set, sorted along an axis
+  std::vector<std::int32_t> best;    ///< and along the axis of the best cut
   std::vector<std::int32_t> place;   ///< of each node in `sorted`, -1 outside the set
   std::vector<std::int32_t> reach;   ///< by place: the farthest place of a neighbour
   std::vector<std::int32_t> change;  ///< of the separator's size from cut to cut
 };
 
-/// In which order the nodes of an island's matrix are eliminated.
+/// Elimination order of the nodes of an island's matrix.
 struct EliminationOrder {
   std::vector<std::int32_t> nodes;     ///< nodes[k] is the k-th to be eliminated
   std::vector<Vec3> centre;            ///< m, of each node's block
@@ -30,9 +30,9 @@ struct EliminationOrder {
 /// Fills `order.nodes` from the lowest of order.centre to the highest: in a tower the matrix is then a band three blocks wide.
 void orderBottomUp(EliminationOrder& order);
 
-/// Fills `order.nodes` for nodes at order.centre that are coupled by `edges`, by nested dissection (George 1973): a set is sorted
-/// along each axis and cut where the nodes before the cut that have a neighbour behind it are fewest; these are eliminated last.
-/// The same for any order of edges.
+/// Fills `order.nodes` by nested dissection (George 1973), for nodes at order.centre coupled by `edges`: a set is sorted along
+/// each axis and cut where the fewest nodes before the cut have a neighbour behind it; these form the separator and are
+/// eliminated last. The result does not depend on the order of edges.
 void orderByDissection(std::span<const BlockPair> edges, EliminationOrder& order);
 
 }  // namespace springtower

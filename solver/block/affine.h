@@ -9,10 +9,11 @@
 
 namespace springtower {
 
-// Contacts see a block through its affine part: centre C and the three mean edges E_x, E_y, E_z, 12 of its 24 freedoms. A point
-// with block coordinates xi (each -1/2 .. 1/2) lies at C + sum xi_a E_a, which is the mean of the corners with weights 1/8 + sum
-// s_a xi_a / 4. Forces go back with the same weights, so momentum is kept and what no contact can feel (warped faces) is never
-// excited; and a corner resists with an inverse mass of 10/m instead of 22/m, which lengthens the stable step.
+// Contacts act on a block through its affine part: centre C and the three mean edges E_x, E_y, E_z, 12 of its 24 degrees of
+// freedom. A point with block coordinates xi (each -1/2 .. 1/2) lies at C + sum xi_a E_a, which is the mean of the corners with
+// weights 1/8 + sum s_a xi_a / 4. Forces are distributed with the same weights, so momentum is conserved, and contacts never
+// excite warps of the faces, on which they have no effect. A corner then has an inverse mass of 10/m instead of 22/m, which
+// lengthens the stable step.
 
 /// Affine part of a field on a block's corners: positions (m), velocities (m/s), or, as sums, forces (N): there `centre` is the
 /// total force and `side[a]` the sum of forces times xi_a.
@@ -21,15 +22,15 @@ struct AffineField {
   std::array<std::array<double, 3>, 3> side{};  ///< [axis a][component]
 };
 
-/// Affine part of a block's shape with what contacts ask of it.
+/// Affine part of a block's shape, with the derived vectors that contacts use.
 struct BlockFrame {
   AffineField place;
   std::array<std::array<double, 3>, 3> dual{};    ///< 1/m; xi_a = dual[a] . (x - C)
   std::array<std::array<double, 3>, 3> normal{};  ///< unit; of the faces across axis a, towards its positive side
 };
 
-/// Axes of each face: the one it lies across, its side (-1/2 or 1/2) on it, and the axes of the face's own u and v (see
-/// kFaceCorners).
+/// Axes of each face: the axis it is perpendicular to, its side (-1/2 or 1/2) on that axis, and the axes of the face's own u and
+/// v (see kFaceCorners).
 struct FaceAxes {
   std::size_t across;
   double side;
@@ -45,7 +46,7 @@ AffineField affineField(const ParticleArray& values, std::size_t block);
 /// Frame of one block. Precondition: it is not flat.
 BlockFrame blockFrame(const ParticleArray& position, std::size_t block);
 
-/// The same for many blocks; entries of other blocks stay.
+/// The same for many blocks; entries of other blocks are unchanged.
 void computeFrames(const ParticleArray& position, std::span<const std::int32_t> blocks, std::vector<BlockFrame>& frames);
 void computeMotions(const ParticleArray& velocity, std::span<const std::int32_t> blocks, std::vector<AffineField>& motions);
 

@@ -18,13 +18,13 @@ constexpr InverseMass inverseMass(Inertia inertia) {
   return inertia == Inertia::cuboid ? InverseMass{24.0, 2.0} : InverseMass{8.0, 0.0};
 }
 
-/// Largest inverse mass, times the block's mass, of a point that contacts push: a corner of the block's affine part, whose
-/// weights on the eight corners have the squares' sum 1/2.
+/// Largest inverse mass, times the block's mass, of a point on which contacts act: a corner of the block's affine part, whose
+/// weights on the eight corners have squares that sum to 1/2.
 constexpr double affineCornerInverseMass(Inertia inertia) {
   return 0.5 * inverseMass(inertia).own - inverseMass(inertia).shared;
 }
 
-/// Mass that two blocks have towards each other, kg; that of the upper one on the floor.
+/// Reduced mass of the two blocks, kg; the mass of the upper one on the floor.
 inline double reducedMass(const BlockModel& model, const ManifoldShape& manifold) {
   const double upper = model.mass[static_cast<std::size_t>(manifold.upper)];
   if (manifold.lower < 0) return upper;
@@ -32,8 +32,8 @@ inline double reducedMass(const BlockModel& model, const ManifoldShape& manifold
   return upper * lower / (upper + lower);
 }
 
-/// Inner product p^T M q of two fields on a block's corners, in units of its mass: the mean's part counts fully, what differs
-/// from the mean by 1/own for each corner.
+/// Inner product p^T M q of two fields on a block's corners, in units of its mass: the mean's part has full weight, the deviation
+/// of each corner from the mean 1/own.
 inline double massProduct(Inertia inertia, const ParticleArray& p, const ParticleArray& q, std::size_t block) {
   const InverseMass inverse = inverseMass(inertia);
   double total = 0.0;
@@ -55,8 +55,7 @@ inline double massProduct(Inertia inertia, const ParticleArray& p, const Particl
 }
 
 /// Rigid part of a block's motion: velocity of its centre and angular velocity, from momentum and angular momentum with the
-/// corners' own moments (in either inertia the corners' deviations carry equal mass, so their common factor drops out). The
-/// spread of all corners is the second moment the angular velocity is found from.
+/// corners' own moments (in either inertia the corners' deviations have equal mass, so their common factor drops out).
 struct RigidMotion {
   Vec3 centre;
   Vec3 velocity;
@@ -65,7 +64,7 @@ struct RigidMotion {
 };
 RigidMotion rigidMotion(const MotionState& state, std::size_t block);
 
-/// The turn by a rotation vector (rad).
+/// The rotation by a rotation vector (rad).
 inline Eigen::Quaterniond rotation(const Vec3& angle) {
   const double size = angle.norm();
   if (size == 0.0) return Eigen::Quaterniond::Identity();

@@ -33,8 +33,8 @@ constexpr double sign(std::size_t corner, std::size_t pattern) {
   return product;
 }
 
-// Sums and differences of eight numbers by the bits of their index: result[p] = sum_c chi_p(c) v_c with chi by set bits; a side
-// is -1 where the bit is 0.
+// Sums and differences of eight numbers by the bits of their index: result[p] = sum_c chi_p(c) v_c, with chi the product of the
+// sides of the set bits; a side is -1 where the bit is 0.
 SPRINGTOWER_INLINE void transform(const double* v, double (&t)[kCorners]) {
   const double x0 = v[0] + v[1];
   const double x1 = v[2] + v[3];
@@ -74,9 +74,9 @@ SPRINGTOWER_INLINE void modeForces(const ParticleArray& force, std::size_t block
   }
 }
 
-/// What is missing to Newton's law at an implicit step's end, N, as generalised forces of the eight vectors: the forces less the
-/// mass times rate (1/s2) times how far the corners are from where they end without forces. Of the eight masses that of the
-/// centre alone differs once the vectors' own lengths are taken out, so one transform does.
+/// Residual of Newton's law at an implicit step's end, N, as generalised forces of the eight vectors: the forces minus mass times
+/// rate (1/s2) times the distance of the corners from where they end without forces. Once the lengths of the vectors are divided
+/// out, only the mass of the centre differs from the other seven, so one transform is enough.
 SPRINGTOWER_INLINE void residualForces(const BlockJacobian& jacobian, double rate, const ParticleArray& force,
                                        const ParticleArray& target, const ParticleArray& position, std::size_t block,
                                        ModeVectors& modes) {
@@ -122,8 +122,8 @@ SPRINGTOWER_INLINE void addModes(const ModeVectors& modes, ParticleArray& values
   }
 }
 
-/// The warps of a residual r (N, in the block's frame) eliminated: changes the affine part of `residual` to what S dz = r asks
-/// for.
+/// Eliminates the warps from a residual r (N, in the block's frame): changes the affine part of `residual` to the right-hand side
+/// of S dz = r.
 SPRINGTOWER_INLINE void eliminateWarps(const BlockJacobian& jacobian, ModeVectors& residual) {
   using namespace block_modes;
   for (std::size_t c = 0; c < 3; ++c) {
@@ -133,7 +133,7 @@ SPRINGTOWER_INLINE void eliminateWarps(const BlockJacobian& jacobian, ModeVector
   }
 }
 
-/// The warps' changes (m) once the affine part of `change` is known; `residual` is what eliminateWarps was given.
+/// Changes of the warps (m) for a known affine part of `change`; `residual` is the input of eliminateWarps.
 SPRINGTOWER_INLINE void recoverWarps(const BlockJacobian& jacobian, const ModeVectors& residual, ModeVectors& change) {
   using namespace block_modes;
   for (std::size_t a = 0; a < 3; ++a) {

@@ -30,7 +30,7 @@ SPRINGTOWER_INLINE void pull(const Lanes* p, const Lanes* q, const Lanes* vp, co
   result.z = along * dz;
 }
 
-// Springs inside the lower and upper halves (groups 1, 2, 3): four first corners, their four partners, and the way back.
+// Springs within the lower and upper halves (groups 1, 2, 3): four first corners and their four partners.
 template <int P0, int P1, int P2, int P3, int Q0, int Q1, int Q2, int Q3>
 SPRINGTOWER_INLINE void pullWithinHalves(const Lanes* low, const Lanes* high, const Lanes* vlow, const Lanes* vhigh,
                                          double restLength, double stiffness, double damping, Lanes* first, Lanes* second) {
@@ -112,7 +112,7 @@ SPRINGTOWER_INLINE void blockSprings(const BlockModel& model, const MotionState&
   pullBetweenHalves<1>(low, high, vlow, vhigh, rest(5), stiff(5), damp(5), forceLow, forceHigh);
   pullBetweenHalves<2>(low, high, vlow, vhigh, rest(6), stiff(6), damp(6), forceLow, forceHigh);
   pullBetweenHalves<3>(low, high, vlow, vhigh, rest(7), stiff(7), damp(7), forceLow, forceHigh);
-  // Contacts push each corner with the weight it has in the affine part: 1/8 + sum s_a xi_a / 4.
+  // Contact forces on each corner have its weight in the affine part: 1/8 + sum s_a xi_a / 4.
   for (std::size_t a = 0; a < 3; ++a) {
     const Lanes sideX = {-1.0, 1.0, -1.0, 1.0};
     const Lanes sideY = {-1.0, -1.0, 1.0, 1.0};

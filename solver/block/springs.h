@@ -9,8 +9,8 @@
 namespace springtower {
 
 /// Forces of the 28 springs of each listed block on its corners (report Eq. 4.1 to 4.3: linear in the change of length, and a
-/// dashpot along the spring), on top of what contacts put on the blocks' affine parts, N; `force` of these blocks is overwritten.
-/// Springs go group by group, four at a time.
+/// dashpot along the spring), plus the contact forces on the blocks' affine parts, N; `force` of these blocks is overwritten.
+/// Springs are evaluated group by group, four at a time.
 void springForces(const BlockModel& model, const MotionState& state, std::span<const std::int32_t> blocks,
                   std::span<const AffineField> contactForce, ParticleArray& force);
 

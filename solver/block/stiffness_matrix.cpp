@@ -16,7 +16,7 @@ using namespace block_modes;
 using Full = Eigen::Matrix<double, 24, 24>;
 using Small = Eigen::Matrix<double, 12, 12>;
 
-// The share of vector m in a corner's place.
+// The coefficient of vector m in a corner's position.
 double share(std::size_t corner, std::size_t m) {
   const double half = m >= 1 && m < kAffine ? 0.5 : 1.0;
   return half * sign(corner, kPattern[m]);
@@ -26,7 +26,7 @@ Eigen::Index at(std::size_t vector, std::size_t component) {
   return static_cast<Eigen::Index>(3 * vector + component);
 }
 
-// Place among the twelve warp freedoms.
+// Index among the twelve warp freedoms.
 Eigen::Index warpAt(std::size_t vector, std::size_t component) {
   return at(vector - kAffine, component);
 }
@@ -43,7 +43,7 @@ BlockJacobian blockJacobian(const BlockModel& model, Inertia inertia, std::size_
   }
   BlockJacobian result;
   Full whole = springFactor * (basis.transpose() * springStiffnessMatrix(model, block) * basis);
-  const double corner = model.mass[block] / inverseMass(inertia).own;  // of what differs from the mean
+  const double corner = model.mass[block] / inverseMass(inertia).own;  // mass of a corner's deviation from the mean
   for (std::size_t m = 0; m < kCorners; ++m) {
     result.mass[m] = m == 0 ? model.mass[block] : corner * static_cast<double>(kCorners) * (m < kAffine ? 0.25 : 1.0);
     for (std::size_t a = 0; a < 3; ++a) whole(at(m, a), at(m, a)) += massFactor * result.mass[m];

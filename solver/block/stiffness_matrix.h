@@ -7,10 +7,10 @@
 
 namespace springtower {
 
-// A block's 24 freedoms in the order implicit steps solve them: eight vectors, the transform of the eight corners by the patterns
-// 1, x, y, z, xy, xz, yz, xyz of their sides (Walsh-Hadamard). The first four are the affine part that contacts feel: centre C
-// and mean edges E_x, E_y, E_z; the other four are warps of the faces, which only the block's own springs resist. Corner c lies
-// at C + sum s_a/2 E_a + sum chi_p(c) W_p.
+// A block's 24 degrees of freedom in the order in which implicit steps solve for them: eight vectors, the transform of the eight
+// corners by the patterns 1, x, y, z, xy, xz, yz, xyz of their sides (Walsh-Hadamard). The first four are the affine part on
+// which contacts act: centre C and mean edges E_x, E_y, E_z; the other four are warps of the faces, which only the block's own
+// springs resist. Corner c lies at C + sum s_a/2 E_a + sum chi_p(c) W_p.
 
 inline constexpr std::size_t kAffine = 4;
 inline constexpr std::size_t kAffineFreedoms = 12;
@@ -31,8 +31,8 @@ struct BlockJacobian {
   std::array<std::array<double, 2>, 3> shear{};  ///< [c]: W_xyz along c per E_a along b and per E_b along a (a < b, not c)
 };
 
-/// Computes it. `massFactor` (1/s2) multiplies the mass matrix, `springFactor` the springs' stiffness (1 + damping time over
-/// step).
+/// Computes this matrix. `massFactor` (1/s2) multiplies the mass matrix, `springFactor` the springs' stiffness (1 + damping time
+/// over step).
 BlockJacobian blockJacobian(const BlockModel& model, Inertia inertia, std::size_t block, double massFactor, double springFactor);
 
 }  // namespace springtower

@@ -20,7 +20,7 @@ double gapOf(const BlockPair& pair, const Vec3& direction, const ParticleArray& 
   return *std::min_element(a.z, a.z + kCorners);
 }
 
-// How fast the gap of a pair that is apart closes along what separates it, m/s; and the gap, m.
+// Closing speed of a separated pair along its stored axis, m/s; and the gap, m.
 struct Closing {
   double gap;
   double speed;
@@ -56,8 +56,8 @@ Closing closingOf(const Simulation& simulation, std::size_t at) {
   return {gap, (gap - gapSoon) / soon};
 }
 
-// The same by what separates the blocks best, now and when their corners have moved on for a frame: a direction that stands still
-// closes as blocks turn that lie side by side and go over together.
+// The same along the best separating direction now and at the end of the frame: along a fixed direction, blocks that lie side by
+// side and topple together would appear to close.
 Closing closingOfShapes(const Simulation& simulation, const BlockPair& pair) {
   const auto a = static_cast<std::size_t>(pair.a);
   const auto b = static_cast<std::size_t>(pair.b);
@@ -79,8 +79,8 @@ Closing closingOfShapes(const Simulation& simulation, const BlockPair& pair) {
   return {gap, (gap - gapSoon) / soon};
 }
 
-// The longest way of a corner of a block in the step just found, m, or a little more; the floor and what sleeps go none.
-double wayOf(const IslandStep& step, std::int32_t block) {
+// Upper bound of the displacement of a block's corners in the step just computed, m; 0 for the floor and sleeping blocks.
+double displacementOf(const IslandStep& step, std::int32_t block) {
   if (sleeps(step.simulation, block)) return 0.0;
   const auto b = static_cast<std::size_t>(block);
   double largest = 0.0;
@@ -92,9 +92,9 @@ double wayOf(const IslandStep& step, std::int32_t block) {
   return std::sqrt(3.0) * largest;
 }
 
-// How far a pair may close in the step in which it meets, m: at a quarter of the speed that contacts as stiff as at rest stop
-// within the depth aimed at in an impact.
-double bearableClosing(const IslandStep& step, const BlockPair& pair) {
+// Largest closing of a pair in the step of its first contact, m: at a quarter of the speed that contacts of resting stiffness
+// stop within the target depth of an impact.
+double maxFirstClosing(const IslandStep& step, const BlockPair& pair) {
   const auto& mass = step.simulation.model.mass;
   const double massA = mass[static_cast<std::size_t>(pair.a)];
   const double massB = pair.b < 0 ? 0.0 : mass[static_cast<std::size_t>(pair.b)];
@@ -103,21 +103,21 @@ double bearableClosing(const IslandStep& step, const BlockPair& pair) {
   return tuning::kMaxFirstClosingShare * step.law.impactPenetration_m * std::sqrt(stiffness / reduced) * step.drift_s;
 }
 
-// How a pair that was apart has met in the step just found: by how much its blocks overlap now, m, negative where they do not,
-// and by how much they closed, m. `way`: by how much they may have closed.
-struct Meeting {
+// First contact of a separated pair in the step just computed: overlap at its end, m, negative where there is none, and the
+// distance by which the blocks closed, m. `displacement`: upper bound of that distance.
+struct FirstTouch {
   double overlap = -1.0;
   double closed = 0.0;
 };
 
-Meeting meetingOf(const IslandStep& step, std::size_t at, double way) {
+FirstTouch firstTouchOf(const IslandStep& step, std::size_t at, double displacement) {
   const Engine& engine = step.engine;
   const BlockPair& pair = engine.pairs.key[at];
-  if (travelOf(engine, at) - engine.pairs.travelAtCheck[at] + way < engine.pairs.clearance[at]) return {};
+  if (travelOf(engine, at) - engine.pairs.travelAtCheck[at] + displacement < engine.pairs.clearance[at]) return {};
   const ParticleArray& now = step.simulation.state.position;
   Vec3 direction = pair.b >= 0 ? engine.pairs.axisOf(at) : Vec3(Vec3::UnitZ());
   if (gapOf(pair, direction, now) > 0.0) return {};
-  if (pair.b >= 0) {  // another direction may separate them still
+  if (pair.b >= 0) {  // another direction may still separate them
     direction = findSeparation(cornersOf(engine.memo.previous, static_cast<std::size_t>(pair.a)),
                                cornersOf(engine.memo.previous, static_cast<std::size_t>(pair.b)))
                     .bestNormal();
@@ -126,7 +126,7 @@ Meeting meetingOf(const IslandStep& step, std::size_t at, double way) {
   return {-gap, gapOf(pair, direction, engine.memo.previous) - gap};
 }
 
-// Depth of every point of a manifold with the blocks where these positions have them, m.
+// Depth of every point of a manifold with the blocks at these positions, m.
 std::array<double, kManifoldPoints> depthsAt(const IslandStep& step, const ContactView& manifold, const ParticleArray& position) {
   const AffineField still{};
   const BlockFrame upper = blockFrame(position, static_cast<std::size_t>(manifold.upper));
@@ -134,9 +134,9 @@ std::array<double, kManifoldPoints> depthsAt(const IslandStep& step, const Conta
   return pointForces(manifold, {&upper, &still, &still}, {manifold.lower < 0 ? nullptr : &lower, &still, &still}, step.law).depth;
 }
 
-// Whether a touching pair has met anew in the step just found: points that push only since closed at speed, or the blocks overlap
-// otherwise than their points know by more than `most`. `way`: how far they went together, m.
-bool metAnew(const IslandStep& step, std::size_t at, double way, double most) {
+// Whether a touching pair has an impact in the step just computed: points that first touch in it closed too fast, or the blocks
+// overlap by more than `most` beyond their deepest point. `displacement`: upper bound of their relative displacement, m.
+bool hasImpact(const IslandStep& step, std::size_t at, double displacement, double most) {
   const BlockPair& pair = step.engine.pairs.key[at];
   const ContactView manifold = contactOf(step.engine, at);
   const ContactView trial = trialOf(step.engine, at, manifold);
@@ -147,15 +147,15 @@ bool metAnew(const IslandStep& step, std::size_t at, double way, double most) {
     touches = touches || touchingAt(trial, i) != 0.0;
     begins = begins || (touchingAt(trial, i) != 0.0 && touchingAt(manifold, i) == 0.0);
   }
-  const bool late = pair.b >= 0 && (!touches || way > refreshTravel(step.simulation));
+  const bool late = pair.b >= 0 && (!touches || displacement > refreshTravel(step.simulation));
   if (!begins && !late) return false;
   const ParticleArray& now = step.simulation.state.position;
   const std::array<double, kManifoldPoints> depth = depthsAt(step, manifold, now);
   if (begins) {
     const std::array<double, kManifoldPoints> before = depthsAt(step, manifold, step.engine.memo.previous);
-    const double bearable = bearableClosing(step, pair);
+    const double maxClosing = maxFirstClosing(step, pair);
     for (std::size_t i = 0; i < count; ++i) {
-      if (touchingAt(trial, i) != 0.0 && touchingAt(manifold, i) == 0.0 && depth[i] - before[i] > bearable) return true;
+      if (touchingAt(trial, i) != 0.0 && touchingAt(manifold, i) == 0.0 && depth[i] - before[i] > maxClosing) return true;
     }
   }
   if (!late) return false;
@@ -175,9 +175,9 @@ Vec3 velocityAt(const BlockFrame& frame, const AffineField& motion, const Vec3& 
   return velocity;
 }
 
-// How fast the points of a manifold open or close, the slowest of them, m/s; of those that pushed last, where any did. What is
-// open and opens further has parted, as where the end of a block that is drawn out leaves its support; but what explicit steps
-// brought here rebounds.
+// Smallest opening or closing speed over the points of a manifold, m/s; over those that touched last, if any did. A point that is
+// open and opens further counts as 0: it has parted, as where the end of a drawn block leaves its support. After explicit steps
+// it counts in full, because it may be rebounding.
 double slowestRate(const IslandStep& step, const ContactView& manifold) {
   const MotionState& state = step.simulation.state;
   const auto u = static_cast<std::size_t>(manifold.upper);
@@ -231,7 +231,7 @@ ApproachEstimate estimateApproach(const IslandStep& step) {
     const BlockPair& pair = pairs.key[at];
     const auto a = static_cast<std::size_t>(pair.a);
     const double massA = simulation.model.mass[a];
-    // A block that has been at rest is held; another may be in free fall.
+    // A block that has been at rest is supported; any other may be in free fall.
     bool resting = simulation.restTime_s[a] > 0.0;
     double speed = 0.0;
     double reduced = massA;
@@ -254,7 +254,7 @@ ApproachEstimate estimateApproach(const IslandStep& step) {
     const bool mayMeet = apart && pairs.clearance[at] - (travel - pairs.travelAtCheck[at]) < speed * frame_s;
     if (apart && !mayMeet) continue;
     if (apart || !anyPointTouches(contactOf(step.engine, at))) {
-      for (const std::int32_t block : {pair.a, pair.b}) {  // sleepers may be those of other islands as well, and do not move
+      for (const std::int32_t block : {pair.a, pair.b}) {  // sleeping blocks may belong to other islands as well, and do not move
         if (!sleeps(simulation, block))
           approach.together = std::max(approach.together, ++newContacts[static_cast<std::size_t>(block)]);
       }
@@ -299,30 +299,30 @@ bool meetsSoon(const IslandStep& step, double step_s) {
 FirstContact meetingsIn(IslandStep& step) {
   const double most = tuning::kMaxFirstOverlap * step.simulation.tolerance_m;
   double longest = 0.0;
-  for (const std::int32_t block : step.blocks) longest = std::max(longest, wayOf(step, block));
+  for (const std::int32_t block : step.blocks) longest = std::max(longest, displacementOf(step, block));
   if (2.0 * longest <= most) return FirstContact::none;
   FirstContact found = FirstContact::none;
   PairTable& pairs = step.engine.pairs;
   for (const std::int32_t pair : step.pairs) {
     const auto at = static_cast<std::size_t>(pair);
     const BlockPair& key = pairs.key[at];
-    const double way = wayOf(step, key.a) + wayOf(step, key.b);
-    if (way <= most) continue;
+    const double displacement = displacementOf(step, key.a) + displacementOf(step, key.b);
+    if (displacement <= most) continue;
     if (pairs.touches(at)) {
-      if (metAnew(step, at, way, most)) return FirstContact::impact;
+      if (hasImpact(step, at, displacement, most)) return FirstContact::impact;
       continue;
     }
-    const Meeting meeting = meetingOf(step, at, way);
-    if (meeting.overlap <= 0.0) continue;
-    if (meeting.closed > bearableClosing(step, key)) return FirstContact::impact;
-    if (meeting.overlap <= most) continue;
+    const FirstTouch touch = firstTouchOf(step, at, displacement);
+    if (touch.overlap <= 0.0) continue;
+    if (touch.closed > maxFirstClosing(step, key)) return FirstContact::impact;
+    if (touch.overlap <= most) continue;
     savePair(step.engine, at);
     pairs.travelAtCheck[at] = travelOf(step.engine, at);
     updateSeparated(step, at, step.counters, step.times);
     if (pairs.touches(at)) {
       found = FirstContact::added;
     } else {
-      pairs.clearance[at] = 0.0;  // of where this step ends, which may be solved again
+      pairs.clearance[at] = 0.0;  // belongs to the end of this step, which may be solved again
     }
   }
   return found;

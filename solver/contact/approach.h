@@ -4,35 +4,34 @@
 
 namespace springtower {
 
-/// Speed of a block's fastest corner against a velocity, m/s.
+/// Speed of a block's fastest corner relative to a velocity, m/s.
 double fastestCorner(const ParticleArray& velocity, std::size_t block, const Vec3& against);
 
-/// What may meet in an island during this frame, from the speeds at its begin: the largest over its pairs of each number.
+/// Possible first contacts of an island in this frame, from the speeds at its start: the largest over its pairs of each number.
 struct ApproachEstimate {
-  double speed = 0.0;          ///< m/s at which the blocks of a pair may meet
+  double speed = 0.0;          ///< m/s, closing speed of two near blocks
   double reducedMass = 0.0;    ///< kg
-  double cornerInverse = 0.0;  ///< 1/kg, the inverse mass of two corners against each other
-  bool meeting = false;        ///< whether blocks that are apart may meet at all
-  int together = 0;            ///< most pairs of any one block that may begin to push: hit at once they add up
+  double cornerInverse = 0.0;  ///< 1/kg, sum of the inverse masses of two corners
+  bool meeting = false;        ///< whether separated blocks may touch at all
+  int together = 0;            ///< number of pairs of one block that may make first contact; simultaneous ones add up
 };
 ApproachEstimate estimateApproach(const IslandStep& step);
 
-/// Whether a contact opens or closes as a whole, by more than an implicit step of `step_s` follows: in the midst of a bounce an
-/// implicit step throws a block back with more than it came with.
+/// Whether all active points of any contact open or close faster than an implicit step of `step_s` resolves. An implicit step
+/// across a rebound would return the block with more energy than it had.
 bool bounces(const IslandStep& step, double step_s);
 
-/// Whether blocks of the island that are apart come together within the frame, as they move now, at a speed that an implicit
-/// step of `step_s` does not follow.
+/// Whether separated blocks of the island will touch within the frame at their present velocities, at a closing speed that an
+/// implicit step of `step_s` does not resolve.
 bool meetsSoon(const IslandStep& step, double step_s);
 
-/// What has met in an implicit step: nothing that matters; blocks that have come to overlap as the step knew of no contact
-/// between them; blocks, or points of a contact that did not push, at a speed that takes stiffer contacts than implicit steps
-/// have.
+/// First contacts of an implicit step. none: none that matters. added: blocks without a known contact overlap at its end. impact:
+/// blocks, or points of a contact without force, closed at a speed that requires stiffer contacts than implicit steps have.
 enum class FirstContact { none, added, impact };
 
-/// Looks for meetings in the implicit step just found. What the step began with does not tell: a hand may turn its block round
-/// within one. Blocks that overlap are given their manifolds; the step is then to be solved again with them, from its start.
-/// Precondition: the trial points are those of the step's end.
+/// Looks for first contacts in the implicit step just computed. The start of the step is not sufficient for this: within a step a
+/// hand may change the direction of its block. Overlapping blocks get their manifolds; the step then has to be solved again with
+/// them, from its start. Precondition: the trial points are those of the step's end.
 FirstContact meetingsIn(IslandStep& step);
 
 }  // namespace springtower

@@ -25,7 +25,7 @@ double edgeSlackOf(const Simulation& simulation) {
   return tuning::kEdgeSlack * simulation.lengths.blockHeight_m;
 }
 
-// The overlap of the faces along the normal of one of them: b's if `referenceIsB`, else a's.
+// The overlap of the faces along the normal of one of them: that of b if `referenceIsB`, otherwise of a.
 void faceManifold(const Separation& separation, const CornerView& a, const CornerView& b, const ManifoldLimits& limits,
                   const BlockPair& pair, bool referenceIsB, Manifold& fresh) {
   const CornerView& incidentBlock = referenceIsB ? a : b;
@@ -36,7 +36,7 @@ void faceManifold(const Separation& separation, const CornerView& a, const Corne
                     referenceIsB ? separation.faceOfB : separation.faceOfA, limits, fresh);
 }
 
-// How deep the deepest point of a face manifold lies, m, and how many lie as deep within `slack`.
+// Depth of the deepest point of a face manifold, m, and the number of points within `slack` of it.
 struct Deepest {
   double depth = -std::numeric_limits<double>::infinity();
   int count = 0;
@@ -62,9 +62,9 @@ void edgeManifold(const Separation& separation, const BlockPair& pair, Manifold&
   fresh.count = 1;
 }
 
-// Whether faces touch although edges separate better: at more than a point, which lies as deep as the edges do. A crossing that
-// runs along both edges would be a new point of the outline each time, and sink unresisted. Faces far from parallel touch along
-// a line at most, and then separate as well as the edges.
+// Whether faces touch although edges separate better: at two points or more, as deep as the edges. (The crossing of nearly
+// parallel edges would be another point of the outline at each refresh, and give no resistance to sinking.) Faces far from
+// parallel touch along a line at most, and then must separate as well as the edges.
 bool sharesOutline(const Separation& separation, double face, const CornerView& upper, const CornerView& lower, double slack,
                    const Manifold& fresh) {
   if (fresh.count < 2) return false;
@@ -76,9 +76,9 @@ bool sharesOutline(const Separation& separation, double face, const CornerView& 
          (face > separation.edge - slack && deepest.depth > -separation.edge - slack);
 }
 
-// The faces or edges that touch, given what separates the blocks best. A face that was the reference stays so until the other is
-// clearly better. Faces are preferred to edges that separate better where they touch as well. Where they share nothing the next
-// best direction is taken.
+// The touching faces or edges, from the best separating directions. The reference face changes only if the other is clearly
+// better. Faces are preferred to edges that separate better, if they touch as well. If the outlines do not overlap, the next best
+// direction is taken.
 void chooseManifold(const Separation& separation, const CornerView& a, const CornerView& b, const ManifoldLimits& limits,
                     double slack, double edgeSlack, const BlockPair& pair, const ContactView& old, Manifold& fresh) {
   const bool wasA = old.phase == PairPhase::face && old.lower == pair.a;
@@ -96,11 +96,11 @@ void chooseManifold(const Separation& separation, const CornerView& a, const Cor
   if (fresh.count == 0 && std::isfinite(separation.edge)) edgeManifold(separation, pair, fresh);
 }
 
-// The contact stays the pair's until the frame ends: it may be run again, or the blocks meet again.
-void part(PairTable& pairs, std::size_t at, const Vec3& witness, double margin) {
+// The contact remains the pair's until the frame ends: the frame may be run again, or the blocks may touch again.
+void markSeparated(PairTable& pairs, std::size_t at, const Vec3& axis, double clearance) {
   pairs.phase[at] = PairPhase::separated;
-  pairs.setAxis(at, witness);
-  pairs.clearance[at] = margin;
+  pairs.setAxis(at, axis);
+  pairs.clearance[at] = clearance;
 }
 
 void storeContact(Engine& engine, std::size_t at, const Manifold& manifold) {
@@ -110,8 +110,9 @@ void storeContact(Engine& engine, std::size_t at, const Manifold& manifold) {
   engine.contacts.store(contact, engine.pairs[at], manifold);
 }
 
-// How far a block's corners are from its affine part, m. The separating axes of two blocks are exact for those parts, from which
-// corners and faces both may differ by this: an overlap by them of up to twice both warps may be none of the faces.
+// Largest distance of a block's corners from its affine markSeparated, m. Separating axes are exact for the affine parts, from
+// which both corners and faces may differ by this distance: an apparent overlap of up to twice the sum of both warps may be no
+// overlap of the faces.
 double warp(const ParticleArray& position, std::size_t block) {
   const AffineField field = affineField(position, block);
   double largest = 0.0;
@@ -128,7 +129,7 @@ double warp(const ParticleArray& position, std::size_t block) {
   return std::sqrt(largest);
 }
 
-// Gap up to which blocks touch, m: none, but for those that start apart by no more than rounding.
+// Gap up to which blocks touch, m: zero, except in the first frame, where it is the rounding of the placement.
 double touchingGap(const Simulation& simulation) {
   return simulation.frame == 0 ? simulation.lengths.contactError_m : 0.0;
 }
@@ -146,7 +147,7 @@ void updateSeparatedFloor(IslandStep& step, std::size_t at, Counters& counters) 
     pairs.clearance[at] = gap;
     return;
   }
-  // Against a plane the cubic is linear: a corner that was above it and is not any more has met it in between.
+  // Against a plane the cubic is linear: a corner that was above it and no longer is has crossed it.
   ++counters.cubicTests;
   pairs.clearance[at] = 0.0;
   if (!step.simulation.scene.settings.continuousTests) return;
@@ -161,9 +162,10 @@ void updateSeparatedFloor(IslandStep& step, std::size_t at, Counters& counters) 
   storeContact(step.engine, at, fresh);
 }
 
-// Whether the face nearest to a direction separates the blocks all through a step, turning with one of them; renews the margin.
-bool turnsApart(const Vec3& normal, const MovingBlock& a, const MovingBlock& b, double touching, PairTable& pairs,
-                std::size_t at) {
+// Whether the face nearest to a direction separates the blocks throughout a step, turning with its block; if so, sets the
+// clearance.
+bool isSeparatedByTurningFace(const Vec3& normal, const MovingBlock& a, const MovingBlock& b, double touching, PairTable& pairs,
+                              std::size_t at) {
   const TurningGap turning = gapAlongTurningFace(normal, a, b);
   if (!(turning.least > touching)) return false;
   pairs.setAxis(at, turning.normalAtEnd);
@@ -199,7 +201,7 @@ void updateSeparated(IslandStep& step, std::size_t at, Counters& counters, Stage
   const MovingBlock movingA{cornersOf(step.engine.memo.previous, a), cornersOf(step.simulation.state.position, a)};
   const MovingBlock movingB{cornersOf(step.engine.memo.previous, b), cornersOf(step.simulation.state.position, b)};
 
-  // The margin is the gap at the step's end: along a fixed direction no pair of points can close it with less travel.
+  // The clearance is the gap at the step's end: along a fixed direction no pair of points can close it with less travel.
   const double touching = touchingGap(step.simulation);
   const Vec3 axis = pairs.axisOf(at);
   const double gap = gapAlong(axis, movingA.end, movingB.end);
@@ -207,30 +209,31 @@ void updateSeparated(IslandStep& step, std::size_t at, Counters& counters, Stage
     pairs.clearance[at] = gap;
     return;
   }
-  if (turnsApart(axis, movingA, movingB, touching, pairs, at)) return;
+  if (isSeparatedByTurningFace(axis, movingA, movingB, touching, pairs, at)) return;
   const Separation before = findSeparation(movingA.start, movingB.start);
-  const Vec3& witness = before.bestNormal();
-  const double newGap = gapAlong(witness, movingA.end, movingB.end);
+  const Vec3& bestAxis = before.bestNormal();
+  const double newGap = gapAlong(bestAxis, movingA.end, movingB.end);
   pairs.clearance[at] = std::max(0.0, newGap);
-  pairs.setAxis(at, witness);
+  pairs.setAxis(at, bestAxis);
   if (before.best() > touching && newGap > touching) return;
   const Vec3& face = before.faceA > before.faceB ? before.normalFaceA : before.normalFaceB;
-  if (turnsApart(face, movingA, movingB, touching, pairs, at)) return;
-  // Features that nothing has moved need not share a point where blocks touch: rounding may have put them inside by a bit.
-  const bool laidTogether = step.simulation.frame == 0 && before.best() <= touching;
+  if (isSeparatedByTurningFace(face, movingA, movingB, touching, pairs, at)) return;
+  // In the first frame nothing has moved, and features of touching blocks need not share a point: rounding may have placed them
+  // slightly inside one another.
+  const bool touchesAtStart = step.simulation.frame == 0 && before.best() <= touching;
   bool meet = false;
   if (step.simulation.scene.settings.continuousTests) {
     StageClock clock(times);
-    meet = featuresMeet(movingA, movingB, counters) || laidTogether;
+    meet = featuresMeet(movingA, movingB, counters) || touchesAtStart;
     clock.lap(Stage::cubicTests);
   }
   if (!meet) {
     pairs.clearance[at] = 0.0;
     return;
   }
-  const double unsure =
+  const double overlapError =
       step.simulation.lengths.contactError_m + 2.0 * (warp(step.engine.memo.previous, a) + warp(step.engine.memo.previous, b));
-  if (step.simulation.frame > 0 && before.best() < -unsure) ++counters.contactsBornPenetrating;
+  if (step.simulation.frame > 0 && before.best() < -overlapError) ++counters.contactsBornPenetrating;
   Manifold fresh;
   fresh.kind = step.pointKind;
   chooseManifold(before, movingA.end, movingB.end, limitsOf(step.simulation), 0.0, edgeSlackOf(step.simulation), pair, {}, fresh);
@@ -264,7 +267,7 @@ void refreshManifold(IslandStep& step, std::size_t at, Counters& counters) {
     const CornerView block = cornersOf(position, static_cast<std::size_t>(pair.a));
     const double gap = lowestCorner(block);
     if (gap > partingGap && !anyPointTouches(old)) {
-      part(pairs, at, Vec3::UnitZ(), gap);
+      markSeparated(pairs, at, Vec3::UnitZ(), gap);
       return;
     }
     fresh.upper = pair.a;
@@ -274,13 +277,13 @@ void refreshManifold(IslandStep& step, std::size_t at, Counters& counters) {
     const CornerView b = cornersOf(position, static_cast<std::size_t>(pair.b));
     const Separation separation = findSeparation(a, b);
     if (separation.best() > partingGap && !anyPointTouches(old)) {
-      part(pairs, at, separation.bestNormal(), separation.best());
+      markSeparated(pairs, at, separation.bestNormal(), separation.best());
       return;
     }
     chooseManifold(separation, a, b, limits, tuning::kReferenceFaceSlack * simulation.lengths.blockHeight_m,
                    edgeSlackOf(simulation), pair, old, fresh);
     if (fresh.count == 0) {
-      part(pairs, at, separation.bestNormal(), std::max(0.0, separation.best()));
+      markSeparated(pairs, at, separation.bestNormal(), std::max(0.0, separation.best()));
       return;
     }
   }

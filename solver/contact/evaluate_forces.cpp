@@ -16,7 +16,7 @@ namespace {
 
 using Range = tbb::blocked_range<std::size_t>;
 
-// Runs a kernel over the island's blocks: at once, or in ranges on many threads.
+// Runs a kernel over the island's blocks: in one call, or in ranges on many threads.
 template <class Kernel>
 void overBlocks(const IslandStep& step, bool parallel, const Kernel& kernel) {
   if (!parallel) {
@@ -52,7 +52,7 @@ SPRINGTOWER_INLINE void evaluatePair(IslandStep& step, const Evaluation& evaluat
                  force);
 }
 
-// Returns how many points have been evaluated.
+// Returns the number of points evaluated.
 std::uint64_t contactsInOrder(IslandStep& step, const Evaluation& evaluation) {
   Engine& engine = step.engine;
   const std::vector<std::uint8_t>& asleep = step.simulation.asleep;
@@ -75,7 +75,7 @@ std::uint64_t contactsInOrder(IslandStep& step, const Evaluation& evaluation) {
   return points;
 }
 
-// The same sums in the same order: first all pairs, then each block gathers its own.
+// The same sums in the same order: first all pairs, then each block sums its own.
 std::uint64_t contactsInParallel(IslandStep& step, const Evaluation& evaluation) {
   Engine& engine = step.engine;
   tbb::parallel_for(Range(0, step.activePairs.size(), tuning::kPairGrain), [&](const Range& range) {
@@ -152,7 +152,7 @@ void evaluateForces(IslandStep& step, const MotionState& state, const ParticleAr
     springForces(step.simulation.model, state, blocks, engine.scratch.contactForce, engine.memo.force);
   });
   if (!step.unforced) addUserForces(step);
-  // Implicit steps ask for the forces at their end.
+  // Implicit steps evaluate forces at their end.
   addTether(step, state, step.time_s + (memory == Memory::trial ? advance_s : 0.0));
   clock.lap(Stage::springs);
   step.counters.springEvaluations += kSprings * step.blocks.size();

@@ -7,7 +7,7 @@ namespace springtower {
 
 namespace {
 
-// Depth of every point of a manifold at the blocks' present places, m.
+// Depth of every point of a manifold at the blocks' present positions, m.
 std::array<double, kManifoldPoints> depthsOf(const ContactView& manifold, const BlockFrame& a, const BlockFrame& b, bool upperIsA,
                                              const ContactLaw& law) {
   const AffineField still{};
@@ -28,7 +28,8 @@ double energyOf(const ContactView& manifold, std::size_t point, double elastic, 
   return row.stiffening[laneOf(point)] * (elastic * elastic + law.maxwellRatio * lag * lag);
 }
 
-// Lets points that are new and already below the surface start at one common depth, so that together they store `budget`.
+// Gives all new points that are already below the surface one rest depth (at most their own depth), so that together they store
+// `budget`.
 void shareAmongNew(const std::array<double, kManifoldPoints>& depth, double scale, double budget, const ContactLaw& law,
                    Manifold& fresh) {
   std::array<double, kManifoldPoints> found{};
@@ -40,7 +41,7 @@ void shareAmongNew(const std::array<double, kManifoldPoints>& depth, double scal
     found[at] = depth[i];
   }
   if (count == 0) return;
-  const double target = budget / (scale * (1.0 + law.maxwellRatio));  // sum of (depth - surface)^2 over those below it
+  const double target = budget / (scale * (1.0 + law.maxwellRatio));  // sum of (depth - surface)^2 over points below `surface`
   double surface = 0.0;
   double sum = 0.0;
   double squares = 0.0;
@@ -48,7 +49,7 @@ void shareAmongNew(const std::array<double, kManifoldPoints>& depth, double scal
     sum += found[n - 1];
     squares += found[n - 1] * found[n - 1];
     const auto number = static_cast<double>(n);
-    // n s^2 - 2 sum s + squares = target, the smaller root; the n deepest hold it where the next one lies above that surface.
+    // n s^2 - 2 sum s + squares = target, the smaller root; the n deepest points suffice if the next one lies above that surface.
     const double root = sum * sum - number * (squares - target);
     surface = (sum - std::sqrt(std::max(0.0, root))) / number;
     if (n == count || found[n] <= surface) break;

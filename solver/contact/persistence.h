@@ -6,11 +6,12 @@
 
 namespace springtower {
 
-/// Hands what a pair's old manifold knew to its renewed one. Points that stay where they were (within `radius`, m) and edges that
-/// still cross keep their memory. The normal energy the old points store at `position` is neither raised nor, as far as the new
-/// points reach, lost: kept points that a move of the outline has pressed deeper give some back, and what points stored that are
-/// gone is shared by those that are new, as if they had all been reached at one depth. So a rolling pair that keeps changing its
-/// points neither gains energy nor sinks. Without anything stored a new point starts like any other when it touches.
+/// Transfers the state of a pair's old manifold to its refreshed one. Points that stay in place (within `radius`, m) and edges
+/// that still cross keep their state. The normal energy that the old points store at `position` is not raised and, as far as the
+/// new points allow, not lost: if kept points became deeper by a shift of the outline, their elastic depth is reduced; the energy
+/// of points that are gone is distributed over the new ones, as if all of them had made contact at one depth. So a rolling pair
+/// whose points keep changing neither gains energy nor sinks. If nothing was stored, a new point starts at its first contact like
+/// any other.
 void keepContactMemory(const ContactView& old, const ParticleArray& position, const ContactLaw& law, double radius,
                        Manifold& fresh);
 

@@ -13,7 +13,7 @@ namespace springtower {
 
 namespace {
 
-// A manifold as it stands at the positions now: frames of its blocks, and its points brought up to date on a copy.
+// A manifold at the present positions: frames of its blocks, and a copy of its points advanced to them.
 struct ManifoldNow {
   Manifold manifold;
   PointForces points;
@@ -40,7 +40,7 @@ struct ManifoldNow {
   }
 };
 
-// Stored in a manifold's springs, branches and anchors, J.
+// Energy stored in a manifold's springs, Maxwell branches and friction displacements, J.
 double energyOf(const Simulation& simulation, const ManifoldNow& now, const ContactLaw& law) {
   const ContactView m = now.manifold;
   const double stiffness = m.lower < 0 ? law.floorStiffness_n_m : law.stiffness_n_m;
@@ -63,7 +63,7 @@ double energyOf(const Simulation& simulation, const ManifoldNow& now, const Cont
   return energy;
 }
 
-// Appends what the points of a manifold that push do.
+// Appends the forces of a manifold's active points.
 void addContactForces(const Simulation& simulation, const ContactLaw& law, const ContactView& m,
                       std::vector<ContactForce>& forces) {
   if (m.phase == PairPhase::separated) return;
@@ -144,7 +144,7 @@ Energy energy(const Simulation& simulation) {
   const Vec3 gravity = simulation.scene.gravity.at(simulation.time_s);
   Energy energy;
 
-  // The forces now, for the kinetic energy in the middle of the coming kick.
+  // Forces at the present state, for the kinetic energy in the middle of the coming kick.
   ParticleArray force;
   force.resize(model.blockCount());
   std::vector<AffineField> contactForce(model.blockCount());

@@ -6,7 +6,7 @@ namespace springtower {
 
 namespace {
 
-// Two unit vectors across a normal, from the world axis that is farthest from it.
+// Two unit tangents, from the world axis that is farthest from the normal.
 void chooseTangents(std::array<Vec3, 3>& direction) {
   Eigen::Index axis = 0;
   direction[0].cwiseAbs().minCoeff(&axis);
@@ -19,7 +19,7 @@ std::int32_t bodyOf(const IslandStep& step, std::int32_t block) {
   return step.engine.scratch.nodeOf[static_cast<std::size_t>(block)];
 }
 
-// The points of a manifold as they lie at engine.memo.frames.
+// The points of a manifold at the poses of engine.memo.frames.
 PointForces pointsNow(const IslandStep& step, const ContactView& manifold) {
   static const AffineField still{};
   const auto side = [&](std::int32_t block) {
@@ -28,7 +28,7 @@ PointForces pointsNow(const IslandStep& step, const ContactView& manifold) {
   return pointForces(manifold, side(manifold.upper), side(manifold.lower), step.law);
 }
 
-// What the point did in the step before, to start from.
+// Warm start with the state of the point in the step before.
 void warmStart(const IslandStep& step, const ContactView& manifold, std::size_t i, RigidContact& contact) {
   const Scene& scene = step.simulation.scene;
   contact.coefficient = slipsAt(manifold, i) ? scene.kineticFriction : scene.staticFriction;

@@ -10,28 +10,28 @@
 namespace springtower {
 
 // The manifolds of narrowphase/ as constraints between rigid blocks. Their points store impulses (ImpulseRow), or anchors
-// (AnchorRow) in the position-based method, and are handed from manifold to manifold as those of the penalty methods are.
+// (AnchorRow) in the position-based method, and are matched between manifolds in the same way as points of the penalty methods.
 
-/// What the points of contacts store in the steps of a method.
+/// The kind of state that contact points store in the steps of a method.
 constexpr PointKind pointKindOf(Method method) {
   const MethodTraits traits = traitsOf(method);
   if (traits.anchors) return PointKind::anchor;
   return traits.family == MethodFamily::rigid ? PointKind::impulse : PointKind::penalty;
 }
 
-/// Lists all points of an island's touching manifolds at the places of engine.memo.frames, with arms, gaps, effective masses and
+/// Lists all points of an island's touching manifolds at the poses of engine.memo.frames, with arms, gaps, effective masses and
 /// the impulses of the step before.
 void gatherContacts(IslandStep& step, RigidIsland& island);
 
-/// Puts the impulses of a step back into the manifolds, as forces.
+/// Stores the impulses of a step in the manifolds, as forces.
 void keepForces(IslandStep& step, const RigidIsland& island);
 
-/// The forces that `keepForces` put into a manifold, for reports: normal and friction of each point.
+/// The forces that `keepForces` stored in a manifold, for reports: normal and friction of each point.
 void readForces(const ContactView& manifold, PointForces& points);
 
-/// How deep the springs of a point would be pressed by the normal force that rigid steps remember, m: so deep they leave it where
-/// an island of another method falls, and what is pressed holds its energy. No deeper than the tolerance, as what stands; 0 of
-/// the rigid methods, which have no springs.
+/// Depth to which the springs of a point would be compressed by the normal force of the last rigid step, m. An island in rigid
+/// mode of a penalty method keeps this depth, so that the return to springs changes no energy. At most the tolerance; 0 in the
+/// rigid methods, which have no springs.
 inline double pressedDepth(const Simulation& simulation, const ContactView& manifold, std::size_t point) {
   if (isRigid(simulation.scene.settings.method)) return 0.0;
   const double stiffness = manifold.lower < 0 ? simulation.floorStiffness_n_m : simulation.contactStiffness_n_m;
@@ -69,8 +69,8 @@ inline void applyImpulse(RigidIsland& island, const RigidContact& contact, const
 /// One over the effective mass of a contact along a unit direction, 1/kg.
 double inverseEffectiveMass(const RigidIsland& island, const RigidContact& contact, const Vec3& direction);
 
-/// Bounds the two tangential parts of an impulse by Coulomb's cone: keeps their direction and shortens them to `most`. Returns
-/// whether they were longer.
+/// Bounds the two tangential parts of an impulse by Coulomb's cone: shortens them to the magnitude `most`, keeping their
+/// direction. Returns whether they were longer.
 inline bool boundFriction(double& first, double& second, double most) {
   const double squared = first * first + second * second;
   if (squared <= most * most) return false;
@@ -80,7 +80,7 @@ inline bool boundFriction(double& first, double& second, double most) {
   return true;
 }
 
-/// How far upper has moved against lower at a contact since the step began, m, to first order in the turns.
+/// Displacement of upper relative to lower at a contact since the step began, m, to first order in the rotations.
 inline Vec3 relativeMove(const RigidIsland& island, const RigidContact& contact) {
   Vec3 moved = Vec3::Zero();
   if (contact.upper >= 0) {

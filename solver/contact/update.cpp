@@ -19,10 +19,10 @@ namespace springtower {
 
 namespace {
 
-// How a block moved in a step.
+// Motion of a block in a step.
 struct BlockTravel {
   double path;      // m, of its fastest corner
-  double deformed;  // m2, squares of the corners' moves against their mean, summed
+  double deformed;  // m2, squared displacements of the corners relative to their mean, summed
 };
 
 SPRINGTOWER_INLINE BlockTravel blockTravel(const ParticleArray& now, const ParticleArray& before, std::size_t b) {
@@ -44,7 +44,7 @@ SPRINGTOWER_INLINE BlockTravel blockTravel(const ParticleArray& now, const Parti
   return {std::sqrt(std::max(std::max(most[0], most[1]), std::max(most[2], most[3]))), sum(deformed)};
 }
 
-// A path longer than its box reaches need not lead out of it.
+// A path longer than the margin of the box does not necessarily lead out of it.
 bool isInSweptBox(const IslandStep& step, std::size_t block) {
   const SweptBoxes& boxes = step.engine.memo.boxes;
   for (std::size_t a = 0; a < 3; ++a) {
@@ -55,9 +55,10 @@ bool isInSweptBox(const IslandStep& step, std::size_t block) {
   return true;
 }
 
-// Adds up the path of each block's fastest corner; `inside` tells whether all are in their swept boxes. A block whose corners
-// move apart by half its least side in one step has diverged: free flight is as fast as it likes, but nothing sound deforms like
-// that. NaN fails every comparison, so what is sound is asked for. Returns the first block that has diverged, or -1.
+// Adds the path of each block's fastest corner; `inside` is set to whether all blocks are in their swept boxes. A block has
+// diverged when its corners move relative to one another by half its least side in one step; free flight may have any speed. The
+// condition is written so that NaN, which fails every comparison, counts as diverged. Returns the first block that has diverged,
+// or -1.
 SPRINGTOWER_KERNEL
 std::int32_t addPaths(IslandStep& step, bool& inside) {
   inside = true;
@@ -95,7 +96,7 @@ bool addTravel(IslandStep& step) {
 
 namespace {
 
-// The lanes of a row past its points are zeros.
+// Lanes beyond the last point are zero.
 SPRINGTOWER_INLINE int nonZeros(const FourValues& values) {
   return (values[0] != 0.0 ? 1 : 0) + (values[1] != 0.0 ? 1 : 0) + (values[2] != 0.0 ? 1 : 0) + (values[3] != 0.0 ? 1 : 0);
 }
@@ -107,22 +108,22 @@ bool slides(const ContactView& manifold) {
   return false;
 }
 
-// Whether blocks touch at a corner or along a line only, where one rolls on the other.
+// Whether blocks touch only at a corner or along a line, so that one may roll on the other.
 bool rolls(const ContactView& manifold) {
   int touching = 0;
   for (std::size_t r = 0; r < rowsFor(manifold.count); ++r) touching += nonZeros(manifold.points[r]->penalty.touching);
   return touching == 1 || touching == 2;
 }
 
-// Path after which a pair's manifold is renewed, m.
-double renewalTravel(const ContactView& manifold, const RefreshTravel& travel) {
+// Travel after which a pair's manifold is refreshed, m.
+double refreshTravelOf(const ContactView& manifold, const RefreshTravel& travel) {
   if (slides(manifold)) return travel.sliding_m;
   return rolls(manifold) ? travel.rolling_m : travel.resting_m;
 }
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
-// How one block of a pair lies to the other: b's centre and sides along a's edges, or a's own where b is the floor, m.
+// Relative pose of a pair: b's centre and sides along a's edges; if b is the floor, a's centre and sides in world axes, m.
 RelativePose poseOf(const IslandStep& step, const BlockPair& pair) {
   const auto a = static_cast<std::size_t>(pair.a);
   const BlockFrame& frame = step.engine.memo.frames[a];
@@ -148,7 +149,7 @@ RelativePose poseOf(const IslandStep& step, const BlockPair& pair) {
   return pose;
 }
 
-// How far a point of one block can have moved against the other between two poses, m.
+// Upper bound of the relative displacement of two blocks' points between two poses, m.
 double movedBetween(const RelativePose& before, const RelativePose& now) {
   double moved = 0.0;
   for (std::size_t i = 0; i < 4; ++i) {
@@ -162,9 +163,9 @@ double movedBetween(const RelativePose& before, const RelativePose& now) {
   return moved;
 }
 
-// Whether the blocks of a pair lie to one another much as when their manifold was renewed: those that go over together travel
-// far.
-bool hasStayed(IslandStep& step, std::size_t at, double travel, double most) {
+// Whether the relative pose of a pair has hardly changed since its manifold was refreshed: blocks that topple together have a
+// long travel without that.
+bool isPoseUnchanged(IslandStep& step, std::size_t at, double travel, double most) {
   PairTable& pairs = step.engine.pairs;
   RelativePose& known = step.engine.contacts.pose(pairs.contact[at]);
   const RelativePose pose = poseOf(step, pairs.key[at]);
@@ -177,22 +178,23 @@ bool hasStayed(IslandStep& step, std::size_t at, double travel, double most) {
   return false;
 }
 
-// A manifold that is made otherwise than by a renewal in rigid steps is renewed by the next of these that looks at it.
-void forgetPose(Engine& engine, std::size_t at) {
+// A manifold created otherwise than by a refresh in rigid steps is refreshed at the next check in such steps.
+void clearPose(Engine& engine, std::size_t at) {
   if (engine.pairs.contact[at] >= 0) engine.contacts.pose(engine.pairs.contact[at]) = RelativePose{};
 }
 
-// Whether a pair may have to be looked at: it has used up its margin, or all the path after which any manifold is renewed.
-SPRINGTOWER_INLINE bool isDue(const Engine& engine, std::size_t at, double leastRenewal) {
+// Whether a pair may need a check: its travel has used up the clearance, or the least travel after which any manifold is
+// refreshed.
+SPRINGTOWER_INLINE bool isDue(const Engine& engine, std::size_t at, double leastRefresh) {
   const double used = travelOf(engine, at) - engine.pairs.travelAtCheck[at];
-  return engine.pairs.touches(at) ? used > leastRenewal : !(used < engine.pairs.clearance[at]);
+  return engine.pairs.touches(at) ? used > leastRefresh : !(used < engine.pairs.clearance[at]);
 }
 
-double leastRenewalOf(const RefreshTravel& renewal) {
+double minRefreshTravel(const RefreshTravel& renewal) {
   return std::min({renewal.resting_m, renewal.sliding_m, renewal.rolling_m});
 }
 
-// Looks at a pair that is due.
+// Updates a pair that is due.
 void updatePair(IslandStep& step, std::size_t at, const RefreshTravel& renewal, Counters& counters, StageTimes& times) {
   PairTable& pairs = step.engine.pairs;
   const double travel = travelOf(step.engine, at);
@@ -201,21 +203,21 @@ void updatePair(IslandStep& step, std::size_t at, const RefreshTravel& renewal, 
     savePair(step.engine, at);
     pairs.travelAtCheck[at] = travel;
     updateSeparated(step, at, counters, times);
-    forgetPose(step.engine, at);
+    clearPose(step.engine, at);
     return;
   }
-  const double most = renewalTravel(contactOf(step.engine, at), renewal);
+  const double most = refreshTravelOf(contactOf(step.engine, at), renewal);
   if (!(travel - pairs.travelAtCheck[at] > most)) return;
   savePair(step.engine, at);
-  if (step.pointKind != PointKind::penalty && hasStayed(step, at, travel, most)) return;
-  if (step.pointKind == PointKind::penalty) forgetPose(step.engine, at);
+  if (step.pointKind != PointKind::penalty && isPoseUnchanged(step, at, travel, most)) return;
+  if (step.pointKind == PointKind::penalty) clearPose(step.engine, at);
   pairs.travelAtCheck[at] = travel;
   refreshManifold(step, at, counters);
 }
 
-// Lists the pairs that touch, and those that may use up their margin in the steps to come unless a block becomes faster than is
-// foreseen here.
-void listWatched(IslandStep& step) {
+// Lists the pairs that touch, and those that may use up their clearance in the coming steps. The list becomes invalid when a
+// block exceeds the path that is assumed here.
+void listActivePairs(IslandStep& step) {
   Engine& engine = step.engine;
   const double falling_m = tuning::kActiveListSteps * step.simulation.scene.gravity.magnitude * step.drift_s * step.drift_s;
   for (const std::int32_t block : step.blocks) {
@@ -262,12 +264,12 @@ void recomputeClearances(IslandStep& step) {
     pairs.travelAtCheck[at] = pairs.touches(at) ? -kNever : travel;
     if (!pairs.touches(at)) pairs.clearance[at] = marginNow(step.simulation, at);
   }
-  if (step.activeListSteps > 0) --step.activeListSteps;  // from where the step began it is farther to where the list was made for
+  if (step.activeListSteps > 0) --step.activeListSteps;  // the start is one step away from the pose of the list
 }
 
 void refreshContacts(IslandStep& step, const RefreshTravel& renewal) {
   StageClock clock(step.times);
-  const double least = leastRenewalOf(renewal);
+  const double least = minRefreshTravel(renewal);
   for (const std::int32_t pair : step.activePairs) {
     const auto at = static_cast<std::size_t>(pair);
     if (step.engine.pairs.touches(at) && isDue(step.engine, at, least)) updatePair(step, at, renewal, step.counters, step.times);
@@ -284,15 +286,15 @@ bool updateContacts(IslandStep& step, const RefreshTravel& renewal) {
   const bool inside = addTravel(step);
   const bool list = step.usesActiveList && step.activeListSteps == 0;
   if (step.activeListSteps == 0) step.activePairs = step.pairs;
-  const double least = leastRenewalOf(renewal);
+  const double least = minRefreshTravel(renewal);
   if (step.blocks.size() < tuning::kParallelBlocks) {
     for (const std::int32_t pair : step.activePairs) {
       const auto at = static_cast<std::size_t>(pair);
       if (isDue(step.engine, at, least)) updatePair(step, at, renewal, step.counters, step.times);
     }
-    if (list) listWatched(step);
+    if (list) listActivePairs(step);
     clock.lap(Stage::candidates);
-    candidates_s -= cubicTests_s - cubicBefore_s;  // they were timed inside
+    candidates_s -= cubicTests_s - cubicBefore_s;  // timed within the candidates
     return inside;
   }
 
@@ -317,8 +319,8 @@ bool updateContacts(IslandStep& step, const RefreshTravel& renewal) {
     step.counters += counted[chunk];
     sum += timed[chunk];
   }
-  if (list) listWatched(step);
-  // On many threads the cubic tests take their share of the time that passed.
+  if (list) listActivePairs(step);
+  // On many threads the cubic tests get their share of the elapsed time.
   const double before_s = candidates_s;
   clock.lap(Stage::candidates);
   const double all_s = sum.seconds[static_cast<std::size_t>(Stage::candidates)];

@@ -10,9 +10,9 @@
 
 namespace springtower {
 
-// Report Eq. 4.4: the new velocity moves the position. Seen as leapfrog its velocities live half a step before its positions, so
-// where the step changes the kick takes the mean of the two (Hairer, Lubich & Wanner 2003); with a constant step this is Eq. 4.4
-// as printed, but for the very first step, which kicks half.
+// Report Eq. 4.4: the new velocity moves the position. Seen as a leapfrog, velocities belong to a time half a step before the
+// positions, so where the step changes the kick takes the mean of the two steps (Hairer, Lubich & Wanner 2003); with a constant
+// step this is Eq. 4.4 as printed, except for the first step, which kicks by half.
 void stepSemiImplicitEuler(IslandStep& step) {
   Simulation& simulation = step.simulation;
   MotionState& state = simulation.state;

@@ -12,7 +12,7 @@ namespace springtower {
 
 namespace {
 
-// A point's weights on a block's affine part, in its mass metric: the centre carries m, each side m/12 for a cuboid and m/4 for
+// A point's weights on a block's affine part, in its mass metric: the centre has mass m, each side m/12 for a cuboid and m/4 for
 // eight lumps (8 corners of m/own, half a side away).
 Eigen::Vector4d affineWeights(const std::array<double, 3>& place, Inertia inertia, double mass) {
   const double side = std::sqrt(0.5 * inverseMass(inertia).own);
@@ -34,7 +34,7 @@ void addManifold(Simulation& simulation, const ContactView& m) {
   const auto lower = static_cast<std::size_t>(std::max(m.lower, 0));
   const bool moveUpper = simulation.asleep[upper] == 0;
   const bool moveLower = m.lower >= 0 && simulation.asleep[lower] == 0;
-  const double share = moveUpper && moveLower ? 1.0 : 0.5;  // against what cannot move there is no factor of two
+  const double share = moveUpper && moveLower ? 1.0 : 0.5;  // the factor of two does not apply against what cannot move
   const double stiffness = (m.lower < 0 ? simulation.floorStiffness_n_m : simulation.contactStiffness_n_m) *
                            std::max(1.0 + settings.viscoelasticRatio, settings.tangentialRatio) * share;
   const auto add = [&](std::size_t block, const std::array<double, 3>& place, double k) {
@@ -84,7 +84,7 @@ double spectralBound(Simulation& simulation, std::span<const std::int32_t> block
   for (const std::int32_t block : blocks) {
     const auto b = static_cast<std::size_t>(block);
     springs = std::max(springs, engine.springRadius[b]);
-    // The trace is a bound as well and often settles that a block is not the largest.
+    // The trace is an upper bound as well, and often shows that a block is not the largest.
     if (engine.scratch.contactMetric[b].trace() <= contacts) continue;
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> solver(engine.scratch.contactMetric[b], Eigen::EigenvaluesOnly);
     contacts = std::max(contacts, solver.eigenvalues()[3]);
@@ -95,7 +95,7 @@ double spectralBound(Simulation& simulation, std::span<const std::int32_t> block
 double blockSpectralRadius(const BlockModel& model, Inertia inertia, std::size_t block) {
   using Matrix24 = Eigen::Matrix<double, 24, 24>;
   const InverseMass inverse = inverseMass(inertia);
-  // M^-1/2: one factor for the mean of a component, another for what differs from it.
+  // M^-1/2: one factor for the mean of a component, another for the deviation from it.
   const double mass = model.mass[block];
   const double mean = std::sqrt((inverse.own - 8.0 * inverse.shared) / mass);
   const double own = std::sqrt(inverse.own / mass);

@@ -10,8 +10,8 @@
 namespace springtower {
 namespace {
 
-// The most that a block differs in its velocity from all of them on average, or that it goes down, m/s: with that it will meet
-// others or the floor. A block alone that slides meets nothing.
+// Upper bound of the speed at which blocks may collide, m/s: the largest difference of a block's velocity from the mean of all,
+// or its downward speed. A single block that slides collides with nothing.
 double meetingSpeed(const Scene& scene) {
   Vec3 mean = Vec3::Zero();
   for (const BlockSpec& block : scene.blocks) mean += block.velocity / static_cast<double>(scene.blocks.size());
@@ -43,7 +43,7 @@ Settings chooseMethod(const Scene& scene) {
   }
   settings.method = Method::rigidPgs;
   if (settings.substeps == 0) {
-    // Without gravity nothing sinks; hits are then taken as finely as on Earth.
+    // Without gravity there is no sag; impacts are then resolved as finely as on Earth.
     const double pull = gravity > 0.0 ? gravity : kStandardGravity_m_s2;
     const double step_s = std::sqrt(tolerance_m / (tuning::kRigidSagPerLayer * pull * std::max(1, loads.layers)));
     settings.substeps = static_cast<int>(std::ceil(settings.frame_s / step_s));

@@ -21,7 +21,7 @@ namespace springtower {
 
 namespace {
 
-// What the hand's springs and dashpots add to the squared frequencies (1/s2) and damping rates (1/s) of an island.
+// Contribution of the hand's springs and dashpots to the squared frequencies (1/s2) and damping rates (1/s) of an island.
 struct TetherRates {
   double stiffness = 0.0;
   double damping = 0.0;
@@ -36,13 +36,13 @@ TetherRates tetherRates(const IslandStep& step) {
           std::max(tether.damping_n_s_m, own * tether.cornerDamping_n_s_m) / mass};
 }
 
-// By how much a further damping rate shortens the step that dt^2 K + 2 dt C < 4 allows.
+// Factor by which an additional damping rate shortens the step that dt^2 K + 2 dt C < 4 allows.
 double shortening(double radius, double dampingTime_s, double damping) {
   const auto longest = [&](double rate) { return std::sqrt(rate * rate + 4.0 * radius) - rate; };
   return longest(dampingTime_s * radius + damping) / longest(dampingTime_s * radius);
 }
 
-// Chooses the number of steps of an island for this frame, and how stiff contacts born in it may be.
+// Chooses the number of steps of an island for this frame, and the largest stiffening of contacts made in it.
 int chooseSubsteps(IslandStep& step) {
   Simulation& simulation = step.simulation;
   const Settings& settings = simulation.scene.settings;
@@ -55,15 +55,17 @@ int chooseSubsteps(IslandStep& step) {
   }
   const double standing = record.spectralRadius;
   const double stiffness = simulation.contactStiffness_n_m * (1.0 + settings.viscoelasticRatio);
-  const ApproachEstimate approach = isReport ? ApproachEstimate{} : estimateApproach(step);  // its contacts have no stiffness
+  const ApproachEstimate approach =
+      isReport ? ApproachEstimate{} : estimateApproach(step);  // contacts of method `report` have no stiffness
   const double depth = impactDepth_m(settings, simulation.tolerance_m, simulation.lengths.blockHeight_m);
   const double wanted =
       approach.reducedMass * approach.speed * approach.speed / (depth * depth * simulation.contactStiffness_n_m);
-  const double born = 2.0 * stiffness * approach.cornerInverse;  // what one new contact at rest stiffness adds
-  // Pairs of a block that are hit at once add up: all of them may be as stiff as at rest, or one as the impact wants it.
+  const double born = 2.0 * stiffness * approach.cornerInverse;  // contribution of one new contact of resting stiffness
+  // Simultaneous contacts of a block add up: the step is stable either for all of them at resting stiffness, or for one with the
+  // stiffening of the impact.
   const double together = std::max(1, approach.together);
 
-  double allowed = 0.0;  // largest eigenvalue the step bears
+  double allowed = 0.0;  // largest stable eigenvalue of the chosen step
   int substeps = simulation.fixedSubsteps;
   if (substeps > 0) {
     allowed = stableSpectralRadius(settings.method, settings.frame_s / substeps, simulation.dampingTime_s, settings.stepMargin);

@@ -16,14 +16,14 @@ namespace springtower {
 
 namespace {
 
-// How an island moves on the whole.
+// Motion of an island as a whole.
 struct Motion {
   double mass_kg = 0.0;
   double twiceKinetic_j = 0.0;  // of the blocks' centres
   double height_m = 0.0;
   double fallTime_s = 0.0;  // sqrt(h / g)
 
-  // Whether the root of the mean squared speed, by mass, is above this one, in sqrt(g h).
+  // Whether the root mean square speed, weighted by mass, is above this one, in sqrt(g h).
   [[nodiscard]] bool isFasterThan(double speed) const {
     const double least = speed * height_m / fallTime_s;
     return twiceKinetic_j > mass_kg * least * least;
@@ -47,7 +47,7 @@ bool isLeftAlone(const IslandStep& step) {
   return step.blocks.size() < tuning::kParallelBlocks && !holdsTether(step) && !isPushed(step);
 }
 
-// What a point's springs do becomes the force that its impulses start from.
+// Converts the spring forces of a manifold's points to initial impulses.
 void penaltyToImpulse(const IslandStep& step, std::int32_t contact, const ContactView& manifold) {
   const PointForces points = forcesNow(step.simulation, manifold);
   const PointRows rows = step.engine.contacts.points(contact);
@@ -63,7 +63,7 @@ void penaltyToImpulse(const IslandStep& step, std::int32_t contact, const Contac
   step.engine.contacts.shape(contact).kind = PointKind::impulse;
 }
 
-// The other way round: springs that push as the impulses did last.
+// The inverse: springs with the forces of the last impulses.
 void impulseToPenalty(const IslandStep& step, std::int32_t contact, const ContactView& manifold) {
   const PointForces points = forcesNow(step.simulation, manifold);
   const double stiffness = manifold.lower < 0 ? step.law.floorStiffness_n_m : step.law.stiffness_n_m;
@@ -96,7 +96,7 @@ IslandFacts islandFacts(const IslandStep& step) {
   IslandFacts facts;
   facts.blocks = step.blocks.size();
   facts.leftAlone = isLeftAlone(step);
-  if (!facts.leftAlone) return facts;  // nothing else counts then
+  if (!facts.leftAlone) return facts;  // the other facts are not needed then
   const IslandHistory before = mergedHistory(step.engine.memo.islandHistory, step.blocks);
   facts.rigidBefore = before.rigid;
   facts.rigidPinned = before.explicitFrames > 0;
@@ -136,7 +136,7 @@ void setMode(IslandStep& step, IslandMode mode) {
   const bool all = std::all_of(step.blocks.begin(), step.blocks.end(),
                                [&](std::int32_t block) { return history[static_cast<std::size_t>(block)].rigid; });
   if (falling && all) {
-    forEachContact(PointKind::penalty, penaltyToImpulse);  // of blocks that slept while a neighbour went back to springs
+    forEachContact(PointKind::penalty, penaltyToImpulse);  // of blocks that slept while a neighbour returned to springs
     return;
   }
   forEachContact(PointKind::impulse, impulseToPenalty);

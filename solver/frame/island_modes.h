@@ -7,26 +7,26 @@
 
 namespace springtower {
 
-// An island that falls: its blocks tumble and hit one another, and what a spring stores of that is lost in the next impact
-// anyway. Rigid steps with sequential impulses carry it, in the shape that its blocks have, until it is slow.
+// Rigid mode: an island whose blocks fall and collide is stepped as rigid bodies with sequential impulses, in the present shape
+// of its blocks, until it is slow. The energy that springs would store is dissipated in the next impact anyway.
 
-/// Whether an island of so many blocks may fall: one block that is thrown, or two that meet, rebound, and the steps of very many
-/// run on many threads.
+/// Whether an island of so many blocks may change to rigid mode: one thrown block or two colliding ones rebound, and islands of
+/// very many blocks run on many threads.
 bool mayFall(std::size_t blocks);
 
-/// What carries an island through a frame, or through what is left of one.
+/// The kind of steps that advances an island through a frame, or through the rest of one.
 enum class IslandMode : std::uint8_t { implicit, rigid, explicitFallback };
 
 /// When that is decided.
 enum class ModeChange : std::uint8_t { frameBegins, implicitGaveUp };
 
-/// What it depends on, as the frame begins.
+/// Inputs of that decision, as the frame begins.
 struct IslandFacts {
   std::size_t blocks = 0;
-  bool leftAlone = false;     ///< neither a hand nor a user's force acts, and its steps do not run on many threads
-  bool rigidBefore = false;   ///< rigid steps carried one of its blocks in the last frame
-  bool rigidPinned = false;   ///< they are to carry it for some frames more, as implicit ones failed
-  bool mostlyFallen = false;  ///< most of its blocks have fallen since they slept last
+  bool leftAlone = false;     ///< neither a hand nor a user force acts, and its steps do not run on many threads
+  bool rigidBefore = false;   ///< rigid steps advanced one of its blocks in the last frame
+  bool rigidPinned = false;   ///< rigid steps are to continue for some frames, because implicit ones failed
+  bool mostlyFallen = false;  ///< more than half of its blocks have fallen since they slept last
   bool fast = false;    ///< root mean square speed, by mass, above 0.45 sqrt(g h): blocks could rise by a tenth of their height
   bool moving = false;  ///< above 0.05 sqrt(g h)
 };
@@ -38,11 +38,11 @@ IslandFacts islandFacts(const IslandStep& step);
 ///   implicit gave up (steps do not fit or do not converge): rigid if left alone and mostly fallen, else explicit fallback.
 IslandMode nextMode(ModeChange when, const IslandFacts& facts);
 
-/// The only place where an island's mode is set: contacts change hands between springs and impulses, and its blocks' histories
-/// note whether rigid steps carry them. Forces stay as they are, and so does the depth where they hold.
+/// The only place where an island's mode is set: converts its contacts between springs and impulses, and notes in its blocks'
+/// histories whether rigid steps advance them. Contact forces are unchanged, and so is the depth at which they act.
 void setMode(IslandStep& step, IslandMode mode);
 
-/// Carries an island that falls through the frame from `begin_s` on. As `runRigidSteps`.
+/// Advances an island in rigid mode through the frame from `begin_s` on. Result as of `runRigidSteps`.
 IslandOutcome runFall(IslandStep& step, double begin_s);
 
 }  // namespace springtower

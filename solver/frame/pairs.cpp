@@ -10,13 +10,12 @@ namespace springtower {
 
 namespace {
 
-// Whether a pair met before is kept though the sweep did not report it: nothing moves in it.
+// Whether a pair is kept although the sweep did not report it: both blocks sleep.
 bool dormant(const Simulation& simulation, const BlockPair& pair) {
   return sleeps(simulation, pair.a) && sleeps(simulation, pair.b);
 }
 
-// Lets go of a pair that the sweep has dropped. A sleeping block whose awake neighbour has gone must be checked for whether it
-// still stands.
+// Handles a pair that the sweep has dropped. If one of its blocks sleeps with a load from the other, that block has to be woken.
 void dropPair(Simulation& simulation, std::size_t at) {
   Engine& engine = *simulation.engine;
   const BlockPair pair = engine.pairs.key[at];
@@ -27,7 +26,7 @@ void dropPair(Simulation& simulation, std::size_t at) {
   if (engine.pairs.contact[at] >= 0) engine.contacts.giveBack(engine.pairs.contact[at]);
 }
 
-// Calls with each pair that the sweep has found, by (a, b), the floor as b = -1.
+// Calls `visit` with each pair that the sweep has found, by (a, b), the floor as b = -1.
 template <class Visit>
 void forEachSwept(const Simulation& simulation, const Visit& visit) {
   const Engine& engine = *simulation.engine;
@@ -40,7 +39,8 @@ void forEachSwept(const Simulation& simulation, const Visit& visit) {
   }
 }
 
-// Gives back contacts of pairs that have parted, but where a sleeper is yet to be compared with what it fell asleep on.
+// Returns contacts of separated pairs to the pool, except where a sleeping block's load is still to be compared with that when it
+// fell asleep.
 void releaseContacts(Simulation& simulation) {
   Engine& engine = *simulation.engine;
   for (std::size_t at = 0; at < engine.pairs.size(); ++at) {
@@ -54,7 +54,7 @@ void releaseContacts(Simulation& simulation) {
   }
 }
 
-// Rearranges a column of the pair table: what was known of each pair, or a first value.
+// Rearranges a column of the pair table: the previous value of each pair, or `first`.
 template <class T>
 void rearrange(const std::vector<std::int32_t>& from, T first, std::vector<std::byte>& space, std::vector<T>& column) {
   space.resize(from.size() * sizeof(T));
@@ -66,8 +66,8 @@ void rearrange(const std::vector<std::int32_t>& from, T first, std::vector<std::
   if (!column.empty()) std::memcpy(column.data(), space.data(), space.size());
 }
 
-// Brings engine.pairs to what the sweep has found, taking over what was known of each. Returns whether any came or went, or is
-// kept without being found.
+// Updates engine.pairs from the sweep, keeping the values of known pairs. Returns whether pairs were added or removed, or are
+// kept without having been found.
 bool mergePairs(Simulation& simulation) {
   Engine& engine = *simulation.engine;
   PairTable& pairs = engine.pairs;
@@ -104,11 +104,11 @@ bool mergePairs(Simulation& simulation) {
   rearrange(from, 0.0, engine.scratch.mergedColumn, pairs.clearance);
   rearrange(from, 0.0, engine.scratch.mergedColumn, pairs.travelAtCheck);
   for (std::size_t k = 0; k < 3; ++k) rearrange(from, k == 2 ? 1.0 : 0.0, engine.scratch.mergedColumn, pairs.axis[k]);
-  keys.reserve(pairs.key.capacity());  // the two change places: as large as one has grown, the other will be
+  keys.reserve(pairs.key.capacity());  // the two are swapped, so both need the larger capacity
   return true;
 }
 
-// The island a pair moves with: that of whichever block is awake.
+// The island that a pair belongs to: that of its awake block.
 std::int32_t islandOf(const Engine& engine, const BlockPair& pair) {
   const std::int32_t island = engine.memo.islands.islandOf[static_cast<std::size_t>(pair.a)];
   return island >= 0 || pair.b < 0 ? island : engine.memo.islands.islandOf[static_cast<std::size_t>(pair.b)];
@@ -181,7 +181,7 @@ void findNearPairs(Simulation& simulation, double margin_m) {
   engine.memo.topologyChanged =
       updateIslands(engine.memo.islands, engine.memo.sweptPairs, simulation.asleep) || engine.memo.topologyChanged;
   if (engine.memo.topologyChanged) listIslandPairs(simulation);
-  engine.scratch.watchedPairs.resize(engine.memo.islandPairs.size());  // also where a snapshot has brought other lists
+  engine.scratch.watchedPairs.resize(engine.memo.islandPairs.size());  // also where a snapshot has restored other lists
 }
 
 }  // namespace springtower

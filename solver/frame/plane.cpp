@@ -3,7 +3,7 @@
 namespace springtower {
 namespace {
 
-// Of two corners that are each other's mirror image.
+// Makes two corners mirror images of each other.
 void mirror(ParticleArray& values, std::size_t block, std::size_t corner, std::size_t image) {
   const Vec3 one = values.at(block, corner);
   const Vec3 other = values.at(block, image);

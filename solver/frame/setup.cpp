@@ -35,8 +35,8 @@ void placeBlock(const BlockSpec& spec, std::size_t b, Simulation& simulation) {
   }
 }
 
-// Largest eigenvalue of M^-1 K, 1/s2, that any contact set of this scene is expected to reach with a stiffness: the stiffest
-// block's springs, and contacts that press a block from both sides against neighbours that give way as easily.
+// Largest eigenvalue of M^-1 K, 1/s2, expected of any contact set of this scene with this stiffness: the stiffest block's
+// springs, and contacts that press a block from both sides against neighbours of the same compliance.
 double foreseenSpectralRadius(const Simulation& simulation, const Stiffness& stiffness) {
   const Settings& settings = simulation.scene.settings;
   BlockModel model = simulation.model;
@@ -50,14 +50,14 @@ double foreseenSpectralRadius(const Simulation& simulation, const Stiffness& sti
     springs = std::max(springs, blockSpectralRadius(model, settings.inertia, b));
   }
   const double compressionMass =
-      inverseMass(settings.inertia).own / 2.0;  // 1/m times this, of the mode that presses a block flat
+      inverseMass(settings.inertia).own / 2.0;  // 1/m times this, for the mode that presses a block flat
   const double contact =
       std::max(2.0 * tuning::kPointsPerSide * stiffness.contact_n_m, 4.0 * stiffness.floor_n_m) / 4.0 * 2.0 * compressionMass;
   return springs + (1.0 + settings.viscoelasticRatio) * contact / lightest;
 }
 
-// Tolerance to stiffness to substeps, or the other way round. Stiffness goes as one over the tolerance, the
-// square of the steps as the stiffness.
+// From tolerance to stiffness to substeps, or from substeps to tolerance. Stiffness is inversely proportional to the tolerance,
+// and to the square of the step.
 void chooseStiffness(Simulation& simulation) {
   const Settings& settings = simulation.scene.settings;
   LoadEstimate loads = estimateLoads(simulation.scene);
@@ -88,7 +88,7 @@ void chooseStiffness(Simulation& simulation) {
   simulation.springStiffness_n_m = settings.springRatio * stiffness.spring_n_m;
 }
 
-// Sizes what every method works on.
+// Sizes the data that every method uses.
 void sizeEngine(Simulation& simulation) {
   const Scene& scene = simulation.scene;
   const BlockModel& model = simulation.model;

@@ -20,7 +20,7 @@ namespace springtower {
 
 namespace {
 
-// Block turned inside out or flattened: the mean edges' volume against that of its dimensions.
+// Throws if a block is turned inside out or flattened: the volume of its mean edges against that of its dimensions.
 void checkShapes(const Simulation& simulation, std::span<const std::int32_t> blocks) {
   for (const std::int32_t block : blocks) {
     const auto b = static_cast<std::size_t>(block);
@@ -90,8 +90,8 @@ void stepFrame(Simulation& simulation) {
     double margin = tuning::kSweepMargin * simulation.lengths.blockHeight_m;
     findNearPairs(simulation, margin);
     while (true) {
-      // The frame is run again where something was hit and left its swept box, with a wider one, so that no meeting is missed;
-      // and where supports of sleepers failed, with these awake.
+      // The frame is run again with a larger swept box where a block was hit and left its own, so that no contact is missed; and
+      // with sleeping blocks awake where their supports failed.
       if (wakeOnImpact(simulation)) findNearPairs(simulation, margin);
       const bool inside = runIslands(simulation);
       const bool failed = inside && wakeFailedSupports(simulation);

@@ -11,15 +11,14 @@
 namespace springtower {
 namespace {
 
-// The stiffest follow that the scene's steps bear: explicit ones that a user has fixed leave little beyond the blocks' own
-// springs.
-double bearable(double rate_rad_s, const Simulation& simulation) {
+// Largest stable follow frequency: explicit steps fixed by the user have little stability left beyond the blocks' own springs.
+double stableRate(double rate_rad_s, const Simulation& simulation) {
   const Settings& settings = simulation.scene.settings;
   if (simulation.fixedSubsteps == 0 || isStableForAnyStep(settings.method)) return rate_rad_s;
   return std::min(rate_rad_s, tuning::kMaxFollowAngle * simulation.fixedSubsteps / settings.frame_s);
 }
 
-// What lies under a block: how it lifts the block, N, and from where to where it reaches along a line from the block's centre, m.
+// Support from below a block: its lifting force, N, and its extent along a line from the block's centre, m.
 struct Support {
   double lift_n = 0.0;
   double from_m = 1e300;
@@ -40,7 +39,7 @@ Support supportOf(std::span<const ContactForce> contacts, BlockId block, const V
   return support;
 }
 
-// What all contacts together lift a block with, N.
+// Vertical force of all contacts on a block, N.
 double liftOf(std::span<const ContactForce> contacts, BlockId block) {
   double lift = 0.0;
   for (const ContactForce& contact : contacts) {
@@ -51,26 +50,26 @@ double liftOf(std::span<const ContactForce> contacts, BlockId block) {
   return lift;
 }
 
-// Share of a block's weight that a hand has to take up. One that draws leaves it all to what lies under the block, as long as
-// that bears half of it: it would else hold its block at the height where that was, and lift what is light off its other
-// supports.
-double missingOf(std::span<const ContactForce> contacts, const Support& support, const Hand& hand, double weight) {
+// Share of a block's weight that the hand has to support. A drawing hand leaves all of it to what lies under the block, as long
+// as that supports half of it; otherwise it would hold the block at the height of its first support, and lift light blocks off
+// their other supports.
+double unsupportedShare(std::span<const ContactForce> contacts, const Support& support, const Hand& hand, double weight) {
   if (!(weight > 0.0)) return 0.0;
-  const double borne = hand.line.isZero(0.0) ? liftOf(contacts, hand.block) : 2.0 * support.lift_n;
-  return std::clamp(1.0 - borne / weight, 0.0, 1.0);
+  const double supported = hand.line.isZero(0.0) ? liftOf(contacts, hand.block) : 2.0 * support.lift_n;
+  return std::clamp(1.0 - supported / weight, 0.0, 1.0);
 }
 
-// Moves the hand's turn towards the one that is wanted, critically damped (exact for any time).
-void turnOn(const Eigen::Quaterniond& wanted, double time_s, Grip& grip) {
-  Eigen::Quaterniond off = grip.turn * wanted.conjugate();
-  if (off.w() < 0.0) off.coeffs() *= -1.0;  // the shorter way round
+// Moves the grip's orientation towards the hand's, critically damped (exact for any time).
+void moveOrientation(const Eigen::Quaterniond& target, double time_s, Grip& grip) {
+  Eigen::Quaterniond off = grip.turn * target.conjugate();
+  if (off.w() < 0.0) off.coeffs() *= -1.0;  // the shorter rotation
   const Eigen::AngleAxisd angle(off);
   const Vec3 start = angle.angle() * angle.axis();
   const Vec3 slope = grip.spin + tuning::kFollowFrequency_rad_s * start;
   const double fade = std::exp(-tuning::kFollowFrequency_rad_s * time_s);
   const Vec3 left = fade * (start + time_s * slope);
   grip.spin = fade * (slope - tuning::kFollowFrequency_rad_s * (start + time_s * slope));
-  grip.turn = (rotation(left) * wanted).normalized();
+  grip.turn = (rotation(left) * target).normalized();
 }
 
 }  // namespace
@@ -87,7 +86,7 @@ Eigen::Quaterniond orientationOf(const ParticleArray& position, std::size_t bloc
   edges = (edges * length.asDiagonal()).eval();
   edges.col(shortest).setZero();
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(edges, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const double sense = svd.matrixU().determinant() * svd.matrixV().determinant();  // two edges are told from their mirror image
+  const double sense = svd.matrixU().determinant() * svd.matrixV().determinant();  // excludes mirror images of the two edges
   const Eigen::Matrix3d turn = svd.matrixU() * Vec3(1.0, 1.0, sense).asDiagonal() * svd.matrixV().transpose();
   return Eigen::Quaterniond(turn).normalized();
 }
@@ -100,14 +99,14 @@ void hold(const Hand& hand, std::span<const ContactForce> contacts, Grip& grip, 
   const double weight = mass * std::max(-gravity.z(), 0.0);
   const bool draws = !hand.line.isZero(0.0);
   const Support support = supportOf(contacts, hand.block, centre(simulation.state.position, b), hand.line);
-  const double missing = missingOf(contacts, support, hand, weight);
+  const double unsupported = unsupportedShare(contacts, support, hand, weight);
   if (grip.block != hand.block) {
-    grip = {hand.block, missing, orientationOf(simulation.state.position, b), Vec3::Zero()};
+    grip = {hand.block, unsupported, orientationOf(simulation.state.position, b), Vec3::Zero()};
   } else {
-    grip.carried += (1.0 - std::exp(-frame_s / tuning::kWeightTransferTime_s)) * (missing - grip.carried);
+    grip.carried += (1.0 - std::exp(-frame_s / tuning::kWeightTransferTime_s)) * (unsupported - grip.carried);
   }
   const Eigen::Quaterniond before = grip.turn;
-  turnOn(hand.turn, frame_s, grip);
+  moveOrientation(hand.turn, frame_s, grip);
   Eigen::Quaterniond way = grip.turn * before.conjugate();
   if (way.w() < 0.0) way.coeffs() *= -1.0;
   const Eigen::AngleAxisd turned(way);
@@ -119,10 +118,10 @@ void hold(const Hand& hand, std::span<const ContactForce> contacts, Grip& grip, 
   tether.turn = grip.turn;
   tether.spin = turned.angle() / frame_s * turned.axis();
   tether.time_s = simulation.time_s + frame_s;
-  // Critically damped, both: a free mass on a spring, and the turn of a block held by its corners.
+  // Critically damped, both: a free mass on a spring, and the rotation of a block held by its corners.
   const double cornerMass = mass / inverseMass(simulation.scene.settings.inertia).own;
-  const double rate = bearable(hand.rate_rad_s, simulation);
-  const double level = bearable(tuning::kOrientationFrequency_rad_s, simulation);
+  const double rate = stableRate(hand.rate_rad_s, simulation);
+  const double level = stableRate(tuning::kOrientationFrequency_rad_s, simulation);
   tether.stiffness_n_m = mass * rate * rate;
   tether.damping_n_s_m = 2.0 * mass * rate;
   tether.cornerStiffness_n_m = cornerMass * level * level;
@@ -143,7 +142,7 @@ void hold(const Hand& hand, std::span<const ContactForce> contacts, Grip& grip, 
   tether.limit_n = hand.limit_n;
   tether.line = hand.line;
   tether.acrossLimit_n = tuning::kMaxTransverseForce * weight;
-  // What two fingers on its sides can give, and no more than it takes to turn it by a radian as fast as it follows.
+  // The torque of two fingers on its sides, and at most the one for a rotation by one radian at the follow frequency.
   const double moment = mass * sides[2] * sides[2] / 12.0;
   tether.torqueLimit_n_m =
       std::min(0.5 * sides[1] * hand.limit_n, moment * tuning::kFollowFrequency_rad_s * tuning::kFollowFrequency_rad_s);

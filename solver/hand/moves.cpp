@@ -14,10 +14,10 @@
 namespace springtower {
 namespace {
 
-// From the middle of a row to its outer places.
+// Distance of the outer places of a row from its middle.
 constexpr double kPitch_m = 0.5 * (kBlockLength_m - kBlockWidth_m);
 
-double longest(const Move& move, const MoveRun& run, const Vec3& size) {
+double timeLimit(const Move& move, const MoveRun& run, const Vec3& size) {
   return tuning::kMaxPhaseTime_s + (run.phase == MovePhase::draw ? 3.0 * size.maxCoeff() / move.speed_m_s : 0.0);
 }
 
@@ -44,7 +44,7 @@ void stack(std::vector<BlockSpec>& blocks) {
   }
 }
 
-// What statics says of the blocks that are in the tower now; stands without gravity or blocks.
+// Static analysis of the blocks that are in the tower now; stable without gravity or blocks.
 StaticScene rigidTower(MoveRun& run, const Simulation& simulation) {
   stack(run.rigid);
   Scene scene = simulation.scene;
@@ -69,11 +69,11 @@ bool othersRest(const MoveRun& run, const Simulation& simulation) {
   return true;
 }
 
-// The height of what lies under or over an outline.
-double topBelow(const Simulation& simulation, BlockId but, const Vec3& middle, const Vec3& half) {
+// Height of the highest block within an outline, excluding one block.
+double topBelow(const Simulation& simulation, BlockId except, const Vec3& middle, const Vec3& half) {
   double top = 0.0;
   for (std::size_t b = 0; b < simulation.model.blockCount(); ++b) {
-    if (blockId(b) == but) continue;
+    if (blockId(b) == except) continue;
     Vec3 least = simulation.state.position.at(b, 0);
     Vec3 most = least;
     for (std::size_t c = 1; c < kCorners; ++c) {
@@ -87,7 +87,8 @@ double topBelow(const Simulation& simulation, BlockId but, const Vec3& middle, c
   return top;
 }
 
-// How the tower stands where a block is to be laid: which way is up on the row below, and how far that row is off its place.
+// State of the row on which a block is to be placed: its upward direction, and its horizontal displacement from its nominal
+// place.
 struct Ground {
   Vec3 up = Vec3::UnitZ();
   Vec3 shift = Vec3::Zero();
@@ -108,7 +109,7 @@ Ground groundOf(const MoveRun& run, const Simulation& simulation, int row) {
   return {up.normalized(), Vec3(shift.x() / count, shift.y() / count, 0.0)};
 }
 
-// Moves the goal along the row, away from neighbours that lie in the way: to the middle where both do.
+// Moves the goal along the row, away from neighbours in the way: to the middle between two if there is not enough room.
 void makeRoom(MoveRun& run, const Simulation& simulation, const Move& move, const Vec3& half) {
   const Eigen::Index along = move.row % 2 != 0 ? 0 : 1;
   double least = -1e300;
@@ -125,7 +126,7 @@ void makeRoom(MoveRun& run, const Simulation& simulation, const Move& move, cons
   goal = least > most ? 0.5 * (least + most) : std::clamp(goal, least, most);
 }
 
-// Where a block goes, flat on what is there, and how it is turned there: the nearer way round.
+// Sets the goal of a block, flat on the row below, and its orientation there: the nearer of two.
 void aim(MoveRun& run, const Simulation& simulation, const Move& move) {
   const std::size_t b = index(run.now.block);
   const Vec3 size = simulation.model.dimensions[b];
@@ -153,8 +154,8 @@ void aim(MoveRun& run, const Simulation& simulation, const Move& move) {
   run.goal.z() = topBelow(simulation, run.now.block, run.goal, half) + 0.5 * size.z() + move.drop_m;
 }
 
-// Leads the hand in a straight line towards a place; whether it is there.
-bool leadTo(Hand& hand, const Vec3& goal, double speed_m_s, double frame_s) {
+// Moves the hand in a straight line towards a goal; returns whether it has arrived.
+bool moveTowards(Hand& hand, const Vec3& goal, double speed_m_s, double frame_s) {
   const Vec3 way = goal - hand.place;
   const double step = speed_m_s * frame_s;
   const Vec3 next = way.norm() > step ? Vec3(hand.place + way * (step / way.norm())) : goal;
@@ -175,7 +176,7 @@ bool touchesBlocks(std::span<const ContactForce> contacts, BlockId block) {
   });
 }
 
-// How far a block reaches along a direction from its centre, both ways together.
+// Extent of a block along a direction.
 double extentAlong(const Simulation& simulation, std::size_t block, const Vec3& direction) {
   double least = 1e300;
   double most = -1e300;
@@ -187,7 +188,7 @@ double extentAlong(const Simulation& simulation, std::size_t block, const Vec3& 
   return most - least;
 }
 
-// The side of a block that points most along a direction: a hand draws a block along its faces, however its row leans.
+// The side of a block nearest to a direction: a hand draws a block parallel to its faces, however its row leans.
 Vec3 alongBlock(const Simulation& simulation, std::size_t block, const Vec3& direction) {
   Vec3 best = direction;
   double most = 0.0;
@@ -263,7 +264,7 @@ void end(MoveRun& run, const Simulation& simulation, bool done, bool rested) {
   if (!run.finished) begin(run, simulation);
 }
 
-// The phase that follows when this one has come to its end, if it has; leads the hand otherwise.
+// Ends the phase and starts the next one when its condition is met; otherwise moves the hand.
 void follow(MoveRun& run, const Simulation& simulation, std::span<const ContactForce> contacts) {
   const Move& move = simulation.scene.moves[run.results.size()];
   const double frame_s = simulation.scene.settings.frame_s;
@@ -284,7 +285,7 @@ void follow(MoveRun& run, const Simulation& simulation, std::span<const ContactF
       const double top =
           topBelow(simulation, hand.block, Vec3::Zero(), Vec3::Constant(tuning::kAsideDistance_m - kBlockLength_m));
       const Vec3 over{hand.place.x(), hand.place.y(), top + tuning::kCarryClearance_m + move.drop_m};
-      if (!leadTo(hand, over, tuning::kCarrySpeed_m_s, frame_s) || !isThere(simulation, hand.block, over)) break;
+      if (!moveTowards(hand, over, tuning::kCarrySpeed_m_s, frame_s) || !isThere(simulation, hand.block, over)) break;
       enter(run, move.kind == MoveKind::take ? MovePhase::rest : MovePhase::carry);
       break;
     }
@@ -294,7 +295,7 @@ void follow(MoveRun& run, const Simulation& simulation, std::span<const ContactF
                       ? hand.turn.slerp(tuning::kCarryTurnRate_rad_s * frame_s / left, run.goalTurn)
                       : run.goalTurn;
       const Vec3 over{run.goal.x(), run.goal.y(), hand.place.z()};
-      if (leadTo(hand, over, tuning::kCarrySpeed_m_s, frame_s) && left <= tuning::kCarryTurnRate_rad_s * frame_s &&
+      if (moveTowards(hand, over, tuning::kCarrySpeed_m_s, frame_s) && left <= tuning::kCarryTurnRate_rad_s * frame_s &&
           isThere(simulation, hand.block, over)) {
         enter(run, MovePhase::lower);
       }
@@ -304,8 +305,8 @@ void follow(MoveRun& run, const Simulation& simulation, std::span<const ContactF
       const bool drops = move.kind == MoveKind::put && move.drop_m > 0.0;
       const bool last = !drops && hand.place.z() < run.goal.z() + tuning::kPlaceHeight_m;
       const Vec3 below = drops ? run.goal : Vec3(run.goal - tuning::kPlaceHeight_m * Vec3::UnitZ());
-      const bool there = leadTo(hand, below, last ? tuning::kPlaceSpeed_m_s : tuning::kLowerSpeed_m_s, frame_s);
-      // A block that bounces may be off the ground whenever a frame ends.
+      const bool there = moveTowards(hand, below, last ? tuning::kPlaceSpeed_m_s : tuning::kLowerSpeed_m_s, frame_s);
+      // A block that bounces may be off the ground at the end of any frame.
       if (!drops && (there || holdOf(contacts, hand.block) != Hold::free)) enter(run, MovePhase::press);
       if (drops && there && isThere(simulation, hand.block, below)) enter(run, MovePhase::still);
       break;
@@ -351,8 +352,8 @@ void guideHand(MoveRun& run, Simulation& simulation) {
   }
   const Move& move = simulation.scene.moves[run.results.size()];
   const std::vector<ContactForce> contacts = contactForces(simulation);
-  if (run.phase_s > longest(move, run, simulation.model.dimensions[index(run.now.block)])) {
-    // At rest or not, a tower that waits long enough goes on; a block that does not come is left alone.
+  if (run.phase_s > timeLimit(move, run, simulation.model.dimensions[index(run.now.block)])) {
+    // At the time limit of the final wait the sequence continues, at rest or not; a move that could not be done ends it.
     end(run, simulation, run.phase == MovePhase::rest, false);
   } else {
     follow(run, simulation, contacts);

@@ -42,10 +42,10 @@ void predictBdf2(IslandStep& step, double effective_s) {
   Engine& engine = step.engine;
   MotionState& state = step.simulation.state;
   const double h = step.drift_s;
-  const double calm = 2.0 * std::max(step.simulation.scene.gravity.magnitude, 1.0);
+  const double mostAcceleration = 2.0 * std::max(step.simulation.scene.gravity.magnitude, 1.0);
   for (const std::int32_t block : step.blocks) {
     const auto b = static_cast<std::size_t>(block);
-    // The step before may have been longer or shorter: its mean acceleration then tells of one as long as this.
+    // The step before may have had another length: its mean acceleration gives the change of velocity in a step of this length.
     const double past_s = engine.memo.blockHistory[b].lastImplicitStep_s;
     const bool known = past_s > 0.0;
     const double share = known ? h / past_s : 0.0;
@@ -56,7 +56,7 @@ void predictBdf2(IslandStep& step, double effective_s) {
       for (const auto& row : start) {
         for (const double a : row) most = std::max(most, std::abs(a));
       }
-      if (!(most < calm)) std::fill_n(&start[0][0], 3 * kCorners, 0.0);
+      if (!(most < mostAcceleration)) std::fill_n(&start[0][0], 3 * kCorners, 0.0);
     }
     for (std::size_t a = 0; a < 3; ++a) {
       const double pull = effective_s * effective_s * step.gravity[static_cast<Eigen::Index>(a)];

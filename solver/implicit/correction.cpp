@@ -14,7 +14,7 @@ namespace springtower {
 
 namespace {
 
-// Turns the first `count` vectors into the block's frame, or back.
+// Rotates the first `count` vectors into the block's frame, or back.
 SPRINGTOWER_INLINE void turn(const std::array<std::array<double, 3>, 3>& axes, bool back, std::size_t count, ModeVectors& modes) {
   for (std::size_t m = 0; m < count; ++m) {
     const std::array<double, 3> from = modes[m];
@@ -25,7 +25,7 @@ SPRINGTOWER_INLINE void turn(const std::array<std::array<double, 3>, 3>& axes, b
   }
 }
 
-// The correction, but for forces of `allowed_n`; whether it came so far.
+// The Newton direction up to a residual of `allowed_n`; returns whether that was reached.
 SPRINGTOWER_KERNEL
 bool solveForCorrection(IslandStep& step, NewtonSystem& island, double allowed_n) {
   const std::size_t count = island.residual.size();
@@ -72,7 +72,8 @@ bool findCorrection(IslandStep& step, NewtonSystem& island, double effective_s, 
   island.tangents.clear();
   if (differ) findTangents(step, island, effective_s);
   const bool reached = solveForCorrection(step, island, allowed_n);
-  if (!island.tangents.empty() && !(directionalDerivative(island) > 0.0)) {  // what is symmetric always works forwards
+  // With the symmetric matrix alone the derivative is always positive.
+  if (!island.tangents.empty() && !(directionalDerivative(island) > 0.0)) {
     island.tangents.clear();
     solveForCorrection(step, island, allowed_n);
   }

@@ -5,12 +5,12 @@ namespace springtower {
 struct IslandStep;
 struct NewtonSystem;
 
-/// The correction (island.direction) that takes island.residual away, with the factors at hand and, where the contacts `differ`
-/// from what these know, with their tangents, but for forces of `allowed` weights of the lightest block. Returns false where they
-/// differ too much for that. Precondition: island.factorised.
+/// Computes the Newton direction (island.direction) for island.residual with the present factors and, where the contacts `differ`
+/// from those in the factors, with their tangents, up to a residual of `allowed` weights of the lightest block. Returns false if
+/// GMRES does not reach that. Precondition: island.factorised.
 bool findCorrection(IslandStep& step, NewtonSystem& island, double effective_s, double allowed, bool differ);
 
-/// Work of the present residual along the correction, J.
+/// Directional derivative: the residual times the Newton direction, J.
 double directionalDerivative(const NewtonSystem& island);
 
 }  // namespace springtower

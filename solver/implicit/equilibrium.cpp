@@ -34,7 +34,7 @@ bool mayRest(const IslandStep& step) {
   });
 }
 
-// Takes the velocities away; returns how far the fastest corner went in the step.
+// Sets the velocities to zero; returns the displacement of the fastest corner in the step.
 double stop(IslandStep& step) {
   MotionState& state = step.simulation.state;
   double farthest = 0.0;
@@ -49,7 +49,7 @@ double stop(IslandStep& step) {
   return farthest;
 }
 
-// Steps until nothing moves any more; false where that does not come about.
+// Steps until nothing moves any more; false if that does not happen.
 bool settle(IslandStep& step) {
   const double tolerance = step.simulation.tolerance_m;
   const double fallTime_s = step.simulation.lengths.fallTime_s;
@@ -104,8 +104,9 @@ bool startInEquilibrium(IslandStep& step) {
     return false;
   };
   bool rests = stands(1.0);
-  // What does not stand as gravity leans stood before it leant so far. The blow with which a weight that nothing bears yet comes
-  // to its foot keeps implicit steps from converging; a block alone feels none, and explicit steps bear it.
+  // An island that falls under tilted gravity is put into the equilibrium at the largest tilt at which it stands. Without that,
+  // the impact with which the not yet supported weight reaches the foot of a tower would keep implicit steps from converging. A
+  // single block has no such impact, and explicit methods resolve it.
   if (!rests && tilt_deg != 0.0 && step.blocks.size() > 1 && isImplicit(step.simulation.scene.settings.method)) {
     double most = 0.0;
     for (double least = 1.0; least - most > tuning::kTiltBisectionWidth;) {

@@ -4,12 +4,11 @@
 
 namespace springtower {
 
-/// Before the first frame: lays an island whose blocks all touch and do not move onto its springs, so that it starts in the
-/// static equilibrium next to where it was placed. Placed as they are, blocks would carry nothing and drop by about the
-/// tolerance, and that jolt throws over what stands by less. User forces do not act yet. The equilibrium is found by implicit
-/// Euler steps that forget the velocity, with a step that grows until inertia no longer counts (pseudo-transient continuation:
-/// Kelley & Keyes 1998). Where there is none nearby, everything is left as it was placed. Precondition: contacts are found.
-/// Returns whether it rests now.
+/// Before the first frame: moves an island whose blocks all touch and do not move into the static equilibrium next to its initial
+/// placement. Blocks as placed would carry no contact forces and drop by about the tolerance, and that impact topples what stands
+/// by less. User forces do not act yet. The equilibrium is found by implicit Euler steps without inertial history, with a step
+/// that grows until inertia is negligible (pseudo-transient continuation: Kelley & Keyes 1998). If there is none nearby,
+/// everything is left as placed. Precondition: contacts are found. Returns whether the island is in equilibrium.
 bool startInEquilibrium(IslandStep& step);
 
 }  // namespace springtower

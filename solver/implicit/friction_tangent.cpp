@@ -9,7 +9,7 @@ namespace springtower {
 
 namespace {
 
-// The factors' part is taken away, the contacts' own is added.
+// The part in the factors is subtracted, that of the present contacts added.
 enum class Part { factors, contacts };
 
 Vec3 normalOf(const ContactTangent& tangent) {
@@ -21,7 +21,7 @@ void setWeights(const BlockFrame& frame, const Vec3& place, std::size_t lane, La
   for (std::size_t a = 0; a < 3; ++a) weight[a][lane] = weights[1 + a];
 }
 
-// Force of a point on upper, N.
+// Normal force of a point on upper without damping, N.
 double pushOf(const ContactLaw& law, const ContactView& trial, std::size_t i, double stiffness, double depth) {
   const PenaltyRow& row = trial.penalty(i);
   const std::size_t lane = laneOf(i);
@@ -112,7 +112,8 @@ PointStiffness pointStiffness(const IslandStep& step, const ContactView& manifol
   const double stiffness = manifold.lower < 0 ? law.floorStiffness_n_m : law.stiffness_n_m;
   const PenaltyRow& row = trial.penalty(i);
   const std::size_t lane = laneOf(i);
-  const bool born = touchingAt(manifold, i) == 0.0;  // in this step, in which its dashpot has closed by its depth
+  // First contact in this step: its damping velocity is its depth over the step.
+  const bool born = touchingAt(manifold, i) == 0.0;
   const double damping = law.dampingTime_s / step_s;
   const double relaxing = born ? law.maxwellRatio : law.maxwellRatio * law.maxwellTime_s / (law.maxwellTime_s + step.drift_s);
   const double k = stiffness * std::max(1.0, row.stiffening[lane]);
@@ -120,7 +121,7 @@ PointStiffness pointStiffness(const IslandStep& step, const ContactView& manifol
   result.normal = k * (1.0 + relaxing + (born ? law.dampingTime_s / step.drift_s : damping));
   result.tangential = k * (law.tangentialRatio * (1.0 + damping));
   if ((mask >> (8 + i) & 1U) != 0) {
-    // Until something has moved it slides as it slid before.
+    // Before the first displacement the slip of the step before applies.
     result.tangential *= row.slipRatio[lane] > 0.0 ? row.slipRatio[lane] : manifold.penalty(i).slipRatio[lane];
     result.slip = vectorAt(row.displacement, i).normalized();
   }

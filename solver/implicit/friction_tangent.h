@@ -8,27 +8,28 @@
 
 namespace springtower {
 
-/// How a pair (position in island.touching) stands after an evaluation of forces. Until the blocks have `moved` what slides is
-/// what slid before; and unless the iteration is `near` what touches is taken to push.
+/// Active set of a pair (position in island.touching) after an evaluation of forces. Until the blocks have moved
+/// (island.trialIsAhead), the slipping points are those of the step before; and unless the consistent tangent is in use, a point
+/// that touches without force counts as active.
 ActiveSetBits activeSetBits(const IslandStep& step, const NewtonSystem& island, std::size_t at);
 
-/// How a point that pushes resists displacements, without what is not symmetric.
+/// Stiffness of an active point, symmetric part.
 struct PointStiffness {
   double normal = 0.0;       ///< N/m
-  double tangential = 0.0;   ///< N/m; of a point that slides: across its way
-  Vec3 slip = Vec3::Zero();  ///< unit, the way on which a point that slides resists no further, else zero
+  double tangential = 0.0;   ///< N/m; of a slipping point: perpendicular to its slip
+  Vec3 slip = Vec3::Zero();  ///< unit, the slip direction, in which a slipping point has no stiffness; otherwise zero
 };
 
-/// Of point `i`, which stands as `mask` says. `step_s` is the step times the method's factor.
+/// Of point `i`, with the active set `mask`. `step_s` is the step times the method's factor.
 PointStiffness pointStiffness(const IslandStep& step, const ContactView& manifold, const ContactView& trial, ActiveSetBits mask,
                               std::size_t i, double step_s);
 
-/// What the factors know of a pair (position in island.touching) whose points stand as `mask` says: appended to `to`.
+/// Appends to `to` the contribution to the factors of a pair (position in island.touching) with the active set `mask`.
 void addFactorTangents(const IslandStep& step, const NewtonSystem& island, std::size_t at, ActiveSetBits mask, double step_s,
                        AlignedVector<ContactTangent>& to);
 
-/// Fills island.tangents with how far the contacts, as they stand now, differ from what the factors know: where points slide or
-/// slid then, and where they begin or cease to push.
+/// Fills island.tangents with the differences between the present contacts and those in the factors: for points that slip now or
+/// slipped then, and points that became active or inactive.
 void findTangents(const IslandStep& step, NewtonSystem& island, double step_s);
 
 /// Adds the forces (N) of these tangents at displacements (m), both [node][12].

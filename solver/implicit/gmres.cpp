@@ -47,7 +47,7 @@ SPRINGTOWER_INLINE void addScaled(double factor, const double* from, std::size_t
   for (std::size_t i = 0; i < count; ++i) to[i] += factor * from[i];
 }
 
-// What the tangents add at the coupled nodes' displacements in island.affine.
+// The tangent forces at the coupled nodes' displacements in island.affine.
 SPRINGTOWER_INLINE void applyTangents(NewtonSystem& island, double* force) {
   const std::size_t count = kNodeSize * island.coupled.size();
   for (std::size_t c = 0; c < island.coupled.size(); ++c) {
@@ -58,7 +58,7 @@ SPRINGTOWER_INLINE void applyTangents(NewtonSystem& island, double* force) {
   addTangentForces(island.tangents, {island.coupledMotion.data(), count}, {force, count});
 }
 
-// Room for direction j and the forces that are left after it.
+// Makes room for direction j and the residual after it.
 void makeRoom(std::size_t j, std::size_t count, NewtonSystem& island) {
   const std::size_t all = island.affine.size();
   const std::size_t room = std::max(tuning::kMinGmresDirections, j + 1);
@@ -66,7 +66,7 @@ void makeRoom(std::size_t j, std::size_t count, NewtonSystem& island) {
   if (island.correction.size() < (room + 1) * all) island.correction.resize((room + 1) * all);
 }
 
-// Turns column j of the Hessenberg matrix into one of a triangle (Givens), and the right-hand side with it.
+// Rotates column j of the Hessenberg matrix into triangular form (Givens), and the right-hand side with it.
 struct LeastSquares {
   double column[tuning::kMaxGmresDirections][tuning::kMaxGmresDirections + 1];
   double cosine[tuning::kMaxGmresDirections];

@@ -22,7 +22,7 @@ namespace springtower {
 
 namespace {
 
-// When Newton's iteration stops, and from where on it uses the consistent tangent.
+// Stopping criteria of Newton's iteration, and the residual below which it uses the consistent tangent.
 struct NewtonOptions {
   int mostContactIterations;  // while the active set changes: a load front takes one iteration a row
   double near;                // residual below which the consistent friction tangent is used, and points that touch
@@ -30,15 +30,15 @@ struct NewtonOptions {
   double enough;              // relative tolerance, of the initial residual
 };
 
-// Newton settings in motion. A share of the initial residual may remain, up to tuning::kMaxMotionResidual: a
-// ten-thousandth of a weight changes a speed by 4 micrometres a second, and the next step corrects it.
+// Newton settings in motion. A share of the initial residual may remain, up to tuning::kMaxMotionResidual: a ten-thousandth of a
+// weight changes a speed by 4 micrometres a second, and the next step corrects it.
 constexpr NewtonOptions kInMotion{tuning::kMaxActiveSetIterations, tuning::kConsistentTangentResidual, tuning::kRelativeResidual};
-// What does not converge in a few iterations does so in fewer with finer steps.
+// If finer steps can follow: a step that does not converge in a few iterations converges in fewer with finer steps.
 constexpr NewtonOptions kBeforeFiner{tuning::kMaxNewtonIterations, tuning::kConsistentTangentResidual, tuning::kRelativeResidual};
 // In steps from rest the weight reaches the foot of a tower row by row, starting far from the solution. In a wide island the last
-// iterations have thousands of slipping points: without the consistent tangent each reduces the residual by only three
-// tenths, and rounding decides whether that suffices within the iteration limit (so a pyramid of 40 rows of cubes found its
-// equilibrium or did not).
+// iterations have thousands of slipping points. Without the consistent tangent each reduces the residual only to three tenths,
+// and rounding decides whether that suffices within the iteration limit (so a pyramid of 40 rows of cubes found its equilibrium
+// or did not).
 constexpr NewtonOptions kFromRest{tuning::kMaxActiveSetIterations, 0.0, 0.0};
 constexpr NewtonOptions kWideFromRest{tuning::kMaxActiveSetIterations, tuning::kConsistentTangentResidual, 0.0};
 
@@ -48,8 +48,8 @@ NewtonSystem& islandOf(IslandStep& step) {
 
 // The present active set. Before the first iteration nothing has moved yet, so points slip as they did in the step before.
 struct ActiveSet {
-  bool changed = false;  // against what the factors are for
-  bool slides = false;   // whether any point slides
+  bool changed = false;  // differs from that in the factors
+  bool slides = false;   // whether any point slips
   bool limited = false;  // whether the hand is at a limit of its forces
 };
 
@@ -65,14 +65,14 @@ ActiveSet activeSetNow(const IslandStep& step, const NewtonSystem& island) {
   return now;
 }
 
-// New factors for contacts as they stand now.
+// Factorises for the present active set.
 bool refactorise(IslandStep& step, NewtonSystem& island, double effective_s) {
   for (std::size_t i = 0; i < island.touching.size(); ++i) island.mask[i] = activeSetBits(step, island, i);
   return assemble(step, island, effective_s);
 }
 
-// The residual of all blocks, in the world's frame; returns the largest in units of what is allowed,
-// infinity where one is not finite.
+// The residual of all blocks, in the world's frame; returns the largest in units of kNewtonResidual, infinity where one is not
+// finite.
 SPRINGTOWER_KERNEL
 double findResidual(IslandStep& step, NewtonSystem& island, double effective_s) {
   const Engine& engine = step.engine;
@@ -96,7 +96,7 @@ double findResidual(IslandStep& step, NewtonSystem& island, double effective_s) 
   return worst;
 }
 
-// A block's velocities at the step's end, and those that carried it through the step.
+// A block's velocities at the step's end, and its mean velocities over the step.
 SPRINGTOWER_INLINE void updateVelocities(IslandStep& step, std::size_t b, double effective_s) {
   Engine& engine = step.engine;
   MotionState& state = step.simulation.state;
@@ -115,7 +115,7 @@ SPRINGTOWER_INLINE void updateVelocities(IslandStep& step, std::size_t b, double
   }
 }
 
-// Moves the blocks along the correction by this share of it.
+// Moves the blocks by this share of the Newton direction.
 SPRINGTOWER_KERNEL
 void applyStep(IslandStep& step, const NewtonSystem& island, double share, double effective_s) {
   for (std::size_t i = 0; i < step.blocks.size(); ++i) {
@@ -158,17 +158,17 @@ void reject(IslandStep& step) {
   ++step.counters.handedOver;
 }
 
-// Forces and residual where the blocks are now.
+// Forces and residual at the present positions.
 double evaluateResidual(IslandStep& step, NewtonSystem& island, double effective_s, StageClock& clock) {
   clock.lap(Stage::integration);
   evaluateForces(step, step.simulation.state, step.engine.scratch.stepVelocity, step.drift_s, Memory::trial);
-  clock.skip();  // it counts its own
+  clock.skip();  // evaluateForces times itself
   return findResidual(step, island, effective_s);
 }
 
-// Takes the correction as far as the residual still works along it: where contacts open or friction turns round on the way, the
-// whole of it would go too far, and back in the next iteration (Newton with line search; Nocedal & Wright 2006). Returns the
-// residual there.
+// Line search (Nocedal & Wright 2006): shortens the step along the Newton direction until the directional derivative is small.
+// Where contacts open or friction reverses on the way, the full step would overshoot, and the next iteration would return.
+// Returns the residual reached.
 double searchLine(IslandStep& step, NewtonSystem& island, double effective_s, double enough, StageClock& clock) {
   const double work = directionalDerivative(island);
   island.trialIsAhead = true;
@@ -178,7 +178,7 @@ double searchLine(IslandStep& step, NewtonSystem& island, double effective_s, do
   if (!std::isfinite(residual) || residual <= enough) return residual;
   double far = directionalDerivative(island);
   if (far >= -tuning::kCurvatureCondition * work) return residual;
-  double least = 0.0;  // share at which it still works forwards, and where it does no more
+  double least = 0.0;  // shares with a positive and a negative derivative
   double most = 1.0;
   double near = work;
   for (int trial = 0; trial < tuning::kMaxLineSearchSteps; ++trial) {
@@ -194,7 +194,7 @@ double searchLine(IslandStep& step, NewtonSystem& island, double effective_s, do
   return residual;
 }
 
-// Puts the blocks where their velocities and accelerations carry them. Returns the residual there.
+// Moves the blocks to the positions extrapolated from velocities and accelerations. Returns the residual there.
 double predict(IslandStep& step, NewtonSystem& island, double effective_s, StageClock& clock) {
   Engine& engine = step.engine;
   const double h = step.drift_s;
@@ -207,7 +207,7 @@ double predict(IslandStep& step, NewtonSystem& island, double effective_s, Stage
       const double* target = engine.scratch.freePosition.values(a, b);
       double* x = step.simulation.state.position.values(a, b);
       for (std::size_t c = 0; c < kCorners; ++c) {
-        const double change = 3.0 * ((target[c] - pull - history[c]) / effective_s - v[c]);  // of the velocity in the last step
+        const double change = 3.0 * ((target[c] - pull - history[c]) / effective_s - v[c]);  // of velocity, in the last step
         x[c] += h * (v[c] + 0.5 * change);
       }
     }
@@ -217,9 +217,8 @@ double predict(IslandStep& step, NewtonSystem& island, double effective_s, Stage
   return evaluateResidual(step, island, effective_s, clock);
 }
 
-// Where the iteration begins when something moves: where the blocks are carried, unless that is not near the solution and where
-// they are is nearer, as when contacts have just let go or taken hold and velocities and accelerations still tell of before.
-// Returns the residual there.
+// Initial guess when something moves: the extrapolated positions, unless those are far from the solution and the present ones
+// nearer, as when contacts have just opened or closed and the history no longer applies. Returns the residual there.
 double beginPredicted(IslandStep& step, NewtonSystem& island, double effective_s, const NewtonOptions& how, StageClock& clock) {
   const double carried = predict(step, island, effective_s, clock);
   if (how.near == 0.0 || !(carried > how.near)) return carried;
@@ -229,8 +228,8 @@ double beginPredicted(IslandStep& step, NewtonSystem& island, double effective_s
   return still < carried ? still : predict(step, island, effective_s, clock);
 }
 
-// Whether the step begins where the blocks are carried, whatever the forces are where they are: all have a history, and one moves
-// so fast that its inertia alone asks for it.
+// Whether the step starts from the extrapolated positions without an evaluation at the present ones: all blocks have a history,
+// and one moves so fast that its inertia alone exceeds the residual for that.
 bool isCarried(const IslandStep& step, double effective_s) {
   const double gravity = std::max(step.simulation.scene.gravity.magnitude, 1.0);
   const double most = tuning::kPredictorResidual * tuning::kNewtonResidual * gravity * effective_s * effective_s / step.drift_s;
@@ -246,16 +245,17 @@ bool isCarried(const IslandStep& step, double effective_s) {
   return moves;
 }
 
-// Leaves the blocks where they are. Returns the residual there: in a wide island at rest the rounding of stiff contact forces is
-// nearly as large as the tolerance, and no solution would reduce it.
+// Keeps the blocks in place. Returns the residual there: in a wide island at rest the rounding of stiff contact forces is nearly
+// as large as the tolerance, and no correction would reduce it.
 double evaluateInPlace(IslandStep& step, NewtonSystem& island, double effective_s, StageClock& clock) {
   for (const std::int32_t block : step.blocks) updateVelocities(step, static_cast<std::size_t>(block), effective_s);
   island.trialIsAhead = true;
   return evaluateResidual(step, island, effective_s, clock);
 }
 
-// Newton's iteration for the state at the step's end, from engine.scratch.freePosition and engine.scratch.pastPosition. Unless
-// the blocks are `carried` the forces are known where they are. Returns whether it converged.
+// Newton's iteration for the state at the step's end, from engine.scratch.freePosition and engine.scratch.pastPosition.
+// Precondition: engine.memo.force holds the forces at the present positions, unless `carried` (the step starts from the
+// extrapolated positions). Returns whether it converged.
 bool solveStep(IslandStep& step, double effective_s, bool carried, const NewtonOptions& how) {
   NewtonSystem& island = islandOf(step);
   StageClock clock(step.times);
@@ -297,7 +297,7 @@ bool solveStep(IslandStep& step, double effective_s, bool carried, const NewtonO
   return converged;
 }
 
-// Takes the state that was found, or goes back to the step's start.
+// Accepts the state found, or restores the start of the step.
 bool finishStep(IslandStep& step, bool taken) {
   StageClock clock(step.times);
   NewtonSystem& island = islandOf(step);
@@ -336,7 +336,7 @@ bool stepImplicit(IslandStep& step, bool finerFollow) {
     evaluateForces(step, step.simulation.state, step.simulation.state.velocity, 0.0, Memory::trial);
     converged = solveStep(step, effective_s, false, how);
   }
-  // Where a frame begins a force or the hand may jump, which is no ringing.
+  // At the start of a frame a force or the hand may jump; that is no vibration.
   const bool jumps = step.engine.memo.islandHistory[static_cast<std::size_t>(step.blocks.front())].forced &&
                      step.time_s == step.simulation.time_s;
   if (converged && !jumps && traitsOf(step.simulation.scene.settings.method).twoStep) updateFrequencyEstimate(step, effective_s);

@@ -13,7 +13,7 @@ namespace springtower {
 
 namespace {
 
-// Steps of a frame in which no corner goes farther than that.
+// Steps of a frame for which no corner exceeds kMaxDisplacementPerStep.
 int stepsForDisplacement(const IslandStep& step) {
   const Simulation& simulation = step.simulation;
   const ParticleArray& velocity = simulation.state.velocity;
@@ -28,12 +28,13 @@ int stepsForDisplacement(const IslandStep& step) {
   return static_cast<int>(std::clamp(steps, 1.0, static_cast<double>(tuning::kMaxFrequencySteps)));
 }
 
-// Whether the island does so little that one step tells it as well as many.
+// Whether the island moves so little that one step is as accurate as many.
 bool isQuiescent(const IslandStep& step) {
   const Simulation& simulation = step.simulation;
   const double most = quiescentSpeed(simulation);
   for (const std::int32_t block : step.blocks) {
-    // What has just been let go of has no speed yet, and what explicit steps brought here may be at a bounce's turn.
+    // A block that has just been released has no speed yet, and one that explicit steps moved may be at the turning point of a
+    // bounce.
     const auto b = static_cast<std::size_t>(block);
     if (!(simulation.restTime_s[b] > 0.0) || step.engine.memo.blockHistory[b].explicitLast) return false;
     for (std::size_t a = 0; a < 3; ++a) {
@@ -56,7 +57,8 @@ bool touchesSleeping(const IslandStep& step) {
   });
 }
 
-// How many steps the frame takes. `forced`: whether a force or the hand acts; `known`: as it did in the frame before.
+// Number of implicit steps of the frame. `forced`: whether a force or the hand acts; `known`: whether that is as in the frame
+// before.
 int implicitSteps(const IslandStep& step, bool forced, bool known, bool heap) {
   const Settings& settings = step.simulation.scene.settings;
   if (settings.substeps > 0) return settings.substeps;
@@ -89,7 +91,7 @@ void resetHistory(IslandStep& step) {
     step.engine.memo.blockHistory[static_cast<std::size_t>(block)].lastImplicitStep_s = 0.0;
 }
 
-// The angular speed of a block is at most this, rad/s: how fast its mean edges change against their length.
+// Upper bound of the angular speed of a block, rad/s: the rate of change of its mean edges over their length.
 double turningSpeed(const AffineField& place, const AffineField& motion) {
   double fastest = 0.0;
   for (std::size_t a = 0; a < 3; ++a) {
@@ -101,7 +103,7 @@ double turningSpeed(const AffineField& place, const AffineField& motion) {
   return std::sqrt(fastest);
 }
 
-// For how many frames implicit steps are not tried again.
+// Sets the number of frames until implicit steps are tried again.
 void leaveImplicitSteps(IslandStep& step, bool heap) {
   for (const std::int32_t block : step.blocks)
     step.engine.memo.islandHistory[static_cast<std::size_t>(block)].explicitFrames =
@@ -185,7 +187,7 @@ IslandOutcome runImplicitSteps(IslandStep& step, bool heap, double& reached_s) {
     history.explicitFrames = std::max(0, history.explicitFrames - 1);
     history.forced = forced;
   }
-  // Where nothing has come or gone since, the forces are those that the last frame ended with.
+  // If pairs, islands and forces are unchanged, the forces are those at the end of the last frame.
   const bool known = island.forcesKnown && !engine.memo.topologyChanged && !wasForced && !forced;
   island.forcesKnown = false;
   if (!fits) return outcome;
@@ -195,7 +197,7 @@ IslandOutcome runImplicitSteps(IslandStep& step, bool heap, double& reached_s) {
     setJacobians(step, endShare(simulation.scene.settings.method) * step.drift_s);
   };
   takeSteps(steps);
-  // A heap that steps do not converge for lies well with rigid ones, as it did before.
+  // An island that has mostly fallen goes back to rigid steps where implicit ones do not converge.
   step.maxStiffening = 1.0;
   island.forcesKnown = known;
   while (steps > 0) {

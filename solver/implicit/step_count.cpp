@@ -15,8 +15,8 @@ double fourthPower(double value) {
   return value * value * value * value;
 }
 
-int stepsFor(double ringing, double damping) {
-  const double steps = std::cbrt(ringing / (4.0 * damping));
+int stepsFor(double angle4, double damping) {
+  const double steps = std::cbrt(angle4 / (4.0 * damping));
   return static_cast<int>(std::ceil(std::clamp(steps, 1.0, static_cast<double>(tuning::kMaxFrequencySteps))));
 }
 
@@ -48,8 +48,8 @@ void updateFrequencyEstimate(IslandStep& step, double effective_s) {
       const double* history = engine.scratch.pastPosition.values(a, b);
       const double* target = engine.scratch.freePosition.values(a, b);
       for (std::size_t c = 0; c < kCorners; ++c) {
-        // The change in this step less that in the step before, which the target tells: 3 ((target - history) / h' - pull -
-        // before).
+        // The change of velocity in this step minus that in the step before; the latter follows from the target: 3 ((target -
+        // history) / h' - pull - before).
         const double change = v[c] + 2.0 * before[c] + pull - ofVelocity * (target[c] - history[c]);
         jerk[c] += change * change;
         speed[c] += v[c] * v[c];
@@ -73,8 +73,8 @@ int stepsForFrequency(const IslandStep& step, int present) {
     jerk += step.engine.memo.blockHistory[b].jerk;
     motion += step.engine.memo.blockHistory[b].motion + simulation.model.mass[b] * static_cast<double>(kCorners) * calm * calm;
   }
-  const double ringing = fourthPower(frame_s) * jerk / motion;  // (w T)^4
-  return std::clamp(present, stepsFor(ringing, tuning::kMaxStepDamping), stepsFor(ringing, tuning::kMinStepDamping));
+  const double angle4 = fourthPower(frame_s) * jerk / motion;  // (w T)^4
+  return std::clamp(present, stepsFor(angle4, tuning::kMaxStepDamping), stepsFor(angle4, tuning::kMinStepDamping));
 }
 
 }  // namespace springtower

@@ -20,7 +20,7 @@ using Axes = std::array<std::array<double, 3>, 3>;
 using Weights = std::array<double, kAffine>;
 using Coupling = std::array<std::array<double, kAffine>, kAffine>;
 
-// Orthonormal axes of a block: its mean edges, straightened (Gram & Schmidt).
+// Orthonormal axes of a block from its mean edges (Gram & Schmidt).
 Axes axesOf(const AffineField& place) {
   Vec3 x(place.side[0][0], place.side[0][1], place.side[0][2]);
   Vec3 y(place.side[1][0], place.side[1][1], place.side[1][2]);
@@ -31,7 +31,7 @@ Axes axesOf(const AffineField& place) {
   return {{{x[0], x[1], x[2]}, {y[0], y[1], y[2]}, {z[0], z[1], z[2]}}};
 }
 
-// Adds a block's own matrix, turned into the world's frame.
+// Adds a block's own matrix, rotated into the world's frame.
 void addOwn(const BlockJacobian& jacobian, const Axes& axes, float* diagonal) {
   for (std::size_t p = 0; p < kAffine; ++p) {
     for (std::size_t q = 0; q < kAffine; ++q) {
@@ -86,7 +86,7 @@ SPRINGTOWER_INLINE void addContacts(const Coupling& normal, const Coupling& tang
   }
 }
 
-// Takes factor * (p (x) s) (q (x) s)^T from a block of the matrix: along `s` a sliding point resists no further.
+// Subtracts factor * (p (x) s) (q (x) s)^T from a block of the matrix: a slipping point has no stiffness along `s`.
 SPRINGTOWER_INLINE void takeAlong(double factor, const Weights& p, const Weights& q, const Vec3& s, float* block) {
   ModeRow vectors, components;
   ofVectors(q.data(), vectors);
@@ -153,7 +153,7 @@ void addManifold(const IslandStep& step, NewtonSystem& island, std::size_t at, d
   if (ofBoth != nullptr) addContacts(crossNormal, crossTangential, points.direction, -1.0, ofBoth);
 }
 
-// Adds the hand's springs on its block; of those at their limit what is symmetric and takes nothing away.
+// Adds the hand's springs on its block; of springs at their limit only a symmetric, positive semidefinite part.
 void addTether(const IslandStep& step, NewtonSystem& island, double step_s) {
   const Simulation& simulation = step.simulation;
   TetherMatrix resistance =
@@ -170,9 +170,9 @@ void addTether(const IslandStep& step, NewtonSystem& island, double step_s) {
   }
 }
 
-// Stiffens every freedom by what its diagonal entry may be off by, as sums and products round. Steps from rest are so long that
-// inertia is less than that beside the stiff contacts of 144 rows, and whether such a matrix is positive definite would else be
-// chance: with contact laws that differed by little, 144 rows took from 2 s to for ever to find where they rest.
+// Stiffens every degree of freedom by the possible rounding error of its diagonal entry. In the long steps from rest the inertia
+// is smaller than that error beside the stiff contacts of 144 rows, and rounding would decide whether the matrix is positive
+// definite: with contact laws that differed by little, the equilibrium of 144 rows took from 2 s to unbounded time.
 void stiffenByRounding(BlockCholesky& matrix) {
   for (std::size_t j = 0; j < matrix.nodeCount(); ++j) {
     float* block = matrix.diagonal.data() + kNodeMatrix * j;
@@ -205,8 +205,8 @@ void findEdges(const IslandStep& step, NewtonSystem& island) {
   }
 }
 
-// Finds the order of elimination and the pattern of the factors: from the bottom up, or by dissection where less fills in.
-// Returns false where either would take too many products.
+// Finds the elimination order and the pattern of the factors: from the bottom up, or by dissection where that gives less fill.
+// Returns false where both take too many products.
 bool findOrder(NewtonSystem& island) {
   const auto fits = [&](std::size_t mostProducts) {
     return findPattern(island.order.nodes, island.edges, mostProducts, island.matrix);
@@ -221,9 +221,9 @@ bool findOrder(NewtonSystem& island) {
   return bandFits && fits(tuning::kMaxFillProducts);
 }
 
-// Lays out the matrix for island.edges; false where it would take too many products. A wide island keeps its order of elimination
-// while its blocks are the same, and all of the layout where the edges are among those that it has room for: contacts come
-// and go far more often than the best order changes. `members` is a hash of the blocks.
+// Lays out the matrix for island.edges; false where it would take too many products. A wide island keeps its elimination order
+// while its blocks are the same, and the whole layout while that has room for all edges: contacts come and go far more often than
+// the best order changes. `members` is a hash of the blocks.
 bool layOutMatrix(const IslandStep& step, NewtonSystem& island, std::uint64_t members) {
   BlockCholesky& matrix = island.matrix;
   const bool known = island.members == members && step.blocks.size() > tuning::kNarrowBlocks;
@@ -278,7 +278,7 @@ void layOut(IslandStep& step, NewtonSystem& island) {
       hash.word(std::uint64_t{asleep[static_cast<std::size_t>(m.upper)]} << 1U | asleep[static_cast<std::size_t>(m.lower)]);
     }
   }
-  // A block may have been in another island since this layout was made, so its place in it is written every time.
+  // A block may have been in another island since this layout was made, so its index in the island is written every time.
   const std::size_t count = step.blocks.size();
   for (std::size_t i = 0; i < count; ++i)
     engine.scratch.nodeOf[static_cast<std::size_t>(step.blocks[i])] = static_cast<std::int32_t>(i);

@@ -9,23 +9,23 @@ namespace springtower {
 
 struct IslandStep;
 
-/// Weights of a block's affine vectors at a place in space.
+/// Weights of a block's affine vectors at a point in space.
 std::array<double, kAffine> weightsAt(const BlockFrame& frame, const Vec3& place);
 
-/// Lays out the matrix anew where blocks have begun or ceased to touch, unless the island is too dense.
+/// Lays out the matrix again where pairs have begun or ceased to touch, and sets island.exceedsFill where its fill is too large.
 void layOut(IslandStep& step, NewtonSystem& island);
 
-/// The hand's springs on the island's block, wherever the hand is. `step_s` as in `assemble`.
+/// The hand's springs on the island's block, without the hand's position. `step_s` as in `assemble`.
 TetherStiffness tetherStiffness(const IslandStep& step, double step_s);
 
 /// Whether the hand is at a limit of its forces.
 bool isTetherLimited(const IslandStep& step);
 
-/// Assembles and factorises for contacts that stand as `mask` says. `step_s` is the step times the method's factor. Returns false
-/// where the matrix is not positive definite.
+/// Assembles and factorises for contacts with the active set island.mask. `step_s` is the step times the method's factor. Returns
+/// false where the matrix is not positive definite.
 bool assemble(IslandStep& step, NewtonSystem& island, double step_s);
 
-/// Solves for island.affine in place with the factors at hand: forces (N) in, displacements (m) out, in the world's frame, by
+/// Solves for island.affine in place with the present factors: forces (N) in, displacements (m) out, in the world's frame, by
 /// node. Precondition: island.factorised.
 void solve(IslandStep& step, NewtonSystem& island);
 

@@ -17,10 +17,10 @@ struct LawStep {
   const ContactStep& step;
   double stiffness;       // N/m
   double impactFactor;    // stiffness scale per squared approach speed
-  double stiffeningKeep;  // what is left after the step of a stiffening beyond 1
+  double stiffeningKeep;  // factor on a stiffening beyond 1 after the step
   double maxwellGain;     // share of its lag that the Maxwell branch loses in the step
-  double perAdvance;      // 1/s; 0 where the memory is not advanced
-  double pointMass;       // kg that a point moves at least: all four of a face that is hit flat push and squash the block
+  double perAdvance;      // 1/s; 0 where the points are not advanced
+  double pointMass;       // kg, lower bound of the mass of a point: all four of a face that is hit flat push and squash the block
 };
 
 SPRINGTOWER_INLINE LawStep lawStep(const ContactView& m, const ContactLaw& law, const ContactStep& step, double reducedMass) {
@@ -40,7 +40,7 @@ SPRINGTOWER_INLINE bool any(const LaneMask& mask) {
   return (mask[0] | mask[1] | mask[2] | mask[3]) != 0;
 }
 
-// How four points stand in the normal direction.
+// Normal state of four points.
 struct PointState {
   LaneMask touching;
   LaneMask known;   // those that touched before
@@ -48,8 +48,8 @@ struct PointState {
   Lanes stiffness;  // N/m
 };
 
-// The tangential part of the law, for points that push with p.normalForce and close at `closing`: carries the displacement along,
-// keeps it tangential, and bounds it by the cone.
+// The tangential part of the law, for points with the normal force p.normalForce and the closing velocity `closing`: advances the
+// displacement, keeps it tangential, and bounds it by the cone.
 SPRINGTOWER_INLINE void frictionLaw(const LawStep& s, const PointState& state, const Lanes* relative, const Lanes* carried,
                                     const double* normal, PointLanes& p) {
   const Lanes zero = {0.0, 0.0, 0.0, 0.0};
@@ -87,7 +87,7 @@ SPRINGTOWER_INLINE void frictionLaw(const LawStep& s, const PointState& state, c
   squareRoot(squared, size);
   const Lanes keep = slides ? law.kineticFriction * push / size : one;
   p.slipRatio = slides & touching ? (keep > tuning::kMinSlipRatio ? keep : zero + tuning::kMinSlipRatio) : zero;
-  // What slips frees a little of the rest depth; friction's own loss pays for the work.
+  // Slip releases a little of the rest depth; the dissipation of friction pays for the work.
   Lanes displacementSize;
   squareRoot(displacement[0] * displacement[0] + displacement[1] * displacement[1] + displacement[2] * displacement[2],
              displacementSize);
@@ -100,7 +100,7 @@ SPRINGTOWER_INLINE void frictionLaw(const LawStep& s, const PointState& state, c
 }
 
 // The contact law on four points. `relative` is the velocity of upper against lower, `carried` the one that moved them since the
-// memory was last brought up to date; `inUse` is 1 for lanes that hold a point.
+// points were last advanced; `inUse` is 1 for lanes that hold a point.
 SPRINGTOWER_INLINE void pointLaw(const LawStep& s, const Lanes& depth, const Lanes* relative, const Lanes* carried,
                                  const double* normal, const Lanes& inUse, PointLanes& p) {
   const Lanes zero = {0.0, 0.0, 0.0, 0.0};
@@ -110,7 +110,7 @@ SPRINGTOWER_INLINE void pointLaw(const LawStep& s, const Lanes& depth, const Lan
 
   // First contact: the rest depth is the depth when it is detected (explicit steps) or 0 (implicit steps), so the spring starts
   // unloaded and adds no energy. Stiffness is multiplied so that the impact at the present closing speed stops within the impact
-  // depth. The rest depth shrinks with the depth as the point lifts, where the spring stores nothing.
+  // depth. The rest depth shrinks with the depth as the point lifts, while the spring stores nothing.
   const LaneMask touching = (depth > zero) & (inUse > zero);
   const LaneMask known = touching & (p.touching > zero);
   Lanes impact = s.impactFactor * closing * closing;
@@ -123,7 +123,7 @@ SPRINGTOWER_INLINE void pointLaw(const LawStep& s, const Lanes& depth, const Lan
   const Lanes elastic = depth - p.restDepth;
   const Lanes maxwell = p.maxwellDepth + (elastic - p.maxwellDepth) * s.maxwellGain;
   const Lanes pushedOut =
-      elastic * (1.0 + 1.0 / std::max(law.maxwellRatio, tuning::kMinMaxwellRatio));  // beyond this the branch would pull
+      elastic * (1.0 + 1.0 / std::max(law.maxwellRatio, tuning::kMinMaxwellRatio));  // beyond this the Maxwell branch would pull
   p.maxwellDepth = known ? (maxwell < pushedOut ? maxwell : pushedOut) : zero;
   const Lanes stiffness = s.stiffness * p.stiffening;
   // Implicit steps only: a point that makes contact inside the step has been closing for a part of it. Its damping velocity is
@@ -133,7 +133,7 @@ SPRINGTOWER_INLINE void pointLaw(const LawStep& s, const Lanes& depth, const Lan
   Lanes push = stiffness * (elastic + law.maxwellRatio * (elastic - p.maxwellDepth) + law.dampingTime_s * damped);
   push = touching & (push > zero) & (elastic > zero) ? push : zero;
   if (s.step.kick_s > 0.0 && any(p.stiffening > one)) {
-    // A point that is thrown back within the step is given no more energy than it came with and its spring stores.
+    // A point that rebounds within the step receives no more energy than its kinetic energy and that of its spring.
     const Lanes spring = stiffness * (elastic + law.maxwellRatio * (elastic - p.maxwellDepth));
     const Lanes given = closing * closing + spring * (elastic - closing * s.step.kick_s) / s.pointMass;
     Lanes back;
@@ -161,7 +161,7 @@ SPRINGTOWER_INLINE void sums(const Lanes& a, const Lanes& b, const Lanes& c, Lan
   result = even + odd;
 }
 
-// Puts [force, moment along u, moment along v] of one component into a block's affine forces.
+// Writes [force, moment along u, moment along v] of one component to a block's affine forces.
 SPRINGTOWER_INLINE void place(const Lanes& total, double sign, const FaceAxes& face, std::size_t k, AffineField& force) {
   force.centre[k] = sign * total[0];
   force.side[face.across][k] = sign * face.side * total[0];
@@ -169,7 +169,7 @@ SPRINGTOWER_INLINE void place(const Lanes& total, double sign, const FaceAxes& f
   force.side[face.v][k] = sign * total[2];
 }
 
-// A face of a block: where it lies, how it moves, and what carried it.
+// A face of a block: its place, its motion, and the motion that moved it.
 struct MovingFace {
   FaceField place;
   FaceField motion;
@@ -183,7 +183,7 @@ SPRINGTOWER_INLINE void movingFaceOf(const ContactSide& side, const FaceAxes& ax
   if (!SameMotion) faceOf(*side.carried, axes, face.carried);
 }
 
-// What lies under a face: the floor, or the face of another block.
+// The surface under a face: the floor, or the face of another block.
 struct FaceBelow {
   MovingFace face;
   double normal[3] = {0.0, 0.0, 1.0};
@@ -292,7 +292,7 @@ SPRINGTOWER_INLINE void faceForces(const ContactView& m, const ContactSide& uppe
   }
 }
 
-// Edges that cross: one point, whose normal is the edges' common normal and whose places are where they come closest.
+// Crossing edges: one point, whose normal is the edges' common normal and whose places are those of closest approach.
 SPRINGTOWER_INLINE void edgeForces(const ContactView& m, const ContactSide& upper, const ContactSide& lower, const LawStep& law,
                                    const PointRows* keep, PairForce& result, PointForces* report) {
   const EdgeAxes edgeUpper = edgeAxes(m.incidentFace);

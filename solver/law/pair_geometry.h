@@ -7,16 +7,16 @@
 
 namespace springtower {
 
-// Where the points of a manifold lie on its blocks, for kernels that take four of them at a time.
+// Positions of a manifold's points on its blocks, for kernels that process four at a time.
 
-/// A block's face as lanes need it: centre and sides of its place and of its motions.
+/// A block's face in the form that SIMD kernels use: centre and sides of its place or of its motion.
 struct FaceField {
   double centre[3];
   double sideU[3];
   double sideV[3];
 };
 
-/// That of a field of places, m, or velocities, m/s.
+/// The face of a field of places, m, or velocities, m/s.
 SPRINGTOWER_INLINE void faceOf(const AffineField& field, const FaceAxes& face, FaceField& result) {
   for (std::size_t k = 0; k < 3; ++k) {
     result.centre[k] = field.centre[k] + face.side * field.side[face.across][k];
@@ -25,7 +25,7 @@ SPRINGTOWER_INLINE void faceOf(const AffineField& field, const FaceAxes& face, F
   }
 }
 
-/// The field at four places of the face (u, v: -1/2..1/2), one component after the other.
+/// The field at four places of the face (u, v: -1/2..1/2), one array of lanes a component.
 SPRINGTOWER_INLINE void at(const FaceField& face, const Lanes& u, const Lanes& v, Lanes* result) {
   for (int k = 0; k < 3; ++k) result[k] = face.centre[k] + u * face.sideU[k] + v * face.sideV[k];
 }
@@ -56,8 +56,8 @@ SPRINGTOWER_INLINE double dot(const double* p, const double* q) {
   return p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
 }
 
-/// Edges that cross: their common normal towards upper, unit; where on each of them they come closest; and by how much they are
-/// apart there along the normal, m.
+/// Two crossing edges: their common normal towards upper, unit; the positions of closest approach on each; and their distance
+/// there along the normal, m.
 struct Crossing {
   double normal[3];
   double onUpper;

@@ -5,7 +5,7 @@
 
 namespace springtower {
 
-/// What four points of a manifold store, and their forces, as the contact law works on them.
+/// State and forces of four points of a manifold, in the form that the contact law works on.
 struct PointLanes {
   Lanes displacement[3];
   Lanes maxwellDepth, restDepth, stiffening, touching, slipRatio;
@@ -13,7 +13,7 @@ struct PointLanes {
   Lanes normalForce;
 };
 
-/// Reads a row of points, and writes it back.
+/// Loads a row of points, and stores it.
 SPRINGTOWER_INLINE void loadPoints(const PenaltyRow& row, PointLanes& p) {
   load(row.displacement[0].data(), p.displacement[0]);
   load(row.displacement[1].data(), p.displacement[1]);

@@ -6,11 +6,11 @@ namespace springtower {
 
 namespace {
 
-// Each of eight corners is half an edge from the centre: forces that are halved on them, and halved again in their sum on the
-// edge.
+// Each of eight corners is half an edge from the centre: the edge's forces are halved at the corners, and halved again in the
+// generalised force of the edge.
 constexpr double kOnEdge = 0.25 * kCorners;
 
-// A vector shortened to a length.
+// A vector shortened to at most this length.
 Vec3 within(const Vec3& vector, double length) {
   const double norm = vector.norm();
   return norm > length ? Vec3(vector * (length / norm)) : vector;
@@ -24,12 +24,12 @@ Eigen::Matrix3d withinSlope(const Vec3& vector, double length) {
   return length / norm * (Eigen::Matrix3d::Identity() - way * way.transpose());
 }
 
-// What the tether would do to the block's centre without its limits.
+// Force of the tether on the block's centre without its limits.
 struct CentrePull {
   Vec3 missing;   // m, from the block to the copy
-  Vec3 distance;  // m, of it, as far as springs reach
+  Vec3 distance;  // m, the same, limited to the springs' largest extension
   Vec3 wanted;    // N
-  Vec3 along;     // N, of it along the hand's line
+  Vec3 along;     // N, its part along the hand's line
   Vec3 across;    // N, the rest
 };
 
@@ -45,11 +45,11 @@ CentrePull centrePull(const Tether& tether, const MotionState& state, double ahe
   return pull;
 }
 
-// What would turn it without its limit. The tether holds the two longer mean edges: corners that warp are left to the block's own
-// springs, and so is the shortest edge, which friction on the faces shears without turning the block.
+// Rotating forces of the tether without their limit. The tether holds the two longer mean edges: warps are left to the block's
+// own springs, and so is the shortest edge, which friction on the faces shears without rotating the block.
 struct EdgePull {
   Eigen::Matrix3d edges;   // m
-  Eigen::Matrix3d wanted;  // N, a column an edge: a corner is pushed by the sum of half of each, to its side
+  Eigen::Matrix3d wanted;  // N, one column per edge: the force on a corner is half the sum of the columns, with its signs
   Vec3 torque;             // N m
 };
 
@@ -140,7 +140,7 @@ TetherMatrix tetherResistance(const Tether& tether, const BlockModel& model, con
     if (a != free) result.diagonal().segment<3>(3 + 3 * a) = share * resists;
   }
   if (share < 1.0 && share > 0.0) {
-    // The share falls as the torque grows that it is of.
+    // The share decreases as the torque grows.
     const Vec3 way = turn.torque.normalized();
     const Eigen::Matrix3d force = kOnEdge * turn.wanted;
     for (int b = 0; b < 3; ++b) {

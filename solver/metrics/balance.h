@@ -10,12 +10,12 @@ namespace springtower {
 /// A force of the scene (UserForce) that acted in the frame that has just ended.
 struct UserPush {
   std::size_t block;
-  Vec3 place;  ///< m, where it acts now
+  Vec3 place;  ///< m, present point of application
   Vec3 force;  ///< N
 };
 std::vector<UserPush> userPushes(const Simulation& simulation);
 
-/// What gravity, the scene's forces and the contacts leave over on a block: nothing while it rests. A hand is not counted.
+/// Sum of gravity, the scene's forces and the contact forces on a block: zero while it rests. The hand is not included.
 struct Imbalance {
   double force = 0.0;   ///< in weights of the block
   double torque = 0.0;  ///< about its centre, in its weight times its height (its shortest edge)
@@ -27,7 +27,7 @@ std::vector<Imbalance> imbalances(const Simulation& simulation, std::span<const 
 /// The largest force and the largest torque of any block. Zeros without blocks.
 Imbalance largestImbalance(std::span<const Imbalance> imbalances);
 
-/// How far the friction of the worst contact point is outside its Coulomb cone, N; 0 if all are inside. The cone is that of the
+/// Largest distance of the friction of a contact point outside its Coulomb cone, N; 0 if all are inside. The cone is that of the
 /// larger of both coefficients.
 double farthestOutsideCone(const Simulation& simulation, std::span<const ContactForce> contacts);
 

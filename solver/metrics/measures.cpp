@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kDegreesPerRadian = 180.0 / std::numbers::pi;
 
-// The trace of the turn from one box to the other, 1 + 2 cos(angle): no arc cosine for blocks that stand.
+// The trace of the rotation from one box to the other, 1 + 2 cos(angle): saves the arc cosine for blocks that stand.
 double turnTrace(const FittedBox& from, const FittedBox& to) {
   return from.axis[0].dot(to.axis[0]) + from.axis[1].dot(to.axis[1]) + from.axis[2].dot(to.axis[2]);
 }
@@ -62,7 +62,7 @@ Standing standing(const BlockModel& model, std::span<const FittedBox> start, con
     if (!leftOut.empty() && leftOut[b] != 0) continue;
     const FittedBox box = fittedBox(position, b);
     const Vec3 move = box.centre - start[b].centre;
-    // Written so that a comparison with a number that is not finite counts as fallen.
+    // Written so that a value that is not finite counts as fallen.
     if (!(-move.z() <= kFallDropInHeights * model.dimensions[b].z())) return {false, blockId(b), Fall::lower, -move.z()};
     const double shift = std::hypot(move.x(), move.y());
     if (!(shift <= kFallShiftInWidths * model.dimensions[b].y())) return {false, blockId(b), Fall::sideways, shift};
@@ -95,7 +95,7 @@ ParticleArray stackedReference(const ParticleArray& start, std::span<const int> 
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return row[a] < row[b]; });
 
-  // Blocks come row by row; [belowBegin, belowEnd) of `order` are those of the row below.
+  // Blocks are in order of rows; [belowBegin, belowEnd) of `order` are those of the row below.
   std::size_t belowBegin = 0;
   std::size_t belowEnd = 0;
   std::size_t rowBegin = 0;

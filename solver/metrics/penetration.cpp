@@ -20,7 +20,7 @@ Corners corners(const ParticleArray& position, std::size_t block, std::size_t ax
   return Eigen::Map<const Corners>(position.values(axis, block));
 }
 
-// A block's corners, ready to be projected.
+// A block's corners as arrays for projections.
 struct Hull {
   std::array<Corners, 3> component;
 
@@ -31,7 +31,7 @@ struct Hull {
   }
 };
 
-// How far the second must move along the unit axis, either way, to be free of the first.
+// Least displacement of the second along the unit axis, in either direction, that separates it from the first.
 double overlapAlong(const Hull& first, const Hull& second, const Vec3& axis) {
   const Corners a = first.along(axis);
   const Corners b = second.along(axis);
@@ -65,7 +65,7 @@ void sortBlocks(PenetrationWorkspace& workspace) {
     workspace.axis = axis;
     return;
   }
-  // Little changes from frame to frame: insertion sort is nearly one pass.
+  // The order changes little from frame to frame: insertion sort is nearly one pass.
   for (std::size_t i = 1; i < order.size(); ++i) {
     const std::uint32_t block = order[i];
     std::size_t k = i;
@@ -96,7 +96,7 @@ double overlapDepth(const ParticleArray& position, std::size_t first, std::size_
   const FittedBox boxA = fittedBox(position, first);
   const FittedBox boxB = fittedBox(position, second);
   double depth = std::numeric_limits<double>::infinity();
-  // Whether the pair may still be deeper than what is worth knowing.
+  // Whether the pair may still be deeper than `worth`.
   const auto stillDeep = [&](const Vec3& axis) {
     depth = std::min(depth, overlapAlong(a, b, axis));
     return depth > worth;
@@ -127,7 +127,7 @@ Penetration maxPenetration(const ParticleArray& position, bool floor, Penetratio
   sortBlocks(workspace);
   findPairs(workspace);
 
-  // The most promising pair first, with the block numbers as a tie breaker; done once no pair can be deeper than the deepest.
+  // The pair with the largest bound first, block numbers as a tie breaker; ends when no pair can be deeper than the deepest.
   auto& pairs = workspace.pairs;
   const auto later = [](const Pair& a, const Pair& b) {
     if (a.bound != b.bound) return a.bound < b.bound;

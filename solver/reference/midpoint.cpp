@@ -4,8 +4,8 @@
 
 namespace springtower {
 
-// The textbook midpoint method (report 4.3.2): forces half a step ahead move the whole step. Figure 4.12 as printed reads a stale
-// state there and is first order. Undamped it is never stable: amplitudes grow by (w dt)^4 / 8 a step.
+// The textbook midpoint method (report 4.3.2): forces at half a step advance the whole step. Figure 4.12 as printed uses an
+// outdated state there and is of first order. Without damping it is never stable: amplitudes grow by (w dt)^4 / 8 a step.
 void stepMidpoint(IslandStep& step) {
   Engine& engine = step.engine;
   MotionState& state = step.simulation.state;

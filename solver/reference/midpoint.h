@@ -4,8 +4,8 @@
 
 namespace springtower {
 
-/// Advances simulation.state by one step of the explicit midpoint rule, and leaves the positions it started from in
-/// engine.memo.previous. The contact memory is brought up to date once a step.
+/// Advances simulation.state by one step of the explicit midpoint rule, and leaves its start positions in engine.memo.previous.
+/// Contact points are advanced once a step.
 void stepMidpoint(IslandStep& step);
 
 }  // namespace springtower

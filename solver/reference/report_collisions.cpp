@@ -34,7 +34,7 @@ struct Path {
   [[nodiscard]] MovingPoint corner(int c) const { return {from.at(c), to.at(c)}; }
 };
 
-// The box that a few corners of a block sweep (report 4.4.3).
+// The box swept by a few corners of a block (report 4.4.3).
 struct AlignedBox {
   std::array<double, 3> lower;
   std::array<double, 3> upper;
@@ -64,8 +64,8 @@ bool overlap(const AlignedBox& p, const AlignedBox& q) {
 
 constexpr std::array<int, kCorners> kAllCorners = {0, 1, 2, 3, 4, 5, 6, 7};
 
-// The report's plane intersection test (its 4.4.1): in front when the step begins, or as good as on the plane, and behind when it
-// ends.
+// The report's plane intersection test (its 4.4.1): in front of the plane at the start of the step, or on it within rounding, and
+// behind it at the end.
 bool passesToBack(const BernsteinCubic& side) {
   return side.coefficients[0] >= -side.error && side.coefficients[3] <= side.error && mayVanish(side);
 }
@@ -74,8 +74,7 @@ Vec3 at(const MovingPoint& point, double time) {
   return point.start + time * (point.end - point.start);
 }
 
-// Weights of a triangle's corners in a point of its plane (the areas of Eq. 4.15 and 4.16, which are undefined at the first
-// corner).
+// Barycentric weights of a point in a triangle's plane (the areas of Eq. 4.15 and 4.16, which are undefined at the first corner).
 std::array<double, 3> triangleWeights(const Vec3& point, const Vec3& p1, const Vec3& p2, const Vec3& p3, const Vec3& normal) {
   std::array<double, 3> weight = {normal.dot((p2 - point).cross(p3 - point)), normal.dot((p3 - point).cross(p1 - point)),
                                   normal.dot((p1 - point).cross(p2 - point))};
@@ -136,7 +135,7 @@ bool collidePointsWithFaces(IslandStep& step, const Path& points, const Path& fa
   return any;
 }
 
-// Where two lines p + s u and q + t w come nearest, s and t kept within their edges. Precondition: not parallel.
+// Closest points of two lines p + s u and q + t w, with s and t limited to their edges. Precondition: not parallel.
 std::array<double, 2> nearestOnEdges(const Vec3& p, const Vec3& u, const Vec3& q, const Vec3& w) {
   const Vec3 normal = u.cross(w);
   const double squared = normal.squaredNorm();
@@ -160,7 +159,8 @@ bool collideEdges(IslandStep& step, const Path& a, const Path& b, const Vec3& fr
       const MovingPoint a1 = a.corner(edgeA[1]);
       const MovingPoint b0 = b.corner(edgeB[0]);
       const MovingPoint b1 = b.corner(edgeB[1]);
-      // Two lines have no front. Here it lies where the first block is from the second, as for any two convex bodies that touch.
+      // Two lines have no front side. Here it is the side on which the first block lies relative to the second, as for any two
+      // convex bodies that touch.
       const Vec3 across = (a1.start - a0.start).cross(b1.start - b0.start);
       const double parallel = tuning::kReportParallelSine * (a1.start - a0.start).norm() * (b1.start - b0.start).norm();
       if (across.squaredNorm() < parallel * parallel) continue;
@@ -249,7 +249,7 @@ void resolveCollisions(IslandStep& step) {
     for (const std::int32_t pairAt : step.pairs) {
       const BlockPair& pair = engine.pairs.key[static_cast<std::size_t>(pairAt)];
       if (pair.b < 0) continue;
-      // A pair found clear stays so while neither path changes.
+      // A pair found free of collisions remains so while neither path changes.
       const std::array<std::uint32_t, 2> now = {engine.report.version[static_cast<std::size_t>(pair.a)],
                                                 engine.report.version[static_cast<std::size_t>(pair.b)]};
       if (pass > 0 && now == engine.report.testedAt[static_cast<std::size_t>(pairAt)]) continue;

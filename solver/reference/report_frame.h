@@ -4,13 +4,12 @@
 
 namespace springtower {
 
-// What method `report` asks of a frame.
+// Work of method `report` around the steps of a frame.
 
-/// Before the islands run: sizes what the collision loop needs for the pairs of the frame, and remembers the contacts.
+/// Before the islands run: sizes the data of the collision loop for the pairs of the frame, and saves the contacts.
 void prepareReportFrame(Simulation& simulation);
 
-/// When a frame has to be run again: wakes the disabled blocks that were hit hard and brings the contacts back to the frame's
-/// start.
+/// When a frame has to be run again: wakes the disabled blocks that were hit hard and restores the contacts of the frame's start.
 void rewindReportFrame(Simulation& simulation);
 
 /// After a step: travel and divergence as for the other methods (addTravel). Returns false, so that the frame is run again, when

@@ -20,8 +20,8 @@ double inverseMassOf(const IslandStep& step, const ReportSide& side) {
   return (inverse.own * squares - inverse.shared) / step.simulation.model.mass[static_cast<std::size_t>(side.block)];
 }
 
-// Shares an impulse (N s) out over a block's corners and lays its path anew: the report moves the next position at once
-// (its 4.5).
+// Distributes an impulse (N s) over a block's corners and updates its path: the report changes the next position at once (its
+// 4.5).
 void push(IslandStep& step, const ReportSide& side, const Vec3& impulse) {
   if (!moves(step, side)) return;
   const auto b = static_cast<std::size_t>(side.block);

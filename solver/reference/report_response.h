@@ -22,17 +22,17 @@ ReportSide secondSide(const ReportContact& contact);
 /// Whether a side can move: it is neither the floor nor a disabled block.
 bool moves(const IslandStep& step, const ReportSide& side);
 
-/// Velocity of the point that a side stands for, m/s: the weighted mean of its corners' (report Eq. 4.14); zero where it cannot
+/// Velocity of the point that a side represents, m/s: the weighted mean of its corners' (report Eq. 4.14); zero where it cannot
 /// move.
 Vec3 velocityOf(const IslandStep& step, const ReportSide& side);
 
-/// Lays the path that a block takes with its velocities in this step, for the collision tests.
+/// Sets the path of a block with its velocities in this step, for the collision tests.
 void layPath(IslandStep& step, std::size_t block);
 
-/// Answers a collision by an impulse along its normal, with (1 + e) as Eq. 2.11 asks and the inverse masses of weighted points in
-/// the denominator (report Eq. 4.13 prints (1 - e)), lays the paths anew, since the report moves the next position at once, and
-/// notes the contact. Does nothing and returns false where the points move apart already: an impulse never pulls. `contact` gets
-/// its impulse.
+/// Resolves a collision by an impulse along its normal, with (1 + e) as in Eq. 2.11 and the inverse masses of weighted points in
+/// the denominator (report Eq. 4.13 prints (1 - e)), updates the paths, since the report changes the next position at once, and
+/// records the contact. Does nothing and returns false if the points already separate: an impulse never pulls. The impulse is
+/// stored in `contact`.
 bool respond(IslandStep& step, ReportContact& contact);
 
 }  // namespace springtower

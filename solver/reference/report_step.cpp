@@ -23,9 +23,9 @@ double particleMass(const BlockModel& model, const ReportContact& contact) {
   return mass / static_cast<double>(kCorners);
 }
 
-// Dynamic friction from the collisions of the step before (report 4.6 and Eq. 2.18), against the tangential velocity now, and the
-// report's drag (5.7.2) for each unit of mass of the lighter particle. There is no static friction: at rest its direction is the
-// noise's.
+// Dynamic friction from the collisions of the step before (report 4.6 and Eq. 2.18), against the present tangential velocity, and
+// the report's drag (5.7.2) for each unit of mass of the lighter particle. There is no static friction: at rest its direction is
+// that of numerical noise.
 void addFriction(IslandStep& step) {
   const Simulation& simulation = step.simulation;
   const Engine& engine = step.engine;
@@ -37,7 +37,7 @@ void addFriction(IslandStep& step) {
       const auto elsewhere = [&](const ReportSide& side) {
         return moves(step, side) && engine.memo.islands.islandOf[static_cast<std::size_t>(side.block)] != island;
       };
-      if (elsewhere(first) || elsewhere(second)) continue;  // they have parted since
+      if (elsewhere(first) || elsewhere(second)) continue;  // they have separated since
       Vec3 relative = velocityOf(step, first) - velocityOf(step, second);
       relative -= relative.dot(contact.normal) * contact.normal;
       const double speed = relative.norm();
@@ -55,7 +55,7 @@ void addFriction(IslandStep& step) {
 }  // namespace
 
 // The 2003 report's step (its Figure 5.2): springs, gravity and friction give the next velocities (Eq. 4.4), the collision loop
-// corrects them, and the next state is accepted whatever is left.
+// corrects them, and the next state is accepted with any collisions left.
 void stepReport(IslandStep& step) {
   MotionState& state = step.simulation.state;
   evaluateForces(step, state, state.velocity, 0.0, Memory::drop);

@@ -4,8 +4,7 @@
 
 namespace springtower {
 
-/// Advances simulation.state by one step of the 2003 report's program, and leaves the positions it started from in
-/// engine.memo.previous. The contact memory is brought up to date once a step.
+/// Advances simulation.state by one step of the 2003 report's program, and leaves its start positions in engine.memo.previous.
 void stepReport(IslandStep& step);
 
 }  // namespace springtower

@@ -4,8 +4,8 @@
 
 namespace springtower {
 
-// What the methods with stages inside a step share. Their states keep positions and velocities at the same time; the contact
-// memory is advanced from the step's start to a stage with the velocities that carried the stage's positions there.
+// Common parts of the methods with stages inside a step. In their states positions and velocities belong to the same time;
+// contact points are advanced from the step's start to a stage with the velocities that moved the stage's positions there.
 
 /// Evaluates forces at `source` and stores the accelerations of the island's corners in `acceleration`.
 void stageAcceleration(IslandStep& step, const MotionState& source, const ParticleArray& carried, double advance_s, bool commit,
@@ -19,7 +19,7 @@ void advanceStage(const IslandStep& step, const MotionState& base, const Particl
 /// Copies values of the corners of the island's blocks.
 void copyCorners(const IslandStep& step, const ParticleArray& from, ParticleArray& to);
 
-/// Notes the positions the step starts from in engine.memo.previous.
+/// Stores the start positions of the step in engine.memo.previous.
 void rememberPositions(IslandStep& step);
 
 }  // namespace springtower

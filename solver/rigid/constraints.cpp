@@ -7,7 +7,7 @@ namespace springtower {
 
 namespace {
 
-// Where up to four points of a manifold lie: half way between the blocks, m; how deep, m; and the unit normal towards upper.
+// Up to four points of a manifold: position half way between the blocks, m; depth, m; and the unit normal towards upper.
 struct Places {
   Lanes middle[3];
   Lanes depth;
@@ -47,11 +47,11 @@ SPRINGTOWER_INLINE void edgePlaces(const ContactView& m, const AffineField& uppe
   }
 }
 
-// What a body adds to the inverse effective masses at a place.
+// Contribution of a body to the inverse effective masses at a point.
 struct Share {
   Lanes arm, lever, turn;
   double normal;
-  double all;  // of the three directions together
+  double all;  // sum over the three directions
 };
 
 SPRINGTOWER_INLINE void shareOf(const SolverBody& body, const Lanes& normal, Share& share) {
@@ -64,7 +64,7 @@ SPRINGTOWER_INLINE void shareOf(const SolverBody& body, const Lanes& normal, Sha
   share.all = 3.0 * body.inverseMass + trace * sum(share.arm * share.arm) - sum(share.arm * twice);
 }
 
-// What the point did in the step before, to start from.
+// Warm start with the impulses of the step before.
 SPRINGTOWER_INLINE void warmStart(const ContactView& m, std::size_t i, double step_s, ContactConstraint& p) {
   const ImpulseRow& row = m.impulse(i);
   const std::size_t lane = laneOf(i);
@@ -111,7 +111,7 @@ SPRINGTOWER_INLINE void addPoints(const ContactView& m, const Mover& upper, cons
       p.turnLower = low.turn;
       const double normal = up.normal + low.normal;
       p.normalMass = 1.0 / normal;
-      // Across the normal both directions together ask for the rest, and each for no less than the masses alone.
+      // The two tangential directions together have the rest of the sum, and each has at least the inverse masses alone.
       p.acrossMass = 1.0 / (up.all + low.all - normal - (upper.body.inverseMass + lower.body.inverseMass));
       warmStart(m, i, step_s, p);
       p.gap = m.impulse(i).restDepth[lane] + pressedDepth(simulation, m, i) - places.depth[lane];
@@ -159,7 +159,8 @@ void gatherPoints(IslandStep& step, RigidIsland& island, bool again) {
     const BlockFrame* lower = m.lower < 0 ? nullptr : &engine.memo.frames[static_cast<std::size_t>(m.lower)];
     addPoints(m, mover(m.upper), mover(m.lower), upper, lower, step.simulation, step.drift_s, at, island.points);
   }
-  island.known.reserve(island.points.capacity());  // they change places: one that lags behind would grow when frames run again
+  // The two are swapped: with unequal capacities a frame that is run again would allocate.
+  island.known.reserve(island.points.capacity());
 }
 
 void keepPoints(IslandStep& step, const RigidIsland& island) {

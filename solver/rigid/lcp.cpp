@@ -11,14 +11,14 @@ namespace springtower {
 
 namespace {
 
-// A linear complementarity problem with bounds: velocity = matrix impulse + velocity0, each row either clamped (velocity 0) or
-// at a bound of its impulse. Rows enter one by one, as Baraff (1994) has it: a new row's impulse grows from zero, the clamped
-// rows keep their velocities at zero, and whatever reaches a bound on the way changes sides.
+// A linear complementarity problem with bounds: velocity = matrix impulse + velocity0, each row either clamped (velocity 0) or at
+// a bound of its impulse. Rows enter one by one (Baraff 1994): the impulse of a new row grows from zero, the clamped rows keep
+// their velocities at zero, and a row that reaches a bound on the way changes its state.
 class Pivoting {
  public:
   Pivoting(LcpWorkspace& space, std::size_t rows) : s_(space), rows_(rows) {}
 
-  // Brings row `row` in. Where that takes too many pivots the row is left as it stands: the method cycles.
+  // Drives row `row` into the solution. If that takes too many pivots, because the method cycles, the row is left as it is.
   void drive(std::size_t row) {
     if (s_.least[row] == 0.0 && s_.velocity[row] >= -tuning::kLcpZeroSpeed_m_s) return;
     for (std::size_t pivot = 0; pivot < tuning::kMaxLcpPivotsPerRow * rows_; ++pivot) {
@@ -34,7 +34,7 @@ class Pivoting {
   [[nodiscard]] double a(std::size_t i, std::size_t j) const { return s_.matrix[i * rows_ + j]; }
   double& inverse(std::size_t i, std::size_t j) { return s_.inverse[i * rows_ + j]; }
 
-  // One step of driving: as far as the first row on the way allows. Returns whether the driven row has found its place.
+  // One step of driving: as far as the first blocking row allows. Returns whether the driven row has reached its final state.
   bool stepTowards(std::size_t row) {
     const double way = s_.velocity[row] < 0.0 ? 1.0 : -1.0;
     changesFor(row, way);
@@ -47,7 +47,7 @@ class Pivoting {
       longest = std::abs(bound - s_.impulse[row]);
       bounded = true;
     }
-    for (std::size_t j = 0; j < row; ++j) {  // later ones are not bounded yet
+    for (std::size_t j = 0; j < row; ++j) {  // later rows have not entered yet
       double reach = std::numeric_limits<double>::infinity();
       if (s_.placeOf[j] >= 0) {
         const double change = s_.impulseChange[j];
@@ -84,7 +84,7 @@ class Pivoting {
     return false;
   }
 
-  // How impulses and velocities change with the driven row's impulse.
+  // Changes of impulses and velocities per unit of the driven row's impulse.
   void changesFor(std::size_t row, double way) {
     const std::size_t count = s_.clamped.size();
     for (std::size_t i = 0; i < count; ++i) {
@@ -124,7 +124,7 @@ class Pivoting {
     s_.velocity[row] = 0.0;
   }
 
-  // Takes a row out again: it changes places with the last one, whose border is removed.
+  // Removes a row: swaps it with the last one, and removes that one's border.
   void release(std::size_t row) {
     const auto place = static_cast<std::size_t>(s_.placeOf[row]);
     const std::size_t last = s_.clamped.size() - 1;
@@ -158,7 +158,7 @@ ConstraintRow rowAt(std::size_t row, std::size_t contacts) {
   return {(row - contacts) / 2, 1 + (row - contacts) % 2};
 }
 
-// What a unit impulse along `q` at one contact does to the velocity along `p` at another, 1/kg.
+// Velocity along `p` at one contact by a unit impulse along `q` at another, 1/kg.
 double coupling(const RigidIsland& island, const RigidContact& at, const Vec3& p, const RigidContact& from, const Vec3& q) {
   double sum = 0.0;
   const auto through = [&](std::int32_t body, const Vec3& armAt, double signAt) {
@@ -173,7 +173,7 @@ double coupling(const RigidIsland& island, const RigidContact& at, const Vec3& p
   return sum;
 }
 
-// Matrix and velocities without contact impulses: row by row, a unit impulse along one and what it does to all.
+// Matrix, and velocities without contact impulses: row by row, the effect of a unit impulse along one row on all.
 void assemble(IslandStep& step, RigidIsland& island) {
   LcpWorkspace& s = island.pivoting;
   const std::size_t contacts = island.contacts.size();
@@ -203,7 +203,7 @@ void assemble(IslandStep& step, RigidIsland& island) {
   }
 }
 
-// Friction is bounded by the normal impulses as they stand without it, by one bound for each tangent: a pyramid, not a cone.
+// Bounds friction by the normal impulses of the problem without friction, one bound for each tangent: a pyramid, not a cone.
 void boundTangents(RigidIsland& island) {
   LcpWorkspace& s = island.pivoting;
   const std::size_t contacts = island.contacts.size();

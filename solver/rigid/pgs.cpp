@@ -12,8 +12,8 @@ namespace springtower {
 
 namespace {
 
-// A soft constraint: `rate` of the gap is closed in a second, `mass` and `impulse` are the shares of the rigid answer and of the
-// impulse so far.
+// A soft constraint: `rate` is the share of the gap closed in a second; `mass` scales the impulse of a rigid constraint, and
+// `impulse` is the share of the accumulated impulse that is subtracted.
 struct Softness {
   double rate = 0.0;
   double mass = 1.0;
@@ -27,17 +27,17 @@ Softness softness(double step_s) {
   return {omega / a, b / (1.0 + b), 1.0 / (1.0 + b)};
 }
 
-// What the passes ask of all points of a step.
+// Parameters common to all points in a pass.
 struct Pass {
   double step_s;
   double kinetic;  // coefficient of friction
-  double most;     // m/s, at which blocks are pushed apart
+  double most;     // m/s, largest push-out speed
   Softness soft;   // of those that overlap
-  bool push;       // whether these are pushed apart, or that is taken out of the velocities again
+  bool push;       // true: overlapping blocks are pushed apart; false: the push-out is removed from the velocities
 };
 
-// One point: friction first, bounded by the cone of the push so far, then the push, so that along the normal the blocks do not
-// come closer than their gap.
+// One point: friction first, bounded by the cone of the accumulated normal impulse, then the normal impulse, so that along the
+// normal the blocks do not come closer than their gap.
 SPRINGTOWER_INLINE void solvePoint(const Pass& pass, std::vector<SolverBody>& bodies, ContactConstraint& p) {
   SolverBody& upper = bodies[static_cast<std::size_t>(p.upper)];
   SolverBody& lower = bodies[static_cast<std::size_t>(p.lower)];
@@ -48,13 +48,13 @@ SPRINGTOWER_INLINE void solvePoint(const Pass& pass, std::vector<SolverBody>& bo
   const double opening = sum(p.normal * relative);
   double least = 0.0;
   double share = 1.0;
-  double forgotten = 0.0;
+  double released = 0.0;
   if (p.gap > 0.0) {
     least = -p.gap / pass.step_s;
   } else if (pass.push) {
     least = std::min(-pass.soft.rate * p.gap, pass.most);
     share = pass.soft.mass;
-    forgotten = pass.soft.impulse;
+    released = pass.soft.impulse;
   }
   if (p.idle && opening >= least) return;
 
@@ -72,7 +72,7 @@ SPRINGTOWER_INLINE void solvePoint(const Pass& pass, std::vector<SolverBody>& bo
   crossLanes(p.armLower, change, momentLower);
 
   const double now = opening + sum(p.turnUpper * momentUpper + p.turnLower * momentLower);
-  const double push = std::max(0.0, p.push + p.normalMass * share * (least - now) - forgotten * p.push);
+  const double push = std::max(0.0, p.push + p.normalMass * share * (least - now) - released * p.push);
   const double more = push - p.push;
   p.push = push;
   p.idle = push == 0.0 && most == 0.0;
@@ -92,9 +92,9 @@ void solvePoints(const Pass& pass, std::vector<SolverBody>& bodies, std::vector<
   for (ContactConstraint& point : points) solvePoint(pass, bodies, point);
 }
 
-// The impulses of the step before, to start from.
+// Warm start with the impulses of the step before.
 SPRINGTOWER_KERNEL
-void applyKnown(std::vector<SolverBody>& bodies, const std::vector<ContactConstraint>& points) {
+void applyWarmStart(std::vector<SolverBody>& bodies, const std::vector<ContactConstraint>& points) {
   for (const ContactConstraint& p : points) {
     if (p.idle) continue;
     SolverBody& upper = bodies[static_cast<std::size_t>(p.upper)];
@@ -112,7 +112,7 @@ void applyKnown(std::vector<SolverBody>& bodies, const std::vector<ContactConstr
   }
 }
 
-// Brings the gaps to the step's end, to first order in the turns.
+// Updates the gaps to the step's end, to first order in the rotations.
 SPRINGTOWER_KERNEL
 void moveGaps(const std::vector<RigidBody>& bodies, std::vector<ContactConstraint>& points) {
   const auto read = [&](std::int32_t at, Lanes& moved, Lanes& turned) {
@@ -130,8 +130,8 @@ void moveGaps(const std::vector<RigidBody>& bodies, std::vector<ContactConstrain
   }
 }
 
-// Notes which bodies have a contact that pushes. Returns whether any has.
-bool notePushed(RigidIsland& island) {
+// Marks the bodies with a contact that pushes. Returns whether there is any.
+bool markPushed(RigidIsland& island) {
   for (RigidBody& body : island.bodies) body.pushed = false;
   for (const ContactConstraint& p : island.points) {
     for (const std::int32_t at : {p.upper, p.lower}) {
@@ -142,7 +142,7 @@ bool notePushed(RigidIsland& island) {
   return std::any_of(island.bodies.begin(), island.bodies.end(), [](const RigidBody& body) { return body.pushed; });
 }
 
-// Whether any two blocks overlap by much.
+// Whether any two blocks overlap deeply.
 bool isDeep(const IslandStep& step, const RigidIsland& island) {
   const double deep = -tuning::kDeepOverlap * step.simulation.lengths.blockHeight_m;
   return std::any_of(island.points.begin(), island.points.end(), [&](const ContactConstraint& p) { return p.gap < deep; });
@@ -169,7 +169,7 @@ void removeAddedEnergy(std::vector<RigidBody>& bodies, double added) {
   }
 }
 
-// Passes over all points, from the bodies' velocities to the bodies' velocities.
+// Passes over all points, from the bodies' velocities to their new velocities.
 void runPasses(IslandStep& step, RigidIsland& island, int passes, bool push) {
   const Scene& scene = step.simulation.scene;
   Pass pass;
@@ -178,7 +178,7 @@ void runPasses(IslandStep& step, RigidIsland& island, int passes, bool push) {
   pass.most = tuning::kMaxPushSpeed * step.simulation.lengths.blockHeight_m / step.simulation.lengths.fallTime_s;
   pass.soft = isRigid(scene.settings.method) ? softness(step.drift_s) : Softness{tuning::kRigidModeBaumgarte / step.drift_s};
   pass.push = push;
-  if (push) applyKnown(island.movers, island.points);
+  if (push) applyWarmStart(island.movers, island.points);
   for (int i = 0; i < passes; ++i) solvePoints(pass, island.movers, island.points);
   step.counters.contactEvaluations += static_cast<std::uint64_t>(passes) * island.points.size();
   writeMovers(island);
@@ -186,21 +186,21 @@ void runPasses(IslandStep& step, RigidIsland& island, int passes, bool push) {
 
 }  // namespace
 
-// Sequential impulses (projected Gauss-Seidel on velocities; Catto 2005) with warm starting. Blocks that are apart may come as
-// near as the gap in one step; those that overlap are pushed out softly, and a second set of passes takes the push out of the
-// velocities again (soft contacts with relaxing, as in Catto's Solver2D, 2024).
+// Sequential impulses (projected Gauss-Seidel on velocities; Catto 2005) with warm starting. Separated blocks may approach by
+// their gap in one step; overlapping ones are pushed apart softly, and a second set of passes removes that push from the
+// velocities (soft contacts with relaxation, as in Catto's Solver2D, 2024).
 void solveAndIntegratePgs(IslandStep& step, RigidIsland& island, bool again) {
-  const bool falls = !isRigid(step.simulation.scene.settings.method);
+  const bool rigidMode = !isRigid(step.simulation.scene.settings.method);
   island.energyBefore_j = kineticEnergy(island.bodies);
   applyForces(step);
   gatherPoints(step, island, again);
   int passes = step.simulation.scene.settings.iterations;
-  if (falls && isDeep(step, island)) passes = std::max(passes, tuning::kDeepOverlapPasses);
+  if (rigidMode && isDeep(step, island)) passes = std::max(passes, tuning::kDeepOverlapPasses);
   runPasses(step, island, passes, true);
-  island.touches = notePushed(island);
+  island.touches = markPushed(island);
   for (RigidBody& body : island.bodies) {
     moveFreely(body, step.drift_s);
-    if (falls && !body.pushed) {  // it flies: with its mean velocity, not that of the step's end
+    if (rigidMode && !body.pushed) {  // in free flight: moves by its mean velocity, not by that of the step's end
       const Vec3 lag = 0.5 * step.drift_s * step.drift_s * step.gravity;
       body.place -= lag;
       body.moved -= lag;
@@ -213,7 +213,7 @@ void relaxPgs(IslandStep& step, RigidIsland& island) {
   moveGaps(island.bodies, island.points);
   readMovers(island);
   runPasses(step, island, step.simulation.scene.settings.iterations, false);
-  // Blocks that stand are moved by such pushes alone, slowly, and would be kept from it.
+  // Not in the rigid methods: there, blocks of a stack move by such slow pushes only, and the clamp would suppress them.
   if (!isRigid(step.simulation.scene.settings.method) && island.touches)
     removeAddedEnergy(island.bodies, kineticEnergy(island.bodies) - island.energyBefore_j);
   keepPoints(step, island);

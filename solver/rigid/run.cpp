@@ -19,7 +19,7 @@ namespace springtower {
 
 namespace {
 
-// Of a cuboid m (b^2 + c^2) / 12; with the mass in eight corners three times as much.
+// Inertia tensor of a cuboid, m (b^2 + c^2) / 12; with the mass in eight corners three times as much.
 Eigen::Matrix3d momentOf(const Simulation& simulation, std::size_t block, const RigidBody& body) {
   Eigen::Matrix3d moment = Eigen::Matrix3d::Zero();
   for (std::size_t c = 0; c < kCorners; ++c) {
@@ -109,7 +109,7 @@ void stepOnce(IslandStep& step, bool again) {
   clock.lap(Stage::integration);
 }
 
-// A vector turned by the rotation whose axis is that of `half` and the tangent of half whose angle is its length (Cayley).
+// A vector rotated about the direction of `half`, by an angle whose half has the tangent |half| (Cayley).
 SPRINGTOWER_INLINE Vec3 turnedVector(const Vec3& half, const Vec3& v) {
   const Vec3 once = half.cross(v);
   return v + 2.0 / (1.0 + half.squaredNorm()) * (once + half.cross(once));
@@ -149,7 +149,7 @@ void updateInertia(RigidBody& body) {
   body.inverseInertia = body.axes * body.inverseMoment * body.axes.transpose();
 }
 
-// The steps are long for the hand's springs, so they give way as they would at the step's end.
+// The steps are long for the hand's springs, so their forces are those at the step's end (implicit).
 void applyTether(IslandStep& step) {
   Tether tether = step.simulation.tether;
   const std::size_t b = index(tether.block);
@@ -176,7 +176,8 @@ void applyTether(IslandStep& step) {
 
 void applyForces(IslandStep& step) {
   RigidIsland& island = rigidIslandOf(step);
-  if (holdsTether(step)) applyTether(step);  // first: its dashpots would brake what gravity has not done yet
+  // First, as its dashpots would otherwise act against the velocity that gravity adds in this step.
+  if (holdsTether(step)) applyTether(step);
   for (RigidBody& body : island.bodies) body.velocity += step.drift_s * step.gravity;
   const std::int32_t own = step.engine.memo.islands.islandOf[static_cast<std::size_t>(step.blocks.front())];
   for (const UserForce& user : step.simulation.scene.forces) {

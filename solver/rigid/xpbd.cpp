@@ -8,7 +8,8 @@ namespace springtower {
 
 namespace {
 
-// A position impulse (N s2) on both blocks of a contact: it moves and turns them, and changes their velocities by as much a step.
+// Applies a position impulse (N s2) to both blocks of a contact: it moves and rotates them, and changes their velocities by the
+// displacement over the step.
 void applyCorrection(RigidIsland& island, const RigidContact& contact, const Vec3& correction, double step_s) {
   const auto correct = [&](std::int32_t at, const Vec3& arm, double sign) {
     if (at < 0) return;
@@ -24,20 +25,21 @@ void applyCorrection(RigidIsland& island, const RigidContact& contact, const Vec
   correct(contact.lower, contact.armLower, -1.0);
 }
 
-// `push` (N s2) is what the contact has pushed in this step, along each direction; `before` its normal part in the last step.
+// `push` (N s2) is the accumulated position impulse of the contact in this step, along each direction; `before` its normal part
+// in the last step.
 void solvePoint(RigidIsland& island, RigidContact& contact, std::array<double, 3>& push, double before, double step_s) {
   const double gap = contact.gap + contact.direction[0].dot(relativeMove(island, contact));
   const double normal = std::max(0.0, push[0] - contact.mass[0] * gap);
   applyCorrection(island, contact, (normal - push[0]) * contact.direction[0], step_s);
   push[0] = normal;
 
-  // The points of a manifold share the tangential load: each takes its part, or the first to be looked at would take all of it
-  // and slip. What is left stays in the anchors and is made up for in the next steps.
+  // The points of a manifold share the tangential load in equal parts; otherwise the first point would take all of it and slip.
+  // The remainder stays in the anchors and is corrected in the next steps.
   const std::array<double, 2> part = {contact.share * contact.mass[1], contact.share * contact.mass[2]};
   const Vec3 move = relativeMove(island, contact);
   double first = push[1] - part[0] * (contact.anchor_m[0] + move.dot(contact.direction[1]));
   double second = push[2] - part[1] * (contact.anchor_m[1] + move.dot(contact.direction[2]));
-  // A point that carries nothing in this pass, but did in the step before, keeps its hold.
+  // A point without load in this pass, but with one in the step before, keeps its friction.
   const double load = std::max(normal, before);
   boundFriction(first, second, contact.coefficient * load);
   applyCorrection(island, contact, (first - push[1]) * contact.direction[1] + (second - push[2]) * contact.direction[2], step_s);
@@ -45,9 +47,9 @@ void solvePoint(RigidIsland& island, RigidContact& contact, std::array<double, 3
   push[2] = second;
 }
 
-// An anchor stretches by what the corrections have left over. Where that is more than friction can hold, the point slides and its
-// anchor follows. Judged at the step's end: on the way, before the other points have done their part, any point would seem to
-// slide.
+// The anchor displacement grows by what the corrections have left over. If it exceeds what friction can hold, the point slides
+// and its anchor follows. This is decided at the step's end: during the passes, before the other points are corrected, any point
+// would appear to slide.
 void dragAnchor(const RigidIsland& island, double kinetic, RigidContact& contact) {
   const Vec3 move = relativeMove(island, contact);
   for (std::size_t k = 0; k < 2; ++k) contact.anchor_m[k] += move.dot(contact.direction[k + 1]);
@@ -57,8 +59,8 @@ void dragAnchor(const RigidIsland& island, double kinetic, RigidContact& contact
   if (contact.sliding) boundFriction(contact.anchor_m[0], contact.anchor_m[1], kinetic * load / part);
 }
 
-// Corrections become velocities, but what pushed two blocks apart does not throw them, and an anchor that pulled does not swing:
-// no rebound, and no speed across where the point sticks, as far as friction can stop it.
+// Removes velocities that the position corrections have added: the separating velocity along the normal, so there is no rebound,
+// and the tangential velocity of sticking points, as far as friction can stop it.
 void settleVelocity(RigidIsland& island, const RigidContact& contact) {
   if (contact.impulse[0] <= 0.0) return;
   const Vec3 relative = relativeVelocity(island, contact);
@@ -76,9 +78,10 @@ void settleVelocity(RigidIsland& island, const RigidContact& contact) {
 }  // namespace
 
 // Position-based dynamics with small steps (Macklin et al. 2019; rigid bodies as in Mueller et al. 2020), without compliance.
-// Rigid blocks rather than particles: 28 springs a block would be 28 more constraints to iterate over, for a compression that
-// the passes and not the springs decide. Friction holds on to where a point first stuck: an anchor that is kept from step to step
-// and dragged along where the point slides; held against the step's start alone, as published, a tower walks.
+// Rigid blocks rather than particles: 28 springs a block would be 28 more constraints to iterate over, for a compression that the
+// number of passes and not the springs would determine. Friction acts on the displacement from the anchor, the place where a
+// point first stuck, which is kept from step to step and follows the point where it slides. With friction relative to the step's
+// start only, as published, a tower drifts sideways.
 void stepXpbd(IslandStep& step, RigidIsland& island) {
   const Scene& scene = step.simulation.scene;
   const double step_s = step.drift_s;

@@ -15,14 +15,14 @@ double secondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-// What is measured of one frame.
+// Measures of one frame.
 struct FrameMeasures {
   Penetration penetration;
   double meanSquareSpeed = 0.0;
   Energy energy;  // when last measured
 };
 
-// Everything about a run that grows from frame to frame.
+// Everything about a run that accumulates from frame to frame.
 class Recorder {
  public:
   Recorder(const Simulation& simulation, const RunOptions& options)
@@ -40,7 +40,7 @@ class Recorder {
     now_.energy = result_.energyStart;
   }
 
-  // `unchanged`: nothing moved in this frame, so that the measures of the frame before still hold.
+  // `unchanged`: nothing moved in this frame, so the measures of the frame before still hold.
   void frame(const Simulation& simulation, const MoveRun& moves, bool unchanged, double wall_s, double processor_s) {
     wall_ms_.push_back(1e3 * wall_s);
     processor_ms_.push_back(1e3 * processor_s);
@@ -120,7 +120,7 @@ class Recorder {
     now_.energy = std::move(energy);
   }
 
-  // From here on penetration and creep are those of a settled scene. Rest that comes after kSettledTime_s starts them afresh.
+  // From here on penetration and creep are those of a settled scene. Rest that comes after kSettledTime_s restarts them.
   void settle(const Simulation& simulation) {
     settled_ = true;
     settledPosition_ = simulation.state.position;
@@ -152,16 +152,16 @@ class Recorder {
   std::vector<int> row_;              // of each block, or -1
   ParticleArray closed_;              // the start without gaps between rows
   std::vector<FittedBox> reference_;  // of closed_
-  std::size_t laid_ = 0;              // blocks whose new place is known
+  std::size_t laid_ = 0;              // blocks whose new place is included
   PenetrationWorkspace workspace_;
   FrameMeasures now_;
   double largestRise_j_ = 0.0;
-  bool rested_ = false;  // all blocks were at rest in the frame before
+  bool rested_ = false;  // whether all blocks were at rest in the frame before
   bool settled_ = false;
   ParticleArray settledPosition_;
   double settledPenetration_m_ = 0.0;
   double creep_m_ = 0.0;
-  std::vector<double> lastSecond_;  // mean square speeds of the last frames, a ring
+  std::vector<double> lastSecond_;  // mean square speeds of the last frames, a ring buffer
   std::vector<double> wall_ms_;
   std::vector<double> processor_ms_;
 };
@@ -189,7 +189,7 @@ RunResult runScene(Simulation& simulation, const RunOptions& options, const Fram
     if (afterFrame) afterFrame(simulation);
     const RunResult& soFar = recorder.soFar();
     if (options.stopWhenFallen && soFar.fallTime_s) break;
-    const double halfFrame_s = 0.5 * simulation.scene.settings.frame_s;  // times are sums of frames, with their rounding
+    const double halfFrame_s = 0.5 * simulation.scene.settings.frame_s;  // times are sums of frames, with rounding
     if (options.stopWhenAtRest && soFar.restTime_s &&
         simulation.time_s > *soFar.restTime_s + options.secondsAfterRest - halfFrame_s) {
       break;

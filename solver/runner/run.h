@@ -14,22 +14,22 @@
 
 namespace springtower {
 
-/// Without rest, penetration and creep are measured from this time on, s.
+/// Start time of the measurement of penetration and creep where a scene does not come to rest, s.
 inline constexpr double kSettledTime_s = 5.0;
 
-/// How a scene is run. It is the same driver for `run`, `verdict`, charts and tests.
+/// Options of a run. `run`, `verdict`, charts and tests use the same driver.
 struct RunOptions {
-  double seconds = 10.0;        ///< s; rounded to whole frames, at least one
-  bool stopWhenFallen = false;  ///< end with the frame in which the scene has fallen
-  bool stopWhenAtRest = false;  ///< end when all blocks are at rest
-  double secondsAfterRest =
-      0.0;  ///< s; with stopWhenAtRest, how much longer to look: what falls or creeps after all is then seen
-  bool measureEveryFrame = true;      ///< penetration, strain, creep, jitter and energy; else at the start and at the end only
+  double seconds = 10.0;          ///< s; rounded to whole frames, at least one
+  bool stopWhenFallen = false;    ///< end with the frame in which the scene has fallen
+  bool stopWhenAtRest = false;    ///< end when all blocks are at rest
+  double secondsAfterRest = 0.0;  ///< s; with stopWhenAtRest, time simulated beyond rest, to detect late falls and creep
+  bool measureEveryFrame =
+      true;  ///< penetration, strain, creep, jitter and energy in every frame; otherwise at the start and at the end only
   std::vector<std::uint8_t> leftOut;  ///< 1 for blocks that do not count for `stands`, [blocks] or empty
 };
 
-/// Times of the frames, ms: stepFrame alone, without measures and output. Processor time is the whole process's, over all
-/// threads; it is the one to quote on a busy machine.
+/// Times of the frames, ms: stepFrame only, without measures and output. CPU time is that of the whole process, over all threads;
+/// quote it on a busy machine.
 struct FrameTimes {
   double median = 0.0;
   double p99 = 0.0;
@@ -37,14 +37,14 @@ struct FrameTimes {
   double cpuMedian = 0.0;
 };
 
-/// What came of a run. Measures that the run was too short for are empty.
+/// Result of a run. Measures for which the run was too short are empty.
 struct RunResult {
   Standing standing;                       ///< the first fall, or that the scene stands
   std::optional<double> fallTime_s;        ///< first frame in which it had fallen
   std::optional<double> restTime_s;        ///< first frame in which all blocks were at rest (`atRest`)
   std::uint64_t frames = 0;                ///< of this run
   int substeps = 0;                        ///< steps of the last frame in which a block was awake
-  double simulated_s = 0.0;                ///< what this run added
+  double simulated_s = 0.0;                ///< simulated time of this run
   double wall_s = 0.0;                     ///< whole run, measures and callback included
   FrameTimes frameTimes;                   ///< ms
   std::array<double, kStages> stage_ms{};  ///< mean over the frames of this run
@@ -52,15 +52,15 @@ struct RunResult {
   WakeCounts wakes{};                      ///< blocks woken since then, by reason
   std::optional<double> maxPenetration_m;  ///< largest from restTime_s on, or from 5 s on without rest
   Penetration deepest;                     ///< largest of the whole run, its start included
-  double deepestTime_s = 0.0;              ///< when that was
+  double deepestTime_s = 0.0;              ///< time of the latter
   double bottomRowCompression_m = 0.0;     ///< at the end
   double maxStrain = 0.0;                  ///< largest of the whole run
   std::optional<double> creep_m;           ///< largest move of a corner from restTime_s on, or from 5 s on
   double jitter_m_s = 0.0;                 ///< root mean square over all corners and the last second
-  double topHeightError_m = 0.0;           ///< at the end, against rigid blocks without gaps
+  double topHeightError_m = 0.0;           ///< at the end, relative to rigid blocks without gaps
   Energy energyStart;
   Energy energyEnd;
-  std::optional<double> maxEnergyRise;  ///< largest rise of the total energy in a frame, over the initial total's size
+  std::optional<double> maxEnergyRise;  ///< largest rise of the total energy in a frame, over the magnitude of the initial total
   Imbalance imbalance;                  ///< largest at the end
   double outsideCone_n = 0.0;           ///< N, of the worst contact point at the end
   std::size_t asleepBlocks = 0;         ///< at the end
@@ -72,15 +72,16 @@ struct RunResult {
 /// Called once before the first frame and after every frame.
 using FrameCallback = std::function<void(const Simulation&)>;
 
-/// Runs a scene for a time and measures it. Rest, fall and penetration are judged against the state in which the simulation is
-/// handed over; times are simulated times. A frame in which every block sleeps is not measured again: nothing has changed. While
-/// all blocks are at rest the energy is not measured in every frame, as it would cost more than the frame; a rise over such a
-/// time counts as one. A scene with moves is run until the last of them has ended or it has fallen; blocks in the hand and those
-/// put aside are left out of `standing`, blocks laid down are judged against their new place, and there is no creep. Throws
-/// DivergenceError from the frame that diverges; the simulation is then left as that frame left it.
+/// Runs a scene for a time and measures it. Rest, fall and penetration are measured relative to the state at the call; times are
+/// simulated times. A frame in which every block sleeps is not measured again, because nothing has changed. While all blocks are
+/// at rest the energy is not measured in every frame, as that would cost more than the frame; a rise over such a period counts as
+/// one. A scene with moves is run until the last of them has ended or it has fallen; blocks in the hand and those put aside are
+/// left out of `standing`, blocks in a new place are compared with that place, and creep is not measured. Throws DivergenceError
+/// from the frame that diverges; the simulation is then left as that frame left it.
 RunResult runScene(Simulation& simulation, const RunOptions& options, const FrameCallback& afterFrame = {});
 
-/// The q-quantile (0 < q <= 1) of some values by nearest rank: the least value that at least q of them do not exceed. 0 for none.
+/// The q-quantile (0 < q <= 1) of some values by nearest rank: the least value that at least a share q of them does not exceed. 0
+/// for none.
 double quantile(std::vector<double> values, double q);
 
 }  // namespace springtower

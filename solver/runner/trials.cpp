@@ -16,13 +16,13 @@ double friction_n(const Simulation& simulation, double normal_n) {
   return simulation.scene.staticFriction * normal_n;
 }
 
-// A force through the coming frame and no further.
+// A force that acts through the coming frame only.
 UserForce forceNow(const Simulation& simulation, std::size_t block, const Vec3& force) {
   const double now = simulation.time_s;
   return {static_cast<int>(block), -1, force, now, now + 1.5 * simulation.scene.settings.frame_s};
 }
 
-// Where a point of a block is, given in shares of its edges from its centre.
+// Position of a point of a block, given in shares of its edges from its centre.
 Vec3 placeOn(const ParticleArray& position, std::size_t block, const Vec3& shares) {
   return centre(position, block) + meanEdges(position, block) * shares;
 }
@@ -31,14 +31,14 @@ Vec3 sharesOf(const ParticleArray& position, std::size_t block, const Vec3& plac
   return meanEdges(position, block).inverse() * (place - centre(position, block));
 }
 
-// Where a block bears on another: the centre of the pressure between them, as a point of either. On the floor it is a place.
+// Contact of a block with another: the centre of pressure, in the coordinates of either. On the floor it is a position.
 struct InterfacePoint {
   BlockId other;
   Vec3 onBlock;
   Vec3 onOther;
 };
 
-std::vector<InterfacePoint> seamsOf(const Simulation& simulation, const std::vector<ContactForce>& forces, BlockId block) {
+std::vector<InterfacePoint> interfacesOf(const Simulation& simulation, const std::vector<ContactForce>& forces, BlockId block) {
   struct Pressure {
     double normal_n = 0.0;
     Vec3 moment = Vec3::Zero();
@@ -51,13 +51,13 @@ std::vector<InterfacePoint> seamsOf(const Simulation& simulation, const std::vec
     pressure.moment += force.normalForce * force.point;
   }
   const ParticleArray& position = simulation.state.position;
-  std::vector<InterfacePoint> seams;
+  std::vector<InterfacePoint> interfaces;
   for (const auto& [other, pressure] : pressures) {
     const Vec3 place = pressure.moment / pressure.normal_n;
-    seams.push_back(
+    interfaces.push_back(
         {other, sharesOf(position, index(block), place), other == kFloor ? place : sharesOf(position, index(other), place)});
   }
-  return seams;
+  return interfaces;
 }
 
 }  // namespace
@@ -78,7 +78,7 @@ double normalForceOn(const std::vector<ContactForce>& forces, BlockId block, boo
   for (const ContactForce& force : forces) {
     const bool below = force.lower == block;
     const bool above = force.upper == block;
-    // A contact's upper block need not be the one that lies higher: side by side either may be.
+    // The upper block of a contact need not be the higher one: side by side it may be either.
     const bool fromAbove = (below && force.normal.z() > 0.5) || (above && force.normal.z() < -0.5);
     if ((below || above) && (!fromAboveOnly || fromAbove)) sum += force.normalForce;
   }
@@ -93,10 +93,10 @@ SlipTrial pullUntilSlip(Simulation& simulation, std::size_t block, const Vec3& d
   trial.normal_n = normalForceOn(forces, id, false);
   const double borne_n = friction_n(simulation, trial.normal_n);
 
-  const std::vector<InterfacePoint> seams = seamsOf(simulation, forces, id);
+  const std::vector<InterfacePoint> interfaces = interfacesOf(simulation, forces, id);
   const auto slip = [&] {
     double least = std::numeric_limits<double>::infinity();
-    for (const InterfacePoint& seam : seams) {
+    for (const InterfacePoint& seam : interfaces) {
       const Vec3 other =
           seam.other == kFloor ? seam.onOther : placeOn(simulation.state.position, index(seam.other), seam.onOther);
       least = std::min<double>(least, (placeOn(simulation.state.position, block, seam.onBlock) - other).dot(direction));
@@ -125,7 +125,7 @@ SlipTrial pullUntilSlip(Simulation& simulation, std::size_t block, const Vec3& d
 }
 
 TiltTrial tiltUntilFall(Scene scene, const TiltRamp& ramp) {
-  scene.gravity.tilt_deg = ramp.most_deg;  // stiff enough for the loads of the farthest lean, not only upright
+  scene.gravity.tilt_deg = ramp.most_deg;  // stiff enough for the loads at the largest tilt, not only upright
   scene.gravity.direction_deg = ramp.direction_deg;
   Simulation simulation(scene);
   simulation.scene.gravity.tilt_deg = 0.0;
@@ -133,7 +133,7 @@ TiltTrial tiltUntilFall(Scene scene, const TiltRamp& ramp) {
   TiltTrial trial;
   while (trial.standing.stands && simulation.scene.gravity.tilt_deg < ramp.most_deg) {
     const double next_s = simulation.time_s + scene.settings.frame_s;
-    const double slow_s = ramp.start_deg / ramp.approach_deg_s + ramp.hold_s;  // when the slow turn begins
+    const double slow_s = ramp.start_deg / ramp.approach_deg_s + ramp.hold_s;  // start of the slow rotation
     simulation.scene.gravity.tilt_deg = next_s > slow_s ? ramp.start_deg + ramp.rate_deg_s * (next_s - slow_s)
                                                         : std::min(ramp.start_deg, ramp.approach_deg_s * next_s);
     stepFrame(simulation);

@@ -8,49 +8,50 @@
 
 namespace springtower {
 
-// Trials that a real tower could be put to as well: driven from outside, frame by frame. Used alike by tests and `validate`.
+// Experiments that could be made with a real tower as well: controlled from outside, frame by frame. Used by tests and
+// `validate`.
 
-/// What a block has slipped when it has moved this far against everything that it touches, m, for blocks of the game's height;
-/// others in proportion. Surfaces move against one another where they touch, whatever the centres do: a block that is drawn by
-/// its end turns.
+/// Displacement of a block relative to everything that it touches from which it counts as slipped, m, for blocks of the game's
+/// height; for others in proportion. It is measured at the contacts rather than at the centres, because a block that is drawn by
+/// its end rotates.
 inline constexpr double kFirstSlip_m = 5e-5;
 
-/// What came of pulling a block until it slips.
+/// Result of pulling a block until it slips.
 struct SlipTrial {
-  bool slipped = false;   ///< before half as much again as its friction bears was reached
-  double force_n = 0.0;   ///< in the frame in which it had slipped
-  double normal_n = 0.0;  ///< sum of the normal forces of all its contacts, in the frame before
-  double limit_n = 0.0;   ///< the largest force that friction bears at the normal forces of all contacts there were then
+  bool slipped = false;   ///< before the force reached 1.5 times the friction limit of the start
+  double force_n = 0.0;   ///< in the frame in which it slipped
+  double normal_n = 0.0;  ///< sum of the normal forces of all its contacts in the frame before
+  double limit_n = 0.0;   ///< friction limit at the normal forces of all contacts in that frame (frictionLimit_n)
   double time_s = 0.0;    ///< since the pull began
 };
 
-/// Pulls a block at its centre along a unit direction with a force that grows slowly (1 % of what its friction bears a
-/// second, the first nine tenths in 1.5 s) until it has slipped by kFirstSlip_m. Replaces the forces of the simulation's scene
-/// and takes them away at the end. The block should be at rest.
+/// Pulls a block at its centre along a unit direction with a slowly increasing force (1 % of its friction limit a second, after
+/// the first nine tenths in 1.5 s) until it has slipped by kFirstSlip_m. Replaces the forces of the simulation's scene and
+/// removes them at the end. The block should be at rest.
 SlipTrial pullUntilSlip(Simulation& simulation, std::size_t block, const Vec3& direction);
 
-/// How gravity is turned in `tiltUntilFall`.
+/// How gravity is rotated in `tiltUntilFall`.
 struct TiltRamp {
-  double direction_deg = 0.0;   ///< towards which side, from +x over +y
+  double direction_deg = 0.0;   ///< side towards which it tilts, from +x over +y
   double start_deg = 0.0;       ///< from straight down; reached at `approach_deg_s`, then held for `hold_s`
-  double approach_deg_s = 2.0;  ///< degrees a second; a tower that starts near its limit would be toppled by its own first sag
+  double approach_deg_s = 2.0;  ///< degrees a second; starting at the tilt would topple a tower near its limit by its first sag
   double hold_s = 1.0;          ///< s
   double rate_deg_s = 0.1;      ///< degrees a second
-  double most_deg = 90.0;       ///< where to give up
+  double most_deg = 90.0;       ///< end of the ramp
 };
 
-/// What came of it.
+/// Result of a tilt ramp.
 struct TiltTrial {
   bool fell = false;
   double tilt_deg = 0.0;  ///< of gravity when the scene had fallen, or at the end
   Standing standing;      ///< and what fell first
 };
 
-/// Turns a scene's gravity frame by frame until the scene does not stand any more. Throws DivergenceError.
+/// Rotates a scene's gravity frame by frame until the scene does not stand any more. Throws DivergenceError.
 TiltTrial tiltUntilFall(Scene scene, const TiltRamp& ramp);
 
-/// The same scene of blocks `size` times as large and `density` times as dense, its frames and its duration longer by the root of
-/// the size, as all times are that gravity sets. Preconditions: both positive; no start gap, velocities or forces.
+/// The same scene with blocks `size` times as large and `density` times as dense, and its frames and duration scaled by the root
+/// of the size, like all times under gravity. Preconditions: both positive; no start gap, velocities or forces.
 Scene scaled(Scene scene, double size, double density);
 
 /// Sum over a block's contacts of the normal force, N: of all, or of those from above only.

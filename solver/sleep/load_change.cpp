@@ -15,7 +15,7 @@ double weightOf(const Simulation& simulation, std::int32_t block) {
   return simulation.model.mass[static_cast<std::size_t>(block)] * simulation.scene.gravity.magnitude;
 }
 
-// How block a of a pair is pushed now.
+// Wrench on block a of a pair at present.
 ContactWrench pushOnA(const Simulation& simulation, std::size_t at) {
   const ContactView contact = contactOf(*simulation.engine, at);
   ContactWrench push = contactWrenchOnUpper(simulation, contact);
@@ -23,7 +23,7 @@ ContactWrench pushOnA(const Simulation& simulation, std::size_t at) {
   return {-push.force, -push.torque, -push.direction};
 }
 
-// Adds what an awake neighbour does to a sleeping block.
+// Adds the load change from one awake neighbour to that of a sleeping block.
 void addChange(Simulation& simulation, std::size_t at, std::int32_t sleeper) {
   Engine& engine = *simulation.engine;
   const SleepLoad before = sleepLoadOf(engine, at);
@@ -42,7 +42,7 @@ void addChange(Simulation& simulation, std::size_t at, std::int32_t sleeper) {
   change.side += sign * now.direction;
 }
 
-// Adds up what went through the blocks that are pushed otherwise when they fell asleep, and what holds them.
+// Sums the contact loads that blocks with a changed load had when they fell asleep, and the friction that can hold them.
 void findLoads(Simulation& simulation) {
   Engine& engine = *simulation.engine;
   for (const std::int32_t block : engine.scratch.pushed) {
@@ -65,7 +65,7 @@ void findLoads(Simulation& simulation) {
   }
 }
 
-// Whether the change of its load leaves a sleeping block where it is.
+// Whether a sleeping block can support the change of its load without moving.
 bool isWithinLimits(const Simulation& simulation, std::int32_t block) {
   const auto b = static_cast<std::size_t>(block);
   const LoadChange& change = simulation.engine->scratch.loadChange[b];
@@ -116,7 +116,7 @@ bool findWakeCandidates(Simulation& simulation) {
   engine.scratch.loadChange.resize(simulation.asleep.size());
   engine.scratch.joined.assign(simulation.asleep.size(), 0);
   bool changed = false;
-  bool gives = false;
+  bool failed = false;
   for (const std::int32_t position : engine.memo.islandPairs) {
     const auto at = static_cast<std::size_t>(position);
     const BlockPair& pair = engine.pairs.key[at];
@@ -138,12 +138,12 @@ bool findWakeCandidates(Simulation& simulation) {
     for (const std::int32_t block : engine.scratch.pushed) {
       if (!isWithinLimits(simulation, block)) engine.scratch.toWake.push_back({block, WakeReason::loadChange});
     }
-    if (simulation.scene.settings.sleep == Sleep::on) gives = findFailedSupports(simulation);
+    if (simulation.scene.settings.sleep == Sleep::on) failed = findFailedSupports(simulation);
   }
-  // A pair that the sweep has dropped pushes no more.
+  // A pair that the sweep has dropped has no contact force any more.
   for (const std::int32_t block : engine.scratch.lostPartners)
     engine.scratch.toWake.push_back({block, WakeReason::lostNeighbour});
-  return gives;
+  return failed;
 }
 
 }  // namespace springtower

@@ -16,8 +16,8 @@ namespace springtower {
 
 namespace {
 
-// A bound from above of the speed of a block's fastest corner in its rigid motion, m/s: that motion has no more kinetic energy
-// than the corners, and the least moment of inertia is that about the longest axis.
+// An upper bound of the speed of a block's fastest corner in its rigid motion, m/s: that motion has at most the kinetic energy of
+// the corners, and the least moment of inertia is that about the longest axis.
 double fastestRigidCorner(const Simulation& simulation, std::size_t b) {
   double squared = 0.0;
   for (std::size_t a = 0; a < 3; ++a) {
@@ -30,15 +30,15 @@ double fastestRigidCorner(const Simulation& simulation, std::size_t b) {
   return std::sqrt(squared / static_cast<double>(kCorners)) * (1.0 + std::sqrt(0.25 * diagonal / inertia));
 }
 
-// A block is at rest while its rigid motion is slow: compressing and ringing keep no block awake. It also has to be in balance:
-// over each window the mean force and torque, seen as what they do to the speed of its corners, stay below a small share of
-// gravity. A block that starts to tip is slow but out of balance.
-void judge(Simulation& simulation, std::size_t b) {
+// Updates the sleep timer. A block is at rest while its rigid motion is slow; compression and vibration do not keep it awake. It
+// also has to be in balance: over each window the mean force and torque, as accelerations of its corners, stay below a small
+// share of gravity. A block that starts to tip is slow but out of balance.
+void updateSleepTimer(Simulation& simulation, std::size_t b) {
   const Settings& settings = simulation.scene.settings;
   SleepWindow& window = simulation.engine->sleep.windows[b];
   const double slow = settings.restSpeed * speedScale_m_s(simulation);
   const bool ends = window.age_s + settings.frame_s >= settings.restTime * restTimeScale_s(simulation);
-  if (!ends && fastestRigidCorner(simulation, b) < slow) {  // the usual case, without the rigid motion itself
+  if (!ends && fastestRigidCorner(simulation, b) < slow) {  // the common case, without computing the rigid motion
     simulation.restTime_s[b] += settings.frame_s;
     window.age_s += settings.frame_s;
     return;
@@ -59,17 +59,17 @@ void judge(Simulation& simulation, std::size_t b) {
   begin();
 }
 
-// The report's test (its appendix 2.5): how far the block's particles have moved together, compression and all, over one frame.
-void judgeAsReported(Simulation& simulation, std::size_t b) {
+// The report's test (its appendix 2.5): the displacement of the block's particles over one frame, compression included.
+void updateSleepTimerOfReport(Simulation& simulation, std::size_t b) {
   const ParticleArray& before = simulation.engine->checkpoint.state.position;
   double moved = 0.0;
   for (std::size_t c = 0; c < kCorners; ++c) moved += (simulation.state.position.at(b, c) - before.at(b, c)).norm();
   simulation.restTime_s[b] = moved < simulation.scene.settings.reportDisableDistance_m ? simulation.scene.settings.frame_s : 0.0;
 }
 
-// Whether an awake block slides on the sleeper of a pair too fast for it to be asked afterwards, or may hit it in this frame
-// faster than a hand lays a block down. `supported`: whether anything touches the awake block.
-bool isStruck(const Simulation& simulation, std::size_t at, std::int32_t awake, bool supported) {
+// Whether an awake block slides on the sleeping one of a pair too fast for the support check, or may hit it in this frame faster
+// than a hand puts a block down. `supported`: whether anything touches the awake block.
+bool mayBeHit(const Simulation& simulation, std::size_t at, std::int32_t awake, bool supported) {
   const BlockPair& pair = simulation.engine->pairs.key[at];
   const auto block = static_cast<std::size_t>(awake);
   const double scale = speedScale_m_s(simulation);
@@ -143,9 +143,9 @@ void wakeUnbalancedCluster(Simulation& simulation) {
   }
 }
 
-// Puts blocks to sleep: groups that touch and are all at rest, at once; and a block that has long been at rest beside restless
-// ones by itself, as what they do to it later is looked at in every frame. Method `report` does not know from step to step who
-// touches whom: there who is near counts, and nobody sleeps beside a restless block.
+// Puts blocks to sleep: connected groups that are all at rest, at once; and a block that has been at rest for long beside moving
+// ones by itself, because later changes of its load are checked in every frame. Method `report` has no persistent contacts: there
+// near pairs count as touching, and no block sleeps beside one that is not at rest.
 void putToSleep(Simulation& simulation) {
   Engine& engine = *simulation.engine;
   const double needed = restNeeded(simulation);
@@ -180,8 +180,8 @@ void putToSleep(Simulation& simulation) {
   engine.scratch.joined.resize(simulation.asleep.size());
   connectedBlocks(engine.scratch.touchingEdges, engine.scratch.restless, engine.scratch.parent, engine.scratch.joined);
   for (const std::int32_t block : engine.scratch.awakeBlocks) {
-    const bool patient = simulation.restTime_s[static_cast<std::size_t>(block)] >= tuning::kSingleSleepFactor * needed;
-    if (patient && ready(block) && !nearCounts) engine.scratch.joined[static_cast<std::size_t>(block)] = 0;
+    const bool restsLong = simulation.restTime_s[static_cast<std::size_t>(block)] >= tuning::kSingleSleepFactor * needed;
+    if (restsLong && ready(block) && !nearCounts) engine.scratch.joined[static_cast<std::size_t>(block)] = 0;
   }
   engine.scratch.toWake.clear();
   recordSleepLoads(simulation, engine.scratch.joined);
@@ -241,7 +241,7 @@ bool wakeOnImpact(Simulation& simulation) {
     if (pair.b < 0 || sleeps(simulation, pair.a) == sleeps(simulation, pair.b)) continue;
     const bool sleepsA = sleeps(simulation, pair.a);
     const std::int32_t awake = sleepsA ? pair.b : pair.a;
-    if (isStruck(simulation, at, awake, engine.scratch.touched[static_cast<std::size_t>(awake)] != 0))
+    if (mayBeHit(simulation, at, awake, engine.scratch.touched[static_cast<std::size_t>(awake)] != 0))
       engine.scratch.toWake.push_back({sleepsA ? pair.a : pair.b, WakeReason::impact});
   }
   if (engine.scratch.toWake.empty()) return false;
@@ -275,7 +275,7 @@ void updateRest(Simulation& simulation) {
   const Sleep sleep = simulation.scene.settings.sleep;
   for (const std::int32_t block : engine.scratch.awakeBlocks) {
     const auto b = static_cast<std::size_t>(block);
-    sleep == Sleep::report ? judgeAsReported(simulation, b) : judge(simulation, b);
+    sleep == Sleep::report ? updateSleepTimerOfReport(simulation, b) : updateSleepTimer(simulation, b);
   }
   if (sleep == Sleep::off) return;
   wakeRequested(simulation);

@@ -4,12 +4,12 @@
 
 namespace springtower {
 
-/// Looks for sleepers whose supports fail under the loads that awake neighbours have changed since they fell asleep, and adds
-/// them to engine.scratch.toWake: so a tower that a hand draws over its edge topples, asleep or not. Returns whether there are
-/// any. Every group of sleepers above a level (storey by storey, from the top down) is a rigid body on the springs of the points
-/// on which it rests there: a point that would pull lifts off, one whose friction is at Coulomb's cone slides, and the group
-/// fails when what is left of them cannot balance it. Preconditions: engine.scratch.pushed, engine.scratch.loadChange and
-/// engine.scratch.joined are those of findWakeCandidates; it works in the last two, which are of no use afterwards.
+/// Finds sleeping blocks whose supports fail under the changed load from awake neighbours, and adds them to
+/// engine.scratch.toWake: so a tower that a hand pulls over its edge topples, asleep or not. Returns whether there are any. Every
+/// group of sleeping blocks above a level (level by level, from the top down) is treated as a rigid body on springs at the points
+/// that support it there: a point that would pull opens, one whose friction reaches Coulomb's cone slips, and the group fails
+/// when the remaining points cannot balance it. Preconditions: engine.scratch.pushed, engine.scratch.loadChange and
+/// engine.scratch.joined are those of findWakeCandidates; the last two are overwritten.
 bool findFailedSupports(Simulation& simulation);
 
 }  // namespace springtower

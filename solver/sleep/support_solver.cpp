@@ -12,28 +12,29 @@ namespace {
 using Vec6 = Eigen::Matrix<double, 6, 1>;
 using Mat6 = Eigen::Matrix<double, 6, 6>;
 
-// What the springs of a point do against a motion of it.
+// Stiffness of a point's springs.
 Eigen::Matrix3d stiffnessOf(const SupportPoint& point, double tangentialRatio) {
   if (point.state == SupportState::open) return Eigen::Matrix3d::Zero();
   const double across = point.state == SupportState::slip ? 0.0 : tangentialRatio;
   return (1.0 - across) * point.normal * point.normal.transpose() + across * Eigen::Matrix3d::Identity();
 }
 
-// The matrix by which a turn moves a point: turn x arm.
+// The matrix of the displacement of a point by a rotation: rotation x arm.
 Eigen::Matrix3d turning(const Vec3& arm) {
   Eigen::Matrix3d matrix;
   matrix << 0.0, arm.z(), -arm.y(), -arm.z(), 0.0, arm.x(), arm.y(), -arm.x(), 0.0;
   return matrix;
 }
 
-// What a point takes up whatever the block does: all of its force where it has lifted, and of its friction where it slides.
+// Released force, independent of the motion of the body: the whole force of an open point, and the excess friction of a slipping
+// one.
 Vec3 releasedForce(const SupportPoint& point) {
   if (point.state == SupportState::open) return -point.force;
   if (point.state == SupportState::stick) return Vec3::Zero();
   return point.slide - (point.force - point.normal.dot(point.force) * point.normal);
 }
 
-// Whether a point keeps to what was taken for granted of it; else what is to be taken next.
+// Whether a point's state agrees with its force; otherwise sets the state for the next iteration.
 bool updateContactState(SupportPoint& point, double slip_n) {
   if (point.state == SupportState::open) return true;
   const Vec3 force = point.force + point.added;

@@ -6,12 +6,12 @@
 
 namespace springtower {
 
-/// Lets the points under a rigid body take up a change of what is done to it: a force (N) and a torque (N m). Each is a spring,
-/// all as stiff, that only pushes and whose friction is bounded by Coulomb's cone: points that would pull lift off, those that
-/// reach the cone slide, and the others take over what they give up, round after round; none comes back. Fills `added` of each
-/// point. Returns false where those that are left cannot hold the body, which then tips, slides or turns; without points as well.
-/// `length_m` is a length of the body, by which turns are weighed against moves; `tangentialRatio` the springs' stiffness along
-/// the contact over that across it, > 0.
+/// Distributes a load change of a rigid body, a force (N) and a torque (N m), over the points that support it (quasi-static
+/// equilibrium by an active-set iteration). Each point is a spring of equal stiffness that only pushes and whose friction is
+/// bounded by Coulomb's cone: points that would pull open, those that reach the cone slip, and their load is redistributed to the
+/// others, iteration by iteration; no point is closed again. Fills `added` of each point. Returns false if the remaining points
+/// cannot hold the body, which then tips, slides or rotates; also without points. `length_m` is a length of the body that scales
+/// rotations against translations; `tangentialRatio` the tangential over the normal stiffness of the springs, > 0.
 bool redistribute(std::span<SupportPoint> points, const Vec3& force, const Vec3& torque, double length_m, double tangentialRatio);
 
 }  // namespace springtower

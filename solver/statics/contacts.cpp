@@ -18,7 +18,7 @@ namespace {
 struct Axis {
   Vec3 direction = Vec3::Zero();
   double gap = -std::numeric_limits<double>::infinity();
-  int ofA = -1;  // the box's own axis it comes from, or -1
+  int ofA = -1;  // index of the box's own axis it comes from, or -1
   int ofB = -1;
 };
 
@@ -31,7 +31,7 @@ Axis bestAxis(const OrientedBox& a, const OrientedBox& b, double slack) {
   Axis best;
   for (int i = 0; i < 3; ++i) {
     for (const Axis& axis : {axisAlong(b.axes.col(i), a, b, -1, i), axisAlong(a.axes.col(i), a, b, i, -1)}) {
-      // With a slack, so that of two faces that are flat on each other always the same is taken.
+      // The slack makes the choice between two faces that are flat on each other independent of rounding.
       if (axis.gap > best.gap + slack) best = axis;
     }
   }
@@ -45,7 +45,7 @@ Axis bestAxis(const OrientedBox& a, const OrientedBox& b, double slack) {
   return edge.gap > best.gap + slack ? edge : best;
 }
 
-// The box's face that looks most along a direction: the axis it lies across and its centre.
+// The face of a box with the normal nearest to a direction: the axis it is perpendicular to, its centre and its normal.
 struct Face {
   int across;
   Vec3 centre;
@@ -91,7 +91,7 @@ std::vector<Vec3> overlapOfFaces(const OrientedBox& reference, const OrientedBox
   return polygon;
 }
 
-// Where two crossed edges come nearest: on a's edge.
+// Closest point of two crossing edges, on a's edge.
 Vec3 crossingOnA(const OrientedBox& a, const OrientedBox& b, const Axis& axis) {
   const auto edgeCentre = [](const OrientedBox& box, const Vec3& towards, int along) {
     Vec3 place = box.centre;
@@ -148,7 +148,7 @@ std::optional<FacePair> facingOf(const std::vector<OrientedBox>& boxes, std::siz
 std::optional<FacePair> facingFloor(const OrientedBox& box, std::size_t block, double reach) {
   FacePair facing{blockId(block), kFloor, Vec3::UnitZ(), {}};
   const double size = 2.0 * box.half.minCoeff();
-  // A block that lies on the floor has gaps at its lower corners alone, however far the reach goes.
+  // A block that lies on the floor has potential contacts at its lower corners only, for any reach.
   const double middle = box.centre.z();
   for (unsigned bits = 0; bits < 8; ++bits) {
     const Vec3 corner = box.corner(bits);

@@ -8,7 +8,7 @@
 namespace springtower {
 namespace {
 
-// Nearest point of the cone |tangent| <= friction * normal, and how it follows its argument.
+// Nearest point of the cone |tangent| <= friction * normal, and its derivative.
 struct Projection {
   Vec3 value = Vec3::Zero();
   Eigen::Matrix3d derivative = Eigen::Matrix3d::Zero();
@@ -38,7 +38,7 @@ class Dual {
     }
   }
 
-  // The function to be minimised, and with it forces and imbalance at these displacements.
+  // The function to be minimised; also sets forces and imbalance at these displacements.
   double evaluate(const Eigen::VectorXd& displacement) {
     imbalance_ = load_;
     double value = load_.dot(displacement);
@@ -82,8 +82,8 @@ class Dual {
   [[nodiscard]] const Eigen::VectorXd& imbalance() const { return imbalance_; }
   [[nodiscard]] const std::vector<Vec3>& forces() const { return forces_; }
 
-  // As if every point stuck and pushed: a first step from rest, where all cones are at their tips.
-  void pretendAllStick() { derivatives_.assign(derivatives_.size(), Eigen::Matrix3d::Identity()); }
+  // Derivatives as if every point stuck: for the first step from rest, where all cones are at their tips.
+  void setAllSticking() { derivatives_.assign(derivatives_.size(), Eigen::Matrix3d::Identity()); }
 
  private:
   const StaticsModel& model_;
@@ -104,7 +104,7 @@ std::optional<std::vector<Vec3>> leastSquaresForces(const StaticsModel& model, s
   Dual dual(model, usable, load);
   Eigen::VectorXd displacement = Eigen::VectorXd::Zero(load.size());
   double value = dual.evaluate(displacement);
-  dual.pretendAllStick();
+  dual.setAllSticking();
   for (int step = 0; step < tuning::kMaxForceRefinements; ++step) {
     const Eigen::VectorXd imbalance = dual.imbalance();
     if (imbalance.cwiseAbs().maxCoeff() <= tuning::kMaxForceImbalance) return dual.forces();
@@ -114,7 +114,7 @@ std::optional<std::vector<Vec3>> leastSquaresForces(const StaticsModel& model, s
     for (;; length *= 0.5) {
       if (!(length > tuning::kMinForceStep)) return {};
       const double next = dual.evaluate(displacement + length * direction);
-      // Near the end the value no longer resolves the progress; the imbalance does.
+      // Near convergence the value no longer resolves the progress; the imbalance does.
       const bool balances = dual.imbalance().norm() < 0.9 * imbalance.norm() && std::abs(next - value) <= 1e-9 * std::abs(value);
       if (next <= value + tuning::kArmijo * length * slope || balances) {
         value = next;

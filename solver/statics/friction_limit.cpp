@@ -21,12 +21,12 @@ constexpr int kRows = 3;  // of a block: two forces and a torque
 
 double frictionLimit_n(const Simulation& simulation, std::span<const ContactForce> contacts, BlockId block,
                        const Vec3& direction) {
-  // In weights and heights of a block, so that towers of any size ask the same.
+  // In weights and heights of a block, so that towers of any size give the same program.
   const double length_m = simulation.lengths.blockHeight_m;
   const double force_n = simulation.model.mass[index(block)] * simulation.scene.gravity.magnitude;
   const int balances = kRows * static_cast<int>(simulation.model.blockCount());
 
-  // A friction force is a mean of the corners of its polygon: shares that add up to no more than 1, a row for each contact.
+  // A friction force is a convex combination of the corners of its polygon: shares that sum to at most 1, a row for each contact.
   LpColumns columns;
   int rows = balances;
   for (const ContactForce& contact : contacts) {
@@ -63,7 +63,7 @@ double frictionLimit_n(const Simulation& simulation, std::span<const ContactForc
   columns.addTo(clp);
   clp.primal();
   if (clp.status() != 0) {
-    throw std::runtime_error("friction limit: the linear programme could not be solved, status " + std::to_string(clp.status()));
+    throw std::runtime_error("friction limit: the linear program could not be solved, status " + std::to_string(clp.status()));
   }
   return -clp.objectiveValue() * force_n;
 }

@@ -21,7 +21,7 @@ double angleOf(int side) {
   return 2.0 * std::numbers::pi * side / tuning::kConeSides;
 }
 
-// What is missing to balance, up and down in each row.
+// Imbalance, positive and negative in each row.
 void addSlacks(ClpSimplex& clp) {
   const int rows = clp.numberRows();
   LpColumns slacks;
@@ -36,8 +36,8 @@ void addSlacks(ClpSimplex& clp) {
 
 void prepare(ClpSimplex& clp, int rows) {
   clp.setLogLevel(0);
-  // Forces come in block weights and lengths in block heights: what is scaled already must not be scaled again, as columns that
-  // join later would not be.
+  // The program is already scaled, with forces in block weights and lengths in block heights. CLP must not scale it, because
+  // columns added later would not be scaled.
   clp.scaling(0);
   clp.setPrimalTolerance(tuning::kLpTolerance);
   clp.setDualTolerance(tuning::kLpTolerance);
@@ -47,7 +47,7 @@ void prepare(ClpSimplex& clp, int rows) {
 }  // namespace
 
 struct EquilibriumProgram::Solver {
-  // A column of the programme that is an edge of a point's pyramid.
+  // A column of the program that is an edge of a point's pyramid.
   struct Edge {
     std::size_t point;  // index in `usable`
     int side;
@@ -55,10 +55,10 @@ struct EquilibriumProgram::Solver {
 
   const StaticsModel& model;
   std::vector<std::size_t> usable;
-  std::vector<std::bitset<tuning::kConeSides>> present;  // of each usable point, which edges are columns
+  std::vector<std::bitset<tuning::kConeSides>> present;  // of each usable point: edges that are columns
   std::vector<Edge> edges;                               // in the order of their columns, which start at firstEdge
   std::vector<int> loadColumns;
-  std::vector<double> pointCosts;  // of the question now asked, to be minimised
+  std::vector<double> pointCosts;  // of the present objective, to be minimised
   std::vector<double> loadCosts;
   std::vector<int> edgeColumns;  // column of each edge
   int slackColumns = 0;
@@ -94,9 +94,9 @@ struct EquilibriumProgram::Solver {
     columns.addTo(clp);
   }
 
-  // The edges whose price says that they would better the solution: the best of each point.
-  [[nodiscard]] std::vector<Edge> wantedEdges() const {
-    std::vector<Edge> wanted;
+  // The edges whose reduced cost would improve the solution: the best of each point.
+  [[nodiscard]] std::vector<Edge> improvingEdges() const {
+    std::vector<Edge> improving;
     const Eigen::Map<const Eigen::VectorXd> price(clp.dualRowSolution(), clp.numberRows());
     for (std::size_t p = 0; p < usable.size(); ++p) {
       const ForcePoint& point = model.points[usable[p]];
@@ -107,23 +107,23 @@ struct EquilibriumProgram::Solver {
       const double turns = model.friction > 0.0 ? std::atan2(gain[2], gain[1]) / (2.0 * std::numbers::pi) : 0.0;
       const int side = (static_cast<int>(std::lround(turns * tuning::kConeSides)) + tuning::kConeSides) % tuning::kConeSides;
       if (edgeForce(side).dot(gain) <= tuning::kLpPriceTolerance || present[p].test(static_cast<std::size_t>(side))) continue;
-      wanted.push_back({p, side});
+      improving.push_back({p, side});
     }
-    return wanted;
+    return improving;
   }
 
-  // Solves for the costs that are set. Returns false where nothing bounds the cost.
+  // Solves for the present costs. Returns false if the cost is unbounded.
   bool solve(double goodEnough) {
     for (;;) {
       clp.primal();
       if (clp.status() == 2) return false;
       if (clp.status() != 0) {
-        throw std::runtime_error("statics: the linear programme could not be solved, status " + std::to_string(clp.status()));
+        throw std::runtime_error("statics: the linear program could not be solved, status " + std::to_string(clp.status()));
       }
       if (clp.objectiveValue() <= goodEnough) return true;
-      const std::vector<Edge> wanted = wantedEdges();
-      if (wanted.empty()) return true;
-      addEdges(wanted);
+      const std::vector<Edge> improving = improvingEdges();
+      if (improving.empty()) return true;
+      addEdges(improving);
     }
   }
 
@@ -136,7 +136,7 @@ struct EquilibriumProgram::Solver {
     }
     for (int i = 0; i < slackColumns; ++i) {
       clp.setObjectiveCoefficient(i, seekingBalance ? 1.0 : 0.0);
-      // The little that the first phase left is left, so that the second starts from a solution.
+      // The small imbalance left by the first phase remains, so that the second starts from a feasible solution.
       clp.setColumnUpper(i, seekingBalance ? kInfinity : std::max(0.0, clp.primalColumnSolution()[i]));
     }
   }
@@ -231,13 +231,13 @@ bool parallelForcesBalance(const StaticsModel& model, std::span<const std::size_
   LpColumns columns;
   for (const std::size_t p : usable) {
     const ForcePoint& point = model.points[p];
-    // With the rounding of a slope that is the friction itself.
+    // With the rounding of a slope that equals the friction.
     if (point.frame.col(0).dot(up) < leastCosine * (1.0 - 1e-12)) continue;
     for (const bool onUpper : {true, false}) {
       const std::int32_t block = onUpper ? point.upper : point.lower;
       if (block < 0) continue;
       const Vec6 wrench = model.wrench(point, onUpper) * (point.frame.transpose() * up);
-      // Force along gravity, and the torques across it; the others vanish.
+      // Force along gravity, and the torques perpendicular to it; the others vanish.
       const Vec3 entries(wrench.head<3>().dot(up), wrench.tail<3>().dot(axes.col(1)), wrench.tail<3>().dot(axes.col(2)));
       for (int i = 0; i < 3; ++i) columns.add(3 * block + i, entries[i]);
     }

@@ -6,8 +6,7 @@ class ClpSimplex;
 
 namespace springtower {
 
-/// Columns of a linear program, one after the other, as CLP takes them: entries are added, then the column is finished with its
-/// cost.
+/// Columns of a linear program in CLP's format, one after the other: add entries, then finish the column with its cost.
 struct LpColumns {
   std::vector<int> start = {0};
   std::vector<int> row;
@@ -23,7 +22,7 @@ struct LpColumns {
     cost.push_back(theCost);
   }
   [[nodiscard]] int count() const { return static_cast<int>(cost.size()); }
-  /// Adds them to a program; each variable is not negative and has no upper bound.
+  /// Adds the columns to a program; each variable is non-negative and has no upper bound.
   void addTo(ClpSimplex& clp) const;
 };
 

@@ -5,7 +5,7 @@
 namespace springtower {
 namespace {
 
-// The normal and two tangents; for contacts that lie flat the tangents are the world's x and y.
+// The normal and two tangents; for level contacts the tangents are the world's x and y.
 Eigen::Matrix3d frameOf(const Vec3& normal) {
   const Vec3 hint = std::abs(normal.x()) < 0.9 ? Vec3::UnitX() : Vec3::UnitY();
   Eigen::Matrix3d frame;

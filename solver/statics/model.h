@@ -19,13 +19,13 @@ struct ForcePoint {
   Vec3 place = Vec3::Zero();
   Eigen::Matrix3d frame = Eigen::Matrix3d::Identity();  ///< columns: the normal (from lower to upper) and two tangents
   double gap_m = 0.0;
-  std::size_t facing = 0;  ///< which of the facings it belongs to
+  std::size_t facing = 0;  ///< index of the facing it belongs to
 };
 
-/// Rigid blocks, the points at which they may push one another, and the weights they bear: what equilibrium is about. Forces are
-/// in mean block weights and lengths in mean block heights, so that any size and density gives the same numbers.
+/// Rigid blocks, their potential contact points, and their weights: the data of an equilibrium problem. Forces are in mean block
+/// weights and lengths in mean block heights, so that scenes of any size and density give the same numbers.
 ///
-/// Equilibrium is A f + w = 0: f holds three components for each point in its frame (normal, two tangents: the force on the upper
+/// Equilibrium is A f + w = 0: f has three components for each point in its frame (normal, two tangents: the force on the upper
 /// block), A maps it to force and torque about its centre of every block, and w are the loads; all with six rows for each block.
 struct StaticsModel {
   std::vector<Vec3> centre;    ///< m
@@ -37,11 +37,11 @@ struct StaticsModel {
 
   [[nodiscard]] std::size_t blockCount() const { return centre.size(); }
 
-  /// Force and torque (about its centre) that a unit force along each axis of the point's frame puts on a block: 6 x 3; for the
-  /// point's lower block the reaction.
+  /// Force and torque (about its centre) on a block by a unit force along each axis of the point's frame: 6 x 3; for the point's
+  /// lower block the reaction.
   [[nodiscard]] Eigen::Matrix<double, 6, 3> wrench(const ForcePoint& point, bool onUpper) const;
 
-  /// Loads of all blocks, [6 blocks], under a gravity of this direction and relative magnitude (1: what the model was made for).
+  /// Loads of all blocks, [6 blocks], under a gravity of this direction and relative magnitude (1: that of the scene).
   [[nodiscard]] Eigen::VectorXd gravityLoad(const Vec3& gravity) const;
 };
 

@@ -29,17 +29,17 @@ std::vector<std::size_t> closedPoints(const StaticsModel& model, const std::vect
 }
 
 bool isBorne(const StaticsModel& model, const std::vector<std::size_t>& points, const Vec3& gravity) {
-  // The cheap question first.
+  // The cheaper test first.
   if (parallelForcesBalance(model, points, gravity)) return true;
   return EquilibriumProgram(model, points, model.gravityLoad(gravity)).isFeasible();
 }
 
 struct Settlement {
-  std::vector<double> gap_m;  // of each point afterwards
+  std::vector<double> gap_m;  // of each point after settlement
   double motion_m = 0.0;
 };
 
-// Where the blocks come to rest under gravity straight down, without friction.
+// Settlement of the blocks under gravity straight down, without friction.
 std::optional<Settlement> settle(const StaticsModel& model) {
   StaticsModel smooth = model;
   smooth.friction = 0.0;
@@ -48,7 +48,7 @@ std::optional<Settlement> settle(const StaticsModel& model) {
   std::vector<double> costs;
   for (const ForcePoint& point : smooth.points) costs.push_back(-point.gap_m / smooth.lengthUnit_m);
   program.maximise({}, costs);
-  // The prices are the motion, reversed: in mean heights, and radians.
+  // The dual values are the motion, reversed: in mean heights, and radians.
   const Eigen::VectorXd price = program.prices();
   Settlement settlement;
   for (std::size_t b = 0; b < model.blockCount(); ++b) {
@@ -142,7 +142,7 @@ ContactLoads contactLoads(const StaticScene& scene) {
     contact.normal_n += force[0];
     pressure[point.facing] += force[0] * point.place;
     const double bound = model.friction * force[0];
-    // Where there is no force to speak of, the share means nothing.
+    // For a negligible force the ratio is meaningless.
     if (force[0] > tuning::kMinStaticLoad * model.forceUnit_n && bound > 0.0) {
       contact.frictionUsed = std::max(contact.frictionUsed, std::min(1.0, force.tail<2>().norm() / bound));
     }
@@ -165,13 +165,13 @@ std::vector<BlockLoad> blockLoads(const StaticScene& scene, const ContactLoads& 
     result[b].weight_n = model.weight[b] * model.forceUnit_n;
     result[b].gap_m = std::numeric_limits<double>::infinity();
   }
-  // What lies beside a block does not lie on it.
-  const auto carrier = [](const ForcePoint& point) { return point.lower >= 0 && point.frame(2, 0) > 0.5; };
+  // A block beside another does not lie on it.
+  const auto liesBelow = [](const ForcePoint& point) { return point.lower >= 0 && point.frame(2, 0) > 0.5; };
   for (const std::size_t p : scene.usable) {
-    if (carrier(model.points[p])) touched[static_cast<std::size_t>(model.points[p].lower)] = 1;
+    if (liesBelow(model.points[p])) touched[static_cast<std::size_t>(model.points[p].lower)] = 1;
   }
   for (std::size_t p = 0; p < model.points.size(); ++p) {
-    if (!carrier(model.points[p])) continue;
+    if (!liesBelow(model.points[p])) continue;
     BlockLoad& load = result[static_cast<std::size_t>(model.points[p].lower)];
     load.covered = true;
     load.gap_m = std::min(load.gap_m, scene.settledGap_m[p]);
@@ -189,7 +189,7 @@ std::vector<BlockLoad> blockLoads(const StaticScene& scene, const ContactLoads& 
       for (const double sign : {-1.0, 1.0}) {
         for (std::size_t i = 0; i < costs.size(); ++i) {
           const ForcePoint& point = model.points[scene.usable[i]];
-          costs[i] = carrier(point) && point.lower == static_cast<std::int32_t>(b) ? sign : 0.0;
+          costs[i] = liesBelow(point) && point.lower == static_cast<std::int32_t>(b) ? sign : 0.0;
         }
         const double extreme = program.maximise({}, costs) * model.forceUnit_n;
         if (sign < 0.0) {
@@ -210,7 +210,7 @@ std::vector<BlockLoad> blockLoads(const StaticScene& scene, const ContactLoads& 
 
 Removal removalOf(const Scene& scene, BlockId block, double tolerance_deg) {
   const Scene rest = without(scene, block);
-  // Where nothing is left nothing falls.
+  // Without blocks nothing falls.
   if (rest.blocks.empty()) return {Rest::stands, {}};
   const StaticScene statics = staticScene(rest);
   return {statics.rest, tiltMargin(statics, tolerance_deg)};

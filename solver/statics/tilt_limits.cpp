@@ -14,7 +14,7 @@ double cross(const Vec2& a, const Vec2& b) {
   return a.x() * b.y() - a.y() * b.x();
 }
 
-// A group of blocks that moves as one, and the edge it tips over: a line across `direction`, which is horizontal.
+// A group of blocks that moves as one body, and the edge it tips over: a line perpendicular to `direction`, which is horizontal.
 struct Tipping {
   std::vector<char> moves;  // [blocks]
   Vec2 direction;
@@ -27,7 +27,7 @@ class Limits {
   Limits(const StaticsModel& model, std::span<const std::size_t> usable)
       : model_(model), usable_(usable), same_m_(tuning::kTiltSameHeight * model.lengthUnit_m) {}
 
-  // All limits of the blocks above a height and of what they would tip on.
+  // All limits of the blocks above a height and of those on which they would tip.
   void addLevel(double height) {
     std::vector<char> above;
     for (const Vec3& centre : model_.centre) above.push_back(centre.z() > height ? 1 : 0);
@@ -88,7 +88,7 @@ class Limits {
     if (rise > 0.0) found.push_back({tipping.direction, arm / rise});
   }
 
-  // Takes the blocks under the edge along. False where there is only the floor.
+  // Adds the blocks under the edge to the group. False if there is only the floor.
   bool reachDown(Tipping& tipping) {
     std::vector<char> taken(model_.blockCount(), 0);
     bool any = false;

@@ -9,24 +9,24 @@ namespace springtower {
 
 using Vec2 = Eigen::Vector2d;
 
-/// A side that slopes of gravity must keep to: direction . slope <= bound. The slope is the horizontal part of gravity over its
+/// A linear limit on the slope of gravity: direction . slope <= bound. The slope is the horizontal part of gravity over its
 /// vertical part; its length is the tangent of the tilt.
 struct GravityLimit {
   Vec2 direction = Vec2::UnitX();  ///< unit
   double bound = 0.0;
 };
 
-/// Limits on the slope of gravity that every equilibrium keeps to, in closed form; necessary, not sufficient. Each belongs to a
-/// group of blocks that might tip over an edge as one: its weight must not pass the edge, since no contact with the rest can hold
-/// it back, which is so where every one pushes upwards and lies behind the edge by more than friction times its distance in
-/// height. The groups are all blocks above a level, and these with the blocks they would tip on, one storey after the other.
-/// Where the former rest on flat contacts their friction is a limit as well.
+/// Limits on the slope of gravity that hold for every equilibrium, in closed form; necessary, not sufficient. Each belongs to a
+/// group of blocks that may tip over an edge as one body: its weight must not pass the edge if no contact with the rest can hold
+/// it back, that is, if each of these contacts pushes upwards and lies behind the edge by more than friction times its height
+/// difference to the edge. The groups are all blocks above a level, and these together with the blocks on which they would tip,
+/// one level after the other. If the former rest on flat contacts, their friction is a limit as well.
 std::vector<GravityLimit> gravityLimits(const StaticsModel& model, std::span<const std::size_t> usable);
 
 /// Convex hull of points in the plane, counterclockwise, without points nearer to each other than `same` (Andrew 1979).
 std::vector<Vec2> convexHull(std::vector<Vec2> points, double same);
 
-/// The part of a convex polygon that keeps to a limit (Sutherland & Hodgman 1974).
+/// The part of a convex polygon within a limit (Sutherland & Hodgman 1974).
 std::vector<Vec2> keepTo(const std::vector<Vec2>& polygon, const GravityLimit& limit);
 
 }  // namespace springtower

@@ -16,8 +16,8 @@ namespace {
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 const double kMaxSlope = std::tan(89.0 / kDegrees);
 
-// Where a hull is nearest to the origin: for an origin inside the outward normal of the nearest edge and its distance; for one
-// outside the direction from the nearest point to the origin, and minus its distance.
+// Point of a hull nearest to the origin. For an origin inside: the outward normal of the nearest edge and its distance; for one
+// outside: the direction from the nearest point to the origin, and minus its distance.
 struct Nearest {
   Vec2 direction = Vec2::UnitX();
   double distance = 0.0;
@@ -45,7 +45,7 @@ Nearest nearestTo(const std::vector<Vec2>& hull) {
   return isOutside ? outside : inside;
 }
 
-// Two unit vectors across gravity; for gravity straight down the world's x and y.
+// Two unit vectors perpendicular to gravity; for gravity straight down the world's x and y.
 Eigen::Matrix<double, 3, 2> planeAcross(const Vec3& gravity) {
   const Vec3 hint = std::abs(gravity.x()) < 0.9 ? Vec3::UnitX() : Vec3::UnitY();
   Eigen::Matrix<double, 3, 2> plane;
@@ -54,16 +54,16 @@ Eigen::Matrix<double, 3, 2> planeAcross(const Vec3& gravity) {
   return plane;
 }
 
-// The gravities that the points can bear, as slopes in the plane across the one asked about.
-class BearableGravities {
+// The gravities that the points can balance, as slopes in the plane perpendicular to the given one.
+class BalancedGravities {
  public:
-  BearableGravities(const StaticsModel& model, const std::vector<std::size_t>& usable, const Vec3& gravity)
+  BalancedGravities(const StaticsModel& model, const std::vector<std::size_t>& usable, const Vec3& gravity)
       : model_(model), usable_(usable), gravity_(gravity), plane_(planeAcross(gravity)) {}
 
-  // A quick yes; a no says nothing.
-  [[nodiscard]] bool surely(const Vec2& slope) const { return parallelForcesBalance(model_, usable_, towards(slope)); }
+  // A sufficient test; false proves nothing.
+  [[nodiscard]] bool isSurelyIn(const Vec2& slope) const { return parallelForcesBalance(model_, usable_, towards(slope)); }
 
-  // Whether there are any. To be asked before `extreme`.
+  // Whether there are any. Call it before `extreme`.
   bool any() {
     program_ = std::make_unique<EquilibriumProgram>(model_, usable_, model_.gravityLoad(gravity_));
     for (int i = 0; i < 2; ++i) {
@@ -72,7 +72,7 @@ class BearableGravities {
     return program_->isFeasible();
   }
 
-  // The farthest towards one side.
+  // The extreme point in one direction.
   Vec2 extreme(const Vec2& direction) {
     program_->maximise(std::array{direction.x(), direction.y()});
     return {program_->variableLoad(0), program_->variableLoad(1)};
@@ -88,8 +88,8 @@ class BearableGravities {
   std::unique_ptr<EquilibriumProgram> program_;
 };
 
-// A polygon around the circle of the given radius whose corners friction allows, cut by the limits, which lie outside the circle
-// by `slack` at least.
+// A polygon around the circle of the given radius, with corners within friction, cut by the limits, which lie outside the circle
+// by at least `slack`.
 std::vector<Vec2> polygonWithin(const std::vector<GravityLimit>& limits, double radius, double slack, const Vec2& first,
                                 double friction) {
   const double widest = std::acos(std::min(1.0, radius / friction));
@@ -111,25 +111,25 @@ std::optional<StabilityMargin> tiltMargin(const StaticsModel& model, const std::
   // In the order in which equal margins are reported.
   const std::array<Vec2, 4> sides = {Vec2(1, 0), Vec2(0, 1), Vec2(-1, 0), Vec2(0, -1)};
   const double tolerance = tolerance_deg / kDegrees;
-  BearableGravities bearable(model, usable, gravity);
+  BalancedGravities balanced(model, usable, gravity);
   Nearest best{Vec2::UnitX(), std::numeric_limits<double>::infinity()};  // the nearest limit known
   std::vector<Vec2> hull;
   if (gravity.z() == -1.0) {
     const std::vector<GravityLimit> limits = gravityLimits(model, usable);
     for (const GravityLimit& limit : limits) {
-      // Equal but for rounding: the first one.
+      // Among limits that are equal within rounding, the first.
       if (limit.bound < best.distance - tuning::kTiltSameSlope) best = {limit.direction, limit.bound};
     }
     const double radius = std::tan(std::atan(best.distance) - 0.9 * tolerance);
     if (std::isfinite(best.distance) && radius > 0.0) {
       for (const Vec2& corner : polygonWithin(limits, radius, best.distance - radius, best.direction, model.friction)) {
-        if (!bearable.surely(corner)) break;
+        if (!balanced.isSurelyIn(corner)) break;
         hull.push_back(corner);
       }
     }
   }
-  const auto ask = [&](const Vec2& direction) {
-    hull.push_back(bearable.extreme(direction));
+  const auto addExtreme = [&](const Vec2& direction) {
+    hull.push_back(balanced.extreme(direction));
     const double support = hull.back().dot(direction);
     if (support < best.distance - tuning::kTiltSameSlope) best = {direction, support};
   };
@@ -138,22 +138,22 @@ std::optional<StabilityMargin> tiltMargin(const StaticsModel& model, const std::
     hull = convexHull(std::move(hull), tuning::kTiltSameSlope);
     const Nearest nearest = nearestTo(hull);
     if (std::isfinite(best.distance) && std::atan(best.distance) - std::atan(nearest.distance) <= tolerance) break;
-    // Where sliding sets the margin the set is round, and its hull needs many points: most are found by the cheap question.
+    // If sliding sets the margin, the set is round, and its hull has many points: most are found by the cheaper test.
     const Vec2 guess = nearest.direction * best.distance;
-    if (prepared && nearest.distance >= 0.0 && bearable.surely(guess)) {
+    if (prepared && nearest.distance >= 0.0 && balanced.isSurelyIn(guess)) {
       hull.push_back(guess);
       continue;
     }
     if (prepared) {
-      ask(nearest.direction);
+      addExtreme(nearest.direction);
       continue;
     }
     prepared = true;
-    if (!bearable.any()) return {};
-    for (const Vec2& side : sides) ask(side);
+    if (!balanced.any()) return {};
+    for (const Vec2& side : sides) addExtreme(side);
   }
   const double sign = best.distance < 0.0 ? -1.0 : 1.0;
-  const Vec3 towards = sign * (bearable.towards(best.direction) - gravity);
+  const Vec3 towards = sign * (balanced.towards(best.direction) - gravity);
   double direction_deg = kDegrees * std::atan2(towards.y(), towards.x());
   if (direction_deg < -1e-9) direction_deg += 360.0;
   return StabilityMargin{kDegrees * std::atan(best.distance), std::max(0.0, direction_deg)};

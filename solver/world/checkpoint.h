@@ -4,29 +4,28 @@
 
 namespace springtower {
 
-// All rollbacks. A checkpoint of a frame is of the whole world and kept island by island; one of a step is of one island. What a
-// step may change and a rejected one must not is listed here and nowhere else.
+// All rollbacks. A checkpoint of a frame covers the whole world and is saved island by island; that of a step covers one island.
+// Everything that a step may change and a rejected one must not is listed here and nowhere else.
 
-/// Makes room for what the frame ahead starts from. Call it once its near pairs are found.
+/// Sizes the checkpoint for the coming frame. Precondition: its near pairs are found.
 void prepareFrameStart(Simulation& simulation);
 
-/// Keeps what an island starts the frame from: state, histories and the points of its contacts. Islands do it side by side, each
-/// just before its data are needed anyway.
+/// Saves what an island starts the frame from: state, histories and the points of its contacts. Islands save in parallel, each
+/// just before its data are read anyway.
 void saveFrameStart(IslandStep& step);
 
-/// Keeps a pair (its position in engine.pairs) before anything but what its points store changes: that is seldom.
+/// Saves a pair (its position in engine.pairs) before anything changes in it other than what its points store; that is rare.
 void savePair(Engine& engine, std::size_t at);
 
-/// Brings back what the frame began with, for a whole frame that is run again or for one island.
+/// Restores the start of the frame, for a whole frame that is run again or for one island.
 void restoreFrame(Simulation& simulation);
 void restoreIsland(IslandStep& step);
 
-/// Keeps where an island's blocks are as a step begins (rigid steps: poses, velocities and travel as well).
+/// Saves the positions of an island's blocks at the start of a step (in rigid steps poses, velocities and travel as well).
 void saveStep(IslandStep& step);
 
-/// Puts the blocks back to where the step began: implicit steps, whose prediction keeps positions and velocities itself, and
-/// rigid ones. Contacts made in the step stay: it is taken again with them. Clearances are to be brought up to date after it
-/// (recomputeClearances).
+/// Puts the blocks back to the start of the step: of implicit steps, whose prediction saves positions and velocities itself, and
+/// of rigid ones. Contacts made in the step stay, because it is repeated with them. Call recomputeClearances afterwards.
 void restoreStep(IslandStep& step);
 
 }  // namespace springtower

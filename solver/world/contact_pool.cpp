@@ -45,8 +45,7 @@ void ContactPool::store(std::int32_t contact, const PairOfBlocks& pair, const Ma
   more.points[moreSlot] = manifold.points[1];
 }
 
-// Calls with the page of a contact's first row, and where there is a second row in use with the page of that: forRows(contact,
-// [](auto& page, std::size_t slot) ...).
+// Calls `visit(page, slot)` with the page of a contact's first row and, if a second row is in use, with the page of that.
 template <class Visit>
 void ContactPool::forRows(std::int32_t contact, const Visit& visit) {
   First& page = first_.page(contact);
@@ -75,7 +74,7 @@ void ContactPool::saveShape(std::int32_t contact) {
 void ContactPool::restoreShape(std::int32_t contact) {
   First& first = first_.page(contact);
   const std::size_t at = Pool::slot(contact);
-  const std::int32_t second = first.shape[at].secondRow;  // it may have got one since, which it keeps
+  const std::int32_t second = first.shape[at].secondRow;  // a second row taken since is kept
   first.shape[at] = first.start->shapeBefore[at];
   first.shape[at].secondRow = second;
   first.pose[at] = first.start->poseBefore[at];

@@ -11,18 +11,19 @@
 
 namespace springtower {
 
-/// How the second block of a pair lies to the first: its centre and sides along the other's edges, m.
+/// Pose of the second block of a pair relative to the first: its centre and sides along the edges of the first, m.
 using RelativePose = std::array<float, 12>;
 
-/// Force and torque of a contact on block a of its pair as the first of the two fell asleep: what the other is compared with.
+/// Force and torque of a contact on block a of its pair when the first of the two fell asleep: the reference for later load
+/// changes.
 struct SleepLoad {
   Vec3 force = Vec3::Zero();   ///< N
   Vec3 torque = Vec3::Zero();  ///< N m, about the world's origin
 };
 
-/// The shape of a contact without the names of its blocks, which its pair knows; eight bytes.
+/// The shape of a contact without the indices of its blocks, which are in the pair table; eight bytes.
 struct StoredShape {
-  std::int32_t secondRow = -1;  ///< of points 5 to 8 in their own pages; -1 where no contact of the pair has had so many
+  std::int32_t secondRow = -1;  ///< row of points 5 to 8 in their own pages; -1 if no contact of the pair has had so many
   std::int8_t count = 0;
   std::int8_t incidentFace = 0;
   std::int8_t referenceFace = 0;
@@ -30,14 +31,14 @@ struct StoredShape {
   PointKind kind : 7 = PointKind::penalty;
 };
 
-/// A pair of blocks and how they touch.
+/// A pair of blocks and its phase.
 struct PairOfBlocks {
   std::int32_t a;
   std::int32_t b;  ///< -1: the floor
   PairPhase phase;
 };
 
-/// A contact's shape by its names, for a touching pair.
+/// The shape of a touching pair's contact, with the indices of its blocks.
 inline ManifoldShape shapeOf(const StoredShape& stored, const PairOfBlocks& pair) {
   ManifoldShape shape;
   shape.upper = stored.upperIsB ? pair.b : pair.a;
@@ -50,13 +51,13 @@ inline ManifoldShape shapeOf(const StoredShape& stored, const PairOfBlocks& pair
   return shape;
 }
 
-/// The contacts of the pairs that touch, structure of arrays: rows for touching pairs alone, four points a row and a second row
-/// for points five to eight. Beside what lasts lies what a frame or a step works with: the points as the frame began, and as an
-/// implicit step that is not yet taken ends. (The latter outlast the step: where the forces are known, the next begins with
+/// The contacts of touching pairs, structure of arrays: four points a row, and a second row for points five to eight. Beside the
+/// persistent rows lie those of the frame and the step: the points as the frame began, and the trial points at the end of an
+/// implicit step that is not yet accepted. (Trial points outlive the step: where the forces are known, the next step begins with
 /// them.)
 class ContactPool {
  public:
-  /// Bytes that a touching pair costs with up to four points, and what a second row adds; and what frames and steps add to each.
+  /// Bytes of a touching pair with up to four points; of a second row; and what frames and steps add to each.
   static constexpr std::size_t kFirstBytes = sizeof(StoredShape) + sizeof(SleepLoad) + sizeof(PlaceRow) + sizeof(PointRow);
   static constexpr std::size_t kSecondBytes = sizeof(PlaceRow) + sizeof(PointRow);
   static constexpr std::size_t kFirstStepBytes =
@@ -64,18 +65,18 @@ class ContactPool {
   static constexpr std::size_t kWideBytes = sizeof(PairForce);  ///< more in wide islands
   static constexpr std::size_t kSecondStepBytes = 2 * sizeof(PointRow) + sizeof(PlaceRow);
 
-  /// Takes a contact for a pair, with no points. Any thread.
+  /// Takes a contact for a pair, without points. Any thread.
   std::int32_t take();
-  /// Gives one back. Not while others take.
+  /// Returns one to the pool. Not while others take.
   void giveBack(std::int32_t contact);
-  /// Makes room for a frame: `most` bounds the contacts that there may be. `wide`: whether islands sum their forces
-  /// pair by pair. Not while others take.
+  /// Makes room for a frame: `most` bounds the number of contacts. `wide`: whether islands sum their forces pair by pair. Not
+  /// while others take.
   void reserve(std::size_t most, bool wide);
 
-  /// Puts a manifold into a contact. Any thread, one a contact.
+  /// Stores a manifold in a contact. Any thread, one thread a contact.
   void store(std::int32_t contact, const PairOfBlocks& pair, const Manifold& manifold);
 
-  /// A contact as it lies, to be read. Precondition: its pair touches.
+  /// Read-only view of a contact. Precondition: its pair touches.
   [[nodiscard]] ContactView view(std::int32_t contact, const PairOfBlocks& pair) const {
     const First& page = first_.page(contact);
     const std::size_t slot = Pool::slot(contact);
@@ -94,7 +95,7 @@ class ContactPool {
   [[nodiscard]] StoredShape& shape(std::int32_t contact) { return first_.page(contact).shape[Pool::slot(contact)]; }
   [[nodiscard]] const StoredShape& shape(std::int32_t contact) const { return first_.page(contact).shape[Pool::slot(contact)]; }
 
-  /// A contact with the rows of its points, as they are and as they are at the end of an implicit step not yet taken.
+  /// A contact with the rows of its points, now and at the end of an implicit step not yet accepted (trial).
   struct Editable {
     ContactView view;
     PointRows points;
@@ -120,7 +121,7 @@ class ContactPool {
     return result;
   }
 
-  /// The rows of a contact's points now, and at the end of an implicit step not yet taken; null past those in use.
+  /// The rows of a contact's points now, and at the end of an implicit step not yet accepted; null past those in use.
   [[nodiscard]] PointRows points(std::int32_t contact) {
     return rows(
         contact, [](auto& page) -> auto& { return page.points; });
@@ -142,28 +143,28 @@ class ContactPool {
   [[nodiscard]] const SleepLoad& sleepLoad(std::int32_t contact) const {
     return first_.page(contact).sleepLoad[Pool::slot(contact)];
   }
-  /// Where the blocks lay to one another when rigid steps renewed the manifold last; zeros where they have not.
+  /// Relative pose of the blocks when rigid steps last refreshed the manifold; zeros where they have not.
   [[nodiscard]] RelativePose& pose(std::int32_t contact) { return first_.page(contact).pose[Pool::slot(contact)]; }
-  /// Forces of the pair in a large island's sums. Precondition: reserved as wide.
+  /// Forces of the pair, for the sums of a wide island. Precondition: reserved as wide.
   [[nodiscard]] PairForce& pairForce(std::int32_t contact) { return (*first_.page(contact).pairForce)[Pool::slot(contact)]; }
 
-  /// Keeps the points as the frame begins, and brings them back.
+  /// Saves the points as the frame begins, and restores them.
   void savePoints(std::int32_t contact);
   void restorePoints(std::int32_t contact);
-  /// Keeps shape, places and pose too, where they are about to change in the frame, and brings them back.
+  /// Saves shape, places and pose too, before they change in the frame, and restores them.
   void saveShape(std::int32_t contact);
   void restoreShape(std::int32_t contact);
 
-  /// Overwrites with NaN what is kept for rollbacks.
+  /// Overwrites with NaN what is saved for rollbacks.
   void poisonStartRows();
 
   [[nodiscard]] std::size_t inUse() const { return first_.rowsInUse(); }
   [[nodiscard]] std::size_t secondRowsInUse() const { return second_.rowsInUse(); }
-  [[nodiscard]] std::size_t bytes() const;      ///< that contacts in use cost
+  [[nodiscard]] std::size_t bytes() const;      ///< of the contacts in use
   [[nodiscard]] std::size_t stepBytes() const;  ///< that frames and steps add to those
 
  private:
-  // What a page owns beside its rows and frames or steps fill anew: not copied, but made by `prepare`.
+  // Owned by a page beside its rows, and filled anew by frames or steps: not copied, but made by `prepare`.
   template <class T>
   struct Working : std::unique_ptr<T> {
     Working() = default;

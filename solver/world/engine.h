@@ -13,10 +13,9 @@
 
 namespace springtower {
 
-/// What a running scene holds beside its model, its inputs and its motion (solver/world/simulation.h), by who may rely on it:
-/// the state of contacts and sleep and what else the next frame depends on (copied into snapshots), and what may be lost between
-/// frames (docs/adr/0003-ownership.md). Vectors grow only when new pairs appear, the pool of contacts when more touch than
-/// before.
+/// What a running scene holds beside its model, its inputs and its motion (solver/world/simulation.h), by lifetime: the state of
+/// contacts and sleep and whatever else the next frame depends on (copied into snapshots), and what may be lost between frames
+/// (docs/adr/0003-ownership.md). Vectors grow only when new pairs appear, the pool of contacts when more pairs touch than before.
 struct Engine {
   std::vector<double> springRadius;  ///< 1/s2, largest eigenvalue of M^-1 K of each block alone; part of the model
   PairTable pairs;
@@ -28,32 +27,32 @@ struct Engine {
   Scratch scratch;
 };
 
-/// How far both blocks of a pair have travelled, m; it only ever grows but where a step or a frame is taken again.
+/// Sum of the travel of both blocks of a pair, m; it grows monotonically, except on a rollback.
 inline double travelOf(const Engine& engine, std::size_t pair) {
   const BlockPair& key = engine.pairs.key[pair];
   const double first = engine.memo.blockHistory[static_cast<std::size_t>(key.a)].travel;
   return key.b < 0 ? first : first + engine.memo.blockHistory[static_cast<std::size_t>(key.b)].travel;
 }
 
-/// The contact of a pair as it lies; without points where the pair is separated.
+/// The contact of a pair; without points where the pair is separated.
 inline ContactView contactOf(const Engine& engine, std::size_t pair) {
   return engine.pairs.touches(pair) ? engine.contacts.view(engine.pairs.contact[pair], engine.pairs[pair]) : ContactView{};
 }
 
-/// Which features of a touching pair touch. Precondition: the pair touches.
+/// The touching features of a pair. Precondition: the pair touches.
 inline ManifoldShape shapeOf(const Engine& engine, std::size_t pair) {
   return shapeOf(engine.contacts.shape(engine.pairs.contact[pair]), engine.pairs[pair]);
 }
 
-/// `contact`, which is contactOf(pair), with its points as they are at the end of an implicit step not yet taken. Precondition:
-/// the pair touches.
+/// `contact`, which is contactOf(pair), with its points at the end of an implicit step not yet accepted. Precondition: the pair
+/// touches.
 inline ContactView trialOf(const Engine& engine, std::size_t pair, const ContactView& contact) {
   ContactView trial = contact;
   trial.points = engine.contacts.trial(engine.pairs.contact[pair]);
   return trial;
 }
 
-/// What a pair's contact did when the first of its blocks fell asleep; zeros where none has been.
+/// Load of a pair's contact when the first of its blocks fell asleep; zeros where none has.
 inline SleepLoad sleepLoadOf(const Engine& engine, std::size_t pair) {
   const std::int32_t contact = engine.pairs.contact[pair];
   return contact < 0 ? SleepLoad{} : engine.contacts.sleepLoad(contact);

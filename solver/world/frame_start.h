@@ -20,16 +20,16 @@ struct SavedPairs {
   void prepare(bool /*wide*/) {}
 };
 
-/// What a frame that has to be run again starts from; contacts keep their own in their pool. Written by solver/world/checkpoint.
-/// Not in snapshots.
+/// The start of a frame, for running it again; the points of contacts are saved in their pool. Written by
+/// solver/world/checkpoint. Not in snapshots.
 struct FrameStart {
   MotionState state;
   std::vector<BlockHistory> history;
   std::vector<IslandHistory> islandHistory;
-  ParticleArray previous;               ///< m, what implicit steps started from
+  ParticleArray previous;               ///< m, memo.previous: start positions of the last implicit step
   ParticleArray previousVelocity;       ///< m/s
   std::vector<double> stepTravel;       ///< m, of each block as a rigid step began
-  std::vector<std::int32_t> savedPair;  ///< by position in engine.pairs: where it is saved, -1 if unchanged
+  std::vector<std::int32_t> savedPair;  ///< by position in engine.pairs: index of its saved row, -1 if unchanged
   PagePool<SavedPairs> savedPairs;
   std::vector<std::vector<ReportContact>> reportContacts;  ///< of method `report`
 };

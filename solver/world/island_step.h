@@ -7,8 +7,8 @@
 
 namespace springtower {
 
-/// One island on its way through one frame: what a method's step needs, and where it may write. Everything it touches belongs to
-/// the island alone, so islands run side by side.
+/// One island during one frame: what a method's step needs, and where it may write. Everything it writes belongs to this island
+/// alone, so islands run in parallel.
 struct IslandStep {
   Simulation& simulation;
   Engine& engine;
@@ -17,21 +17,21 @@ struct IslandStep {
   Counters& counters;
   StageTimes& times;
   ContactLaw law;
-  Vec3 gravity = Vec3::Zero();  ///< m/s2, at the step's time
+  Vec3 gravity = Vec3::Zero();  ///< m/s2, at the time of the step
   double time_s = 0.0;          ///< s, start of the step
-  double drift_s = 0.0;         ///< s; step of the positions
+  double drift_s = 0.0;         ///< s, step of the positions
   double kick_s = 0.0;          ///< s; step of the velocities: mean of the last and this drift (leapfrog with changing steps)
-  double advance_s = 0.0;       ///< s by which the contact memory is behind the positions
-  double maxStiffening = 1.0;   ///< most a contact that is born now may be stiffened
-  /// Pairs that touch or may use up their margin soon: all, but in steps so short that it is worth listing them.
+  double advance_s = 0.0;       ///< s by which what the contact points store lags behind the positions
+  double maxStiffening = 1.0;   ///< upper bound of the stiffening of contacts made now
+  /// Pairs that touch or may use up their clearance soon: all pairs, unless the steps are so short that a list of these pays.
   std::span<const std::int32_t> activePairs = pairs;
-  bool usesActiveList = false;               ///< whether the steps are so short
-  int activeListSteps = 0;                   ///< steps for which `activePairs` still holds
-  PointKind pointKind = PointKind::penalty;  ///< what contacts that are made now store, by the steps that carry the island
+  bool usesActiveList = false;               ///< whether the steps are that short
+  int activeListSteps = 0;                   ///< steps for which `activePairs` remains valid
+  PointKind pointKind = PointKind::penalty;  ///< what the points of contacts made now store, by the kind of steps
   bool unforced = false;                     ///< neither user forces nor the hand act: the equilibrium before the first frame
 };
 
-/// What came of an island's frame.
+/// Result of an island's frame.
 struct IslandOutcome {
   int substeps = 0;
   bool inside = true;  ///< no block left its swept box

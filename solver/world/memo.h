@@ -15,27 +15,27 @@
 
 namespace springtower {
 
-/// Integration history of a block; what is its island's is in IslandHistory.
+/// Integration history of a block; that of its island is in IslandHistory.
 struct BlockHistory {
-  double lastExplicitStep_s = 0.0;  ///< s; the explicit step in which the block's positions last moved; 0 after an implicit one
-  double lastImplicitStep_s = 0.0;  ///< s; the implicit step that led here from memo.previous, 0 where it was none
-  bool explicitLast = false;        ///< whether explicit steps brought it where it is
-  bool hasFallen = false;           ///< whether rigid steps have carried it since it slept last
-  double jerk = 0.0;    ///< kg m2/s6; mass by the square of its corners' change of acceleration, mean over some frames
-  double motion = 0.0;  ///< kg m2/s2; mass by the square of its corners' velocity, alike
-  double travel = 0.0;  ///< m; path length of the block's fastest corner, ever growing
+  double lastExplicitStep_s = 0.0;  ///< s; the last explicit step of the block's positions; 0 after an implicit one
+  double lastImplicitStep_s = 0.0;  ///< s; the implicit step from memo.previous to the present positions, 0 if there was none
+  bool explicitLast = false;        ///< whether the last step was explicit
+  bool hasFallen = false;           ///< whether it has fallen since it slept last
+  double jerk = 0.0;    ///< kg m2/s6; mass times the squared rate of change of its corners' acceleration, mean over some frames
+  double motion = 0.0;  ///< kg m2/s2; mass times the squared velocity of its corners, same mean
+  double travel = 0.0;  ///< m; path length of the block's fastest corner, monotonic
 };
 
-/// What a frame depends on beside the state that is hashed: histories, factors, clearances kept from frame to frame. In
+/// What a frame depends on beside the state that is hashed: histories, factors, clearances that persist between frames. In
 /// snapshots.
 struct Memo {
   SortAndSweep sweep;
-  SweptBoxes boxes;                   ///< of the awake as of the last sweep; of sleepers, as they fell asleep
+  SweptBoxes boxes;                   ///< of awake blocks at the last sweep; of sleeping ones, when they fell asleep
   std::vector<double> travelAtSweep;  ///< m, [blocks]
   bool swept = false;                 ///< whether the order of the sweep has been set up
   std::vector<BlockPair> sweptPairs;
   Islands islands;
-  bool topologyChanged = true;               ///< whether pairs or islands are others than in the frame before
+  bool topologyChanged = true;               ///< whether pairs or islands differ from those of the frame before
   std::vector<std::int32_t> pairStart;       ///< pairs of island i are islandPairs[pairStart[i] .. pairStart[i + 1]]
   std::vector<std::int32_t> islandPairs;     ///< by position in engine.pairs
   std::vector<std::int32_t> blockPairStart;  ///< pairs of block b are blockPairs[blockPairStart[b] .. blockPairStart[b + 1]]

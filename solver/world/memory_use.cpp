@@ -107,14 +107,14 @@ std::size_t ofFrameStart(const FrameStart& start) {
                start.reportContacts);
 }
 
-// Columns of the pair table and all lists that have an entry a pair.
+// Columns of the pair table and all lists with one entry a pair.
 std::size_t ofPairs(const Engine& engine) {
   const Memo& memo = engine.memo;
   const Scratch& scratch = engine.scratch;
   return PairTable::kBytes * engine.pairs.size() +
          sumOf(engine.checkpoint.savedPair, memo.islandPairs, memo.sweptPairs, scratch.watchedPairs, scratch.mergedKeys,
                scratch.mergedFrom) +
-         sizeof(double) * engine.pairs.size();  // mergedColumn, as long as it gets
+         sizeof(double) * engine.pairs.size();  // mergedColumn at its largest
 }
 
 }  // namespace

@@ -17,10 +17,11 @@ inline constexpr std::size_t kPageRows = 64;
 template <class T>
 using Column = std::array<T, kPageRows>;
 
-/// Rows in pages that never move, taken on any thread and given back on one. A page is a structure of arrays of kPageRows rows;
+/// Rows in pages that never move, taken on any thread and returned on one. A page is a structure of arrays of kPageRows rows;
 /// `Page` is default constructible and copyable, and `prepare(wide)` adds what wide islands need. No locks: a row is taken by one
-/// atomic addition, and only where more rows are taken at once than `reserve` provided is a page allocated on the way. Which
-/// thread gets which row is chance, so no result may depend on the order of rows. A copy that is assigned keeps the pages it has.
+/// atomic addition; a page is allocated on the way only if more rows are taken at once than `reserve` provided. Which thread gets
+/// which row is not deterministic, so no result may depend on the order of rows. A pool that a copy is assigned to keeps the
+/// pages it has.
 template <class Page>
 class PagePool {
  public:
@@ -41,7 +42,8 @@ class PagePool {
       addFree(rows_, mine);
       rows_ = mine;
     }
-    prepared_ = false;  // neither copies nor pages that the other has none of are; `reserve` does it, as a snapshot needs none
+    prepared_ = false;  // neither copied pages nor pages without a counterpart are; `reserve` prepares them, as a snapshot does
+                        // not need it
     return *this;
   }
   PagePool(PagePool&& other) noexcept { *this = std::move(other); }
@@ -65,7 +67,7 @@ class PagePool {
   }
   static std::size_t slot(std::int32_t row) { return static_cast<std::size_t>(row) % kPageRows; }
 
-  /// Takes a row, of undefined content. Any thread. Precondition: fewer rows are in use than `reserve` named as most.
+  /// Takes a row, of undefined content. Any thread. Precondition: fewer rows are in use than the `most` of `reserve`.
   std::int32_t take() {
     const std::size_t next = taken_.fetch_add(1, std::memory_order_relaxed);
     if (next < free_.size()) return free_[free_.size() - 1 - next];
@@ -74,21 +76,21 @@ class PagePool {
     return static_cast<std::int32_t>(row);
   }
 
-  /// Gives a row back. Not while others take.
+  /// Returns a row. Not while others take.
   void giveBack(std::int32_t row) {
     settle();
     free_.push_back(row);
   }
 
-  /// Gives all rows back.
+  /// Returns all rows.
   void clear() {
     settle();
     free_.resize(rows_);
     for (std::size_t i = 0; i < rows_; ++i) free_[i] = static_cast<std::int32_t>(rows_ - 1 - i);
   }
 
-  /// Sees to it that this many rows can be taken without a page being allocated, and that up to `most` can be in use at once.
-  /// `wide`: whether pages are to be prepared for wide islands. Not while others take.
+  /// Makes sure that `free` rows can be taken without allocating a page, and that up to `most` can be in use at once. `wide`:
+  /// whether pages are prepared for wide islands. Not while others take.
   void reserve(std::size_t free, std::size_t most, bool wide) {
     settle();
     if (!prepared_ || (wide && !wide_)) {
@@ -122,7 +124,7 @@ class PagePool {
  private:
   static constexpr std::memory_order kOrder = std::memory_order_acquire;  // as cheap as none on x86
 
-  // Brings the list of free rows up to date with what has been taken since.
+  // Removes from the list of free rows those that have been taken since the last call.
   void settle() {
     const std::size_t taken = taken_.exchange(0);
     if (taken <= free_.size()) {
@@ -135,7 +137,7 @@ class PagePool {
     addFree(first, rows_);
   }
 
-  // Below those that are free already: rows are taken from the back, the lowest first.
+  // Inserts new rows below those that are already free: rows are taken from the back, the lowest first.
   void addFree(std::size_t first, std::size_t last) {
     std::vector<std::int32_t> rows;
     for (std::size_t row = last; row > first; --row) rows.push_back(static_cast<std::int32_t>(row - 1));
@@ -149,7 +151,7 @@ class PagePool {
     made->prepare(wide_);
     Page* expected = nullptr;
     if (table_[at].compare_exchange_strong(expected, made.get()))
-      static_cast<void>(made.release());  // else another thread was first
+      static_cast<void>(made.release());  // otherwise another thread was first
   }
 
   void copyPage(const Page* from, std::size_t at) {
@@ -174,8 +176,8 @@ class PagePool {
   std::unique_ptr<std::atomic<Page*>[]> table_;
   std::size_t tableSize_ = 0;
   std::size_t rows_ = 0;               // of the pages that are settled
-  std::vector<std::int32_t> free_;     // descending where nothing has been given back; taken from the back
-  std::atomic<std::size_t> taken_{0};  // of them since, and beyond
+  std::vector<std::int32_t> free_;     // descending if none has been returned; taken from the back
+  std::atomic<std::size_t> taken_{0};  // number of rows taken since, from the list and beyond it
   bool wide_ = false;
   bool prepared_ = true;  // whether all pages are
 };

@@ -4,9 +4,9 @@
 
 namespace springtower {
 
-/// Overwrites with NaN, and integers with -1, what no frame may read before it writes it: engine.scratch, the working space of
-/// Newton's iteration, and of contacts what rollbacks keep. Builds with assertions call it as a frame begins; hashes
-/// must not change.
+/// Overwrites with NaN, and integers with -1, what no frame may read before writing it: engine.scratch, the working space of
+/// Newton's iteration, and the checkpoint rows of contacts. Builds with assertions call it as a frame begins; state hashes must
+/// not change.
 void poisonScratch(Engine& engine);
 
 }  // namespace springtower

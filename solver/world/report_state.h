@@ -9,8 +9,8 @@
 
 namespace springtower {
 
-// What method `report` keeps beside the state itself: the collisions of its last step, which is all that its friction knows of
-// contacts (report 4.6), and working space of its collision loop.
+// What method `report` stores beside the state: the collisions of its last step, which are all that its friction uses of contacts
+// (report 4.6), and working space of its collision loop.
 
 /// A collision between a few corners of one block and a few of another, or of the floor: a corner and a face (1 and 3 corners),
 /// two edges (2 and 2), a corner and the floor (1 and 0). The weights of either side sum up to 1 (report Eq. 4.14 to 4.16).
@@ -26,16 +26,16 @@ struct ReportContact {
 };
 
 struct ReportState {
-  /// Collisions of the last step, [blocks]: each with an awake block of its two, so that islands never share a list.
+  /// Collisions of the last step, [blocks]: each in the list of one of its awake blocks, so that islands never share a list.
   std::vector<std::vector<ReportContact>> contacts;
   std::vector<std::vector<std::int32_t>> struck;  ///< disabled blocks that each awake one has hit hard in this frame, [blocks]
-  ParticleArray from;  ///< m; the straight paths of the step, a little longer than the step at both ends
+  ParticleArray from;  ///< m; straight paths of the step, extended a little beyond both ends of the step
   ParticleArray to;
   ParticleArray low;  ///< m; the box that each corner sweeps
   ParticleArray high;
-  std::vector<std::uint32_t> version;  ///< changes whenever a block's path does, [blocks]
+  std::vector<std::uint32_t> version;  ///< incremented whenever a block's path changes, [blocks]
   std::vector<std::array<std::uint32_t, 2>>
-      testedAt;  ///< versions of a pair's blocks when last found clear, by position in the pairs
+      testedAt;  ///< versions of a pair's blocks when it was last found free of collisions, by position in the pairs
 
   void resize(std::size_t blocks) {
     contacts.resize(blocks);

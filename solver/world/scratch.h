@@ -16,76 +16,77 @@
 
 namespace springtower {
 
-/// How awake neighbours push a sleeping block otherwise than when it fell asleep, and what it could bear.
+/// Change of the load that awake neighbours put on a sleeping block since it fell asleep, and the limits of what its other
+/// contacts support.
 struct LoadChange {
   Vec3 force = Vec3::Zero();   ///< N, change of all their forces
   Vec3 torque = Vec3::Zero();  ///< N m, change of their torque about the block's centre
   Vec3 shear = Vec3::Zero();   ///< N, their friction now
-  Vec3 side = Vec3::Zero();    ///< unit normals of their contacts, added up
-  double load_n = 0.0;         ///< N, what went through the block when it fell asleep
-  double hold_n = 0.0;         ///< N, most friction of its contacts with sleepers and the floor
-  bool begunOrLost = false;    ///< whether a contact has come or gone
+  Vec3 side = Vec3::Zero();    ///< sum of the unit normals of their contacts
+  double load_n = 0.0;         ///< N, contact load through the block when it fell asleep
+  double hold_n = 0.0;         ///< N, largest friction of its contacts with sleeping blocks and the floor
+  bool begunOrLost = false;    ///< whether a contact has begun or ended
 };
 
-/// A group of sleepers, by its root, and a pair on which it may rest.
+/// A group of sleeping blocks, by its root, and a pair that may support it.
 struct SupportPair {
   std::int32_t group;
   std::int32_t pair;
   auto operator<=>(const SupportPair&) const = default;
 };
 
-/// What the search for sleepers whose supports fail works with.
+/// Working space of the support check.
 struct SupportCheckScratch {
-  std::vector<std::int32_t> start;  ///< pairs in which sleeper b touches something are pairs[start[b] .. start[b + 1]]
+  std::vector<std::int32_t> start;  ///< pairs in which sleeping block b touches something are pairs[start[b] .. start[b + 1]]
   std::vector<std::int32_t> pairs;
-  std::vector<std::int32_t> blocks;  ///< sleepers that touch pushed ones, directly or through others, from the top down
-  std::vector<std::int32_t> parent;  ///< of groups above the level, -1 below it, [blocks]
+  std::vector<std::int32_t> blocks;  ///< sleeping blocks connected to pushed ones by contacts, from the top down
+  std::vector<std::int32_t> parent;  ///< union-find parents of the groups above the level, -1 below it, [blocks]
   std::vector<std::int32_t> open;    ///< pairs across the level
-  std::vector<std::int32_t> groups;  ///< that are pushed, ascending
-  std::vector<SupportPair> beneath;  ///< of these groups, ascending
+  std::vector<std::int32_t> groups;  ///< groups under a changed load, ascending
+  std::vector<SupportPair> beneath;  ///< pairs that may support these groups, ascending
   std::vector<SupportPoint> supports;
 };
 
-/// What a frame works with and leaves behind: nothing in it is read before it is written in the same frame. Not in snapshots.
-/// Builds with assertions fill it with NaN when a frame begins (solver/world/poison); a test does so in every build.
+/// Working space of a frame: nothing in it is read before it is written in the same frame. Not in snapshots. Builds with
+/// assertions fill it with NaN when a frame begins (solver/world/poison); a test does so in every build.
 struct Scratch {
   // Pairs and islands.
-  std::vector<std::int32_t> awakeBlocks;   ///< ascending
-  std::vector<double> reach;               ///< m a block may travel before it can be out of its swept box, [blocks]
-  std::vector<BlockPair> mergedKeys;       ///< pairs there are to be,
-  std::vector<std::int32_t> mergedFrom;    ///< where each of them was before, or -1,
-  std::vector<std::byte> mergedColumn;     ///< and a column of the table
-  std::vector<std::int32_t> cursor;        ///< of counting sorts
-  std::vector<std::int32_t> watchedPairs;  ///< by position in islandPairs: those of each island that are watched, from its first
-  std::vector<double> path;                ///< m, of each block's fastest corner in the last step, [blocks]
-  std::vector<double> foreseenPath;        ///< m, most that is counted on in a step while a list of watched pairs holds, [blocks]
+  std::vector<std::int32_t> awakeBlocks;      ///< ascending
+  std::vector<double> reach;                  ///< m, travel up to which a block cannot have left its swept box, [blocks]
+  std::vector<BlockPair> mergedKeys;          ///< keys of the new pair table,
+  std::vector<std::int32_t> mergedFrom;       ///< previous index of each of them, or -1,
+  std::vector<std::byte> mergedColumn;        ///< and space for one column of the table
+  std::vector<std::int32_t> cursor;           ///< of counting sorts
+  std::vector<std::int32_t> watchedPairs;     ///< active pairs of each island, by position in islandPairs
+  std::vector<double> path;                   ///< m, path of each block's fastest corner in the last step, [blocks]
+  std::vector<double> foreseenPath;           ///< m, upper bound of that path for which a list of active pairs is valid, [blocks]
   std::vector<std::int32_t> newContactCount;  ///< [blocks]: pairs of the block that may make first contact in this frame
-  std::vector<std::int32_t> nodeOf;           ///< the place of each block in its island, for implicit steps and rigid methods
+  std::vector<std::int32_t> nodeOf;           ///< index of each block in its island, for implicit steps and rigid methods
 
   // Steps.
-  std::vector<AffineField> contactForce;           ///< N, what contacts put on each block
+  std::vector<AffineField> contactForce;           ///< N, contact forces on each block
   std::vector<Eigen::Matrix4d> contactMetric;      ///< 1/s2, stiffness of each block's contacts on its affine part, over its mass
-  std::array<MotionState, 4> stage;                ///< states inside a step of the multi-stage methods; empty for the others
+  std::array<MotionState, 4> stage;                ///< states at the stages of the multi-stage methods; empty for the others
   std::array<ParticleArray, 4> stageAcceleration;  ///< m/s2, of the stages
-  ParticleArray pastPosition;                      ///< m, what past steps give of the position at an implicit step's end
+  ParticleArray pastPosition;                      ///< m, contribution of past steps to the position at an implicit step's end
   ParticleArray stepVelocity;                      ///< m/s, mean over the implicit step
-  ParticleArray freePosition;                      ///< m, where the implicit step ends without forces
-  std::vector<RigidIsland> rigidIslands;           ///< by the island's smallest block; of rigid methods, and of what falls
+  ParticleArray freePosition;                      ///< m, position at the end of the implicit step without forces
+  std::vector<RigidIsland> rigidIslands;  ///< by the island's smallest block; of rigid methods, and of islands in rigid mode
 
   // Sleep.
-  std::vector<std::int32_t> lostPartners;  ///< sleeping blocks whose awake neighbour went out of reach in this frame
+  std::vector<std::int32_t> lostPartners;  ///< sleeping blocks whose pair with an awake neighbour the sweep dropped in this frame
   std::vector<WakeRequest> toWake;
-  std::vector<std::int32_t> wakeRoots;  ///< blocks from which others are reached
+  std::vector<std::int32_t> wakeRoots;  ///< blocks from which the search over contacts starts
   std::vector<std::int32_t> pushed;     ///< sleeping blocks with awake neighbours
   std::vector<LoadChange> loadChange;   ///< [blocks]
   SupportCheckScratch support;
   std::vector<BlockPair> touchingEdges;
   std::vector<std::int32_t> restless;
   std::vector<std::int32_t> parent;   ///< of connectedBlocks
-  std::vector<std::uint8_t> touched;  ///< 1 where a block touches one of toWake, directly or through others
-  std::vector<std::uint8_t> joined;   ///< 1 where a block touches a restless one, directly or through others
+  std::vector<std::uint8_t> touched;  ///< 1 where a block is connected to one of toWake by contacts
+  std::vector<std::uint8_t> joined;   ///< 1 where a block is connected to a block that is not at rest by contacts
 
-  // Results of islands and of ranges of pairs inside a large one, before they are added up in order.
+  // Results of islands, and of ranges of pairs in a wide island, before they are summed in order.
   std::vector<Counters> chunkCounters;
   std::vector<StageTimes> chunkTimes;  ///< s of one thread each
   std::vector<Counters> islandCounters;

@@ -32,7 +32,7 @@ struct Snapshot {
   ContactPool contacts;
   SleepState sleepState;
   ReportState report;
-  // What else the next frame depends on, and what has been counted.
+  // Whatever else the next frame depends on, and the counters.
   Memo memo;
   int substeps;
   Counters counters;
@@ -94,7 +94,7 @@ std::uint64_t stateHash(const Simulation& simulation) {
   for (const auto& values : simulation.state.position.component) mixDoubles(values);
   for (const auto& values : simulation.state.velocity.component) mixDoubles(values);
   hash.bytes(simulation.asleep.data(), simulation.asleep.size());
-  // Eight points a pair whether it touches or not, each number of all of them after the other.
+  // Eight points a pair whether it touches or not, one quantity of all points after the other.
   const auto mixContact = [&](const ContactView& contact) {
     static const PlaceRow kNowhere{};
     static const PointRow kNothing{};

@@ -24,17 +24,18 @@ struct Simulation {
 
   Scene scene;
   BlockModel model;
-  Lengths lengths;  ///< the scene's own scale
+  Lengths lengths;  ///< the scene's length and time scales
   MotionState state;
-  Tether tether;               ///< what holds a block, as set by whoever leads the hand (solver/hand/grip), until it lets go
-  double time_s = 0.0;         ///< simulated time, s
-  std::uint64_t frame = 0;     ///< frames done
-  double tolerance_m = 0.0;    ///< the tolerance in force: as given, or what the given substeps allow
-  double dampingTime_s = 0.0;  ///< s, dashpot over stiffness of springs and contacts
+  Tether tether;  ///< the hand's springs on its block, as set by the owner of the hand (solver/hand/grip), until it releases the
+                  ///< block
+  double time_s = 0.0;                ///< simulated time, s
+  std::uint64_t frame = 0;            ///< frames done
+  double tolerance_m = 0.0;           ///< the tolerance in force: as given, or what the given substeps allow
+  double dampingTime_s = 0.0;         ///< s, dashpot over stiffness of springs and contacts
   double contactStiffness_n_m = 0.0;  ///< N/m, of one resting contact point, normal
   double floorStiffness_n_m = 0.0;    ///< N/m, of one on the floor
   double springStiffness_n_m = 0.0;   ///< N/m, of an upright edge of a block of the scene's least height
-  int fixedSubsteps = 0;              ///< steps of every frame where the user gave them, else 0
+  int fixedSubsteps = 0;              ///< steps of every frame if the user gave them, otherwise 0
   int substeps = 0;                   ///< steps of the last frame (the most over its islands)
   std::vector<std::uint8_t> asleep;   ///< 1 where a block sleeps, [blocks]
   std::vector<double> restTime_s;     ///< how long a block has been at rest, s, [blocks]; kept with sleep off as well
@@ -48,8 +49,8 @@ struct Simulation {
 /// step in which a position stops being finite or a block turns inside out.
 void stepFrame(Simulation& simulation);
 
-/// Adds to the velocity of a block (m/s), as a blow would that takes no time, and wakes it. Methods that step from what was
-/// before forget it for this block; velocities in `state` are not to be changed behind their back.
+/// Adds to the velocity of a block (m/s), as an instantaneous impact would, and wakes it. Methods with a history drop it for this
+/// block; do not change velocities in `state` without this function.
 void kick(Simulation& simulation, std::size_t block, const Vec3& velocity);
 
 /// Whether a block sleeps; the floor, numbered -1, always does.
@@ -64,29 +65,30 @@ bool allAsleep(const Simulation& simulation);
 bool atRest(const Simulation& simulation);
 
 /// Energies, J. The kinetic energy is the one that the leapfrog form of semi-implicit Euler conserves for linear forces: half the
-/// product of the velocities before and after the coming step's kick (Hairer, Lubich & Wanner 2003, Acta Numerica 12), with the
-/// inertia in force.
+/// product of the velocities before and after the kick of the coming step (Hairer, Lubich & Wanner 2003, Acta Numerica 12), with
+/// the inertia in force.
 struct Energy {
   double kinetic = 0.0;
-  double gravity = 0.0;  ///< against the floor z = 0, with the gravity of the moment
+  double gravity = 0.0;  ///< relative to the floor z = 0, with the present gravity
   double springs = 0.0;
-  double contacts = 0.0;       ///< stored in contact springs: normal, relaxing branch, friction anchors
-  std::vector<double> step_s;  ///< of each block: the step of that kick; 0 where its velocity is that of its position's time
-  std::vector<double> stepShare_j_s2;  ///< of each block: what the kinetic energy lacks for it, over the square of the step
+  double contacts = 0.0;       ///< stored in contact springs: normal, Maxwell branch, friction displacement
+  std::vector<double> step_s;  ///< of each block: the step of that kick; 0 where velocity and position belong to the same time
+  std::vector<double> stepShare_j_s2;  ///< of each block: correction of its kinetic energy, over the square of the step
   [[nodiscard]] double total() const { return kinetic + gravity + springs + contacts; }
 };
 Energy energy(const Simulation& simulation);
 
-/// By how much the energy rose between the ends of two frames, J, both as the later one's steps conserve it: where a frame takes
-/// shorter steps than the one before nothing has risen yet.
+/// Rise of energy between the ends of two frames, J, both as the later frame's steps conserve it: a frame with shorter steps than
+/// the one before is not itself a rise.
 double energyRise(const Energy& before, const Energy& after);
 
-/// One contact point as it acts now, for reports, overlays and tests: the force on `upper` from `lower` (kFloor: the floor).
+/// One contact point at the present state, for reports, overlays and tests: the force on `upper` from `lower` (kFloor: the
+/// floor).
 struct ContactForce {
   BlockId upper;
   BlockId lower;
-  Vec3 point;          ///< m, where it acts on `upper`
-  Vec3 lowerPoint;     ///< m, where its reaction acts on `lower`; apart by the penetration, along the normal
+  Vec3 point;          ///< m, point of application on `upper`
+  Vec3 lowerPoint;     ///< m, point of application of the reaction on `lower`; differs by the penetration, along the normal
   Vec3 normal;         ///< unit, from lower to upper
   double normalForce;  ///< N, >= 0
   Vec3 frictionForce;  ///< N, on `upper`
@@ -95,16 +97,16 @@ struct ContactForce {
 };
 std::vector<ContactForce> contactForces(const Simulation& simulation);
 
-/// Those on one block.
+/// The contact points of one block.
 std::vector<ContactForce> contactForcesOn(const Simulation& simulation, BlockId block);
 
-/// A copy of all that the next frame depends on, inputs (gravity, forces, friction, sleep, hand) included, and back. A restored
-/// simulation repeats its future bit for bit.
+/// A copy of everything that the next frame depends on, inputs (gravity, forces, friction, sleep, hand) included, and its
+/// restoration. A restored simulation repeats its future bit for bit.
 struct Snapshot;
 std::shared_ptr<const Snapshot> takeSnapshot(const Simulation& simulation);
 void restoreSnapshot(Simulation& simulation, const Snapshot& snapshot);
 
-/// A hash (FNV-1a, 64 bit) of the bits of positions, velocities, sleep and contact memory: equal for equal states, on any thread
+/// A hash (FNV-1a, 64 bit) of the bits of positions, velocities, sleep and contact points: equal for equal states, on any thread
 /// count.
 std::uint64_t stateHash(const Simulation& simulation);
 

@@ -9,15 +9,15 @@
 
 namespace springtower {
 
-/// What is known of a block's rest: its rigid motion when the window that is running began.
+/// Rigid motion of a block at the start of its current sleep window.
 struct SleepWindow {
   Vec3 centre = Vec3::Zero();    ///< m
   Vec3 velocity = Vec3::Zero();  ///< m/s
   Vec3 spin = Vec3::Zero();      ///< rad/s
-  double age_s = 0.0;            ///< s since
+  double age_s = 0.0;            ///< s, since the window began
 };
 
-/// How a sleeping block was pushed when all sleepers stayed.
+/// Load change of a sleeping block when the support check last found that all sleeping blocks stay.
 struct CheckedLoad {
   std::int32_t block = -1;
   Vec3 force = Vec3::Zero();   ///< N, change
@@ -30,12 +30,12 @@ struct WakeRequest {
   WakeReason reason = WakeReason::loadChange;
 };
 
-/// What sleep knows from frame to frame, beside which blocks sleep and for how long each has been at rest. In snapshots.
+/// State of sleep between frames, beside which blocks sleep and how long each has been at rest. In snapshots.
 struct SleepState {
   std::size_t awakeCount = 0;
   std::vector<SleepWindow> windows;       ///< [blocks]
   Vec3 gravity = Vec3::Zero();            ///< m/s2, when the last block fell asleep
-  std::vector<CheckedLoad> checkedLoads;  ///< of all pushed blocks when their supports held last; none where some failed
+  std::vector<CheckedLoad> checkedLoads;  ///< of all pushed blocks when the support check last passed; empty where it failed
 };
 
 }  // namespace springtower

@@ -6,8 +6,8 @@
 
 namespace springtower {
 
-/// Times stages that follow one another: each lap goes to a stage and starts the next; what is skipped goes to none. One reading
-/// of the clock a lap, so that it can be used in every substep.
+/// Times consecutive stages: each lap is added to a stage and starts the next; a skipped lap is added to none. One clock reading
+/// a lap, so it is cheap enough for every substep.
 class StageClock {
  public:
   explicit StageClock(StageTimes& times) : times_(times), last_(std::chrono::steady_clock::now()) {}

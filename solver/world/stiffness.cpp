@@ -33,7 +33,8 @@ double overlapLength(const BlockBounds& a, const BlockBounds& b, std::size_t axi
   return std::min(a.upper[axis], b.upper[axis]) - std::max(a.lower[axis], b.lower[axis]);
 }
 
-// The highest blocks below each block that its outline covers: those whose tops are within half a block of the highest such top.
+// The supports of each block: the highest blocks below it within its outline, with tops within half a block of the highest such
+// top.
 std::vector<std::vector<std::size_t>> supportsOf(const std::vector<BlockBounds>& bounds) {
   const std::size_t count = bounds.size();
   std::vector<std::vector<std::size_t>> below(count);
@@ -74,7 +75,7 @@ struct LevelMoments {
   }
 };
 
-// How much the tops of a block's supports differ, m.
+// Height difference of the tops of a block's supports, m.
 double unevenness(const std::vector<BlockBounds>& bounds, const std::vector<std::size_t>& supports) {
   if (supports.empty()) return 0.0;
   double lowest = 1e300;
@@ -91,7 +92,7 @@ bool isLevel(const BlockSpec& block) {
   return block.orientation.toRotationMatrix().row(2).cwiseAbs().maxCoeff() > tuning::kLevelCosine;
 }
 
-// How far a block is above the highest of its supports, or the floor, if none of its sides is level; else 0.
+// Height of a block above the highest of its supports, or the floor, if none of its sides is level; otherwise 0.
 double askewFall(const Scene& scene, const std::vector<BlockBounds>& bounds, std::size_t b,
                  const std::vector<std::size_t>& supports) {
   if (isLevel(scene.blocks[b])) return 0.0;
@@ -101,7 +102,7 @@ double askewFall(const Scene& scene, const std::vector<BlockBounds>& bounds, std
   return std::max(0.0, bounds[b].lower[2] - top);
 }
 
-// Blocks by their middle height, the highest first.
+// Blocks by the height of their middle, the highest first.
 std::vector<std::size_t> orderFromTop(const std::vector<BlockBounds>& bounds) {
   const std::size_t count = bounds.size();
   std::vector<std::size_t> fromTop(count);
@@ -112,7 +113,7 @@ std::vector<std::size_t> orderFromTop(const std::vector<BlockBounds>& bounds) {
   return fromTop;
 }
 
-// What the blocks weigh upon one another, from the top down.
+// Results of the pass that sums loads from the top down.
 struct Weighed {
   double tower_n = 0.0;    // weight of all level blocks
   bool anyUneven = false;  // whether any block's supports differ in height
@@ -122,7 +123,7 @@ Weighed weigh(const Scene& scene, const std::vector<BlockBounds>& bounds, const 
               const std::vector<std::size_t>& fromTop, LoadEstimate& estimate) {
   Weighed weighed;
   std::vector<double> load(scene.blocks.size(), 0.0);
-  // Without gravity nothing loads a contact, yet blocks must be stiff: they are taken to weigh what they would on Earth.
+  // Without gravity nothing loads a contact, yet blocks must be stiff: their weights on Earth are used.
   const double weighing = scene.gravity.magnitude > 0.0 ? scene.gravity.magnitude : kStandardGravity_m_s2;
   for (const std::size_t b : fromTop) {
     const double own = scene.blocks[b].mass * weighing;
@@ -137,7 +138,7 @@ Weighed weigh(const Scene& scene, const std::vector<BlockBounds>& bounds, const 
     double& largest = below[b].empty() ? estimate.floorLoad_n : estimate.contactLoad_n;
     largest = std::max(largest, load[b] / shares / tuning::kLoadedPoints);
     estimate.blockLoad_n = std::max(estimate.blockLoad_n, load[b] / tuning::kLoadedPoints);
-    // Nothing may rest on this block yet, but another like it may come.
+    // Nothing may rest on this block yet, but an equal block may be put on it.
     estimate.contactLoad_n = std::max(estimate.contactLoad_n, own / tuning::kLoadedPoints);
     estimate.floorLoad_n = std::max(estimate.floorLoad_n, own / tuning::kLoadedPoints);
     for (const std::size_t s : below[b]) load[s] += load[b] / supports;
@@ -145,7 +146,7 @@ Weighed weigh(const Scene& scene, const std::vector<BlockBounds>& bounds, const 
   return weighed;
 }
 
-// The level of each block above the floor, by the longest way down; returns how many levels there are.
+// The level of each block above the floor, by the longest path down; returns the number of levels.
 std::size_t findLevels(const std::vector<std::vector<std::size_t>>& below, const std::vector<std::size_t>& fromTop,
                        std::vector<std::size_t>& level) {
   level.assign(fromTop.size(), 0);
@@ -157,7 +158,7 @@ std::size_t findLevels(const std::vector<std::vector<std::size_t>>& below, const
   return levels;
 }
 
-// Where the scene lies, and how its level blocks rest on one another, level by level.
+// Extent of the scene, and the joints between its level blocks, level by level.
 struct Joints {
   std::vector<LevelMoments> moments;
   std::array<double, 3> lower{1e300, 1e300, 1e300};  // m, of all blocks
@@ -191,7 +192,7 @@ Joints findJoints(const Scene& scene, const std::vector<BlockBounds>& bounds, co
   return joints;
 }
 
-// Stiffness that keeps the levels from buckling, N/m.
+// Contact stiffness at which the levels do not buckle, N/m.
 double swayStiffness(const Joints& found, double towerWeight) {
   double compliance = 0.0;
   std::size_t joints = 0;

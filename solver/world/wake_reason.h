@@ -12,19 +12,19 @@ namespace springtower {
 enum class WakeReason : std::uint8_t {
   gravity,         ///< gravity has changed since the last block fell asleep
   force,           ///< a user's force acts on it
-  settings,        ///< friction or the rule of sleep has been changed between frames
+  settings,        ///< friction or the sleep rule has been changed between frames
   hand,            ///< a hand holds it
-  kick,            ///< it is given a velocity
-  impact,          ///< an awake block is about to hit it, or slides on it fast; or what it touches is hit
+  kick,            ///< its velocity is changed by a kick
+  impact,          ///< an awake block is about to hit it, or slides on it fast; or a block it touches is hit
   loadChange,      ///< awake neighbours have changed its load by more than its other contacts support, or a contact came or went
-  lostNeighbour,   ///< an awake neighbour has gone out of reach
+  lostNeighbour,   ///< the sweep has dropped its pair with an awake neighbour
   failedSupport,   ///< it belongs to a group of sleepers whose supports fail under the changed load
-  unbalanced,      ///< neighbours fall asleep on other forces than those it slept on
+  unbalanced,      ///< neighbours fall asleep with other contact forces than those it fell asleep with
   reportedImpact,  ///< method `report`: an impulse acts on it
 };
 inline constexpr std::size_t kWakeReasons = static_cast<std::size_t>(WakeReason::reportedImpact) + 1;
 
-/// As reports name them.
+/// Names in reports.
 inline constexpr std::array<std::string_view, kWakeReasons> kWakeReasonNames = {
     "gravity",     "force",          "settings",       "hand",       "kick",           "impact",
     "load_change", "lost_neighbour", "failed_support", "unbalanced", "reported_impact"};
@@ -32,7 +32,7 @@ inline constexpr std::array<std::string_view, kWakeReasons> kWakeReasonNames = {
 /// How many blocks have woken for each reason.
 using WakeCounts = std::array<std::uint64_t, kWakeReasons>;
 
-/// For people: "force 1, load_change 4"; empty where no block has woken.
+/// For text output: "force 1, load_change 4"; empty where no block has woken.
 inline std::string wakesInWords(const WakeCounts& wakes) {
   std::string words;
   for (std::size_t i = 0; i < kWakeReasons; ++i) {

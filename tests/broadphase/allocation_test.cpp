@@ -1,4 +1,4 @@
-// The broadphase calls no allocator once its buffers have grown.
+// The broadphase does not allocate once its buffers have grown.
 
 #include "broadphase/islands.h"
 #include "broadphase/sort_and_sweep.h"
@@ -12,7 +12,7 @@
 namespace springtower {
 namespace {
 
-// What a frame of the broadphase does, on blocks that move in a loop of 40 frames, some of them asleep for a while.
+// A frame of the broadphase, on blocks that move in a loop of 40 frames, some of them asleep for a while.
 struct Broadphase {
   static constexpr std::size_t kBlocks = 200;
   MotionState state;

@@ -165,7 +165,7 @@ TEST(SortAndSweep, TouchingBoxesMeetAndBoxesApartByOneRoundingDoNot) {
     boxes.upper[axis][first] = number(-10.0, 10.0) + 10.0;
     boxes.lower[axis][second] = boxes.upper[axis][first];
     boxes.upper[axis][second] = boxes.lower[axis][second] + number(0.0, 10.0);
-    // Either block asks for the other: one awake asks across the columns and along the axis in both directions.
+    // Each block must find the other: an awake one searches across the columns and along the axis in both directions.
     for (const Flags& asleep : {Flags{0, 0}, Flags{0, 1}, Flags{1, 0}}) {
       ASSERT_EQ(freshPairs(boxes, asleep), (std::vector<BlockPair>{{0, 1}})) << "trial " << trial;
     }
@@ -225,7 +225,7 @@ TEST(SortAndSweep, OneAwakeBlockOfAFieldCostsAFewTests) {
   for (const std::int32_t block : {0, 1, 2700, 5399}) {
     const auto b = static_cast<std::size_t>(block);
     asleep[b] = 0;
-    // It wanders up through the rows of its tower, and back.
+    // It moves up through the rows of its tower, and back.
     for (const double step : {0.0, 0.02, 0.02, 0.02, -0.06}) {
       boxes.lower[2][b] += step;
       boxes.upper[2][b] += step;
@@ -244,13 +244,13 @@ TEST(SortAndSweep, ABlockThatGrowsTallIsSeenByTheBlocksAboveIt) {
   reset(sweep, boxes);
   std::vector<BlockPair> pairs;
   findPairs(sweep, boxes, asleep, pairs);
-  // Blocks 3 and 20 change places, so that the upper one of the pair has to look for the lower one.
+  // Blocks 3 and 20 are exchanged, so that the upper one of the pair has to find the lower one.
   setBox(boxes, 3, Vec3(0.0, 0.0, 0.5), Vec3(0.08, 0.03, 0.02));
   setBox(boxes, 20, Vec3(0.0, 0.0, 0.4), Vec3(0.08, 0.03, 0.02));
   asleep[3] = asleep[20] = 0;
   findPairs(sweep, boxes, asleep, pairs);
   EXPECT_TRUE(pairs.empty());
-  // As it does when it gathers speed, awake, and when somebody puts it to sleep there.
+  // As when it accelerates, awake, and is then put to sleep in that position.
   boxes.upper[2][20] = 0.5;
   findPairs(sweep, boxes, asleep, pairs);
   EXPECT_EQ(pairs, (std::vector<BlockPair>{{3, 20}}));

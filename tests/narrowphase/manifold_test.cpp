@@ -18,9 +18,9 @@ constexpr double kWidth_m = 0.025;
 constexpr double kHeight_m = 0.018;
 constexpr ManifoldLimits kLimits{1e-2 * kHeight_m, 0.05 * kHeight_m};
 constexpr int kTop = 5;     // face of the largest z
-constexpr int kBottom = 4;  // and of the least
+constexpr int kBottom = 4;  // and of the smallest
 
-// Two blocks of one size, the second lying on the first, turned about the upright and shifted.
+// Two blocks of one size, the second lying on the first, rotated about the vertical and shifted.
 Manifold manifoldOf(double turn_rad, const Vec3& shift_m, const ManifoldLimits& limits = kLimits) {
   ParticleArray position;
   position.resize(2);
@@ -38,8 +38,8 @@ Manifold manifoldOf(double turn_rad, const Vec3& shift_m, const ManifoldLimits& 
   return manifold;
 }
 
-// Blocks that lie flush are never flush to the last bit. Where sides that coincide cross by rounding alone, or by micrometres,
-// the point where they cross is none: it would come and go, and the load with it.
+// Flush blocks are never flush to the last bit. Where coinciding sides cross by rounding only, or by micrometres, their crossing
+// must not be a point: it would appear and vanish, and the load with it.
 TEST(Manifold, FlushSidesGiveTheCornersAlone) {
   for (const double turn_rad : {0.0, 1e-15, -1e-12, 1e-9, 1e-6, -1e-5, 1e-4}) {
     for (const double shift_m : {0.0, 1e-17, 1e-9, -1e-7}) {
@@ -48,7 +48,8 @@ TEST(Manifold, FlushSidesGiveTheCornersAlone) {
   }
 }
 
-// Each side of the one crosses two of the other, in points that are farther from straight than what counts as such.
+// Each side of one face crosses two sides of the other, at points where the boundary is bent by more than the limit for straight
+// edges.
 TEST(Manifold, TurnedSidesCrossInEightPoints) {
   EXPECT_EQ(manifoldOf(0.01, Vec3::Zero()).count, 8);
   EXPECT_EQ(manifoldOf(0.2, Vec3::Zero()).count, 8);
@@ -61,7 +62,7 @@ Eigen::Vector2d pointOf(const Manifold& m, std::size_t point) {
   return {kWidth_m * row.u[laneOf(point)], kLength_m * row.v[laneOf(point)]};
 }
 
-// m, of a point from the border of a manifold's polygon.
+// m, distance of a point from the boundary of a manifold's polygon.
 double distanceToBorder(const Eigen::Vector2d& point, const Manifold& m) {
   double least = std::numeric_limits<double>::infinity();
   const auto count = static_cast<std::size_t>(m.count);
@@ -74,16 +75,15 @@ double distanceToBorder(const Eigen::Vector2d& point, const Manifold& m) {
   return least;
 }
 
-// A side that crosses another under a small angle bends the border there by half the width or length times that angle, a little
-// less where it is longer: it is straight up to 9 micrometres.
+// A side that crosses another at a small angle bends the boundary there by half the width or length times that angle, slightly
+// less where it is longer: it counts as straight up to 9 micrometres.
 TEST(Manifold, ABendOfATwentiethOfTheRadiusIsStraight) {
   const double bend_rad = 0.05 * kLimits.mergeRadius / (0.5 * kLength_m);
   EXPECT_EQ(manifoldOf(0.8 * bend_rad, Vec3::Zero()).count, 4);
   EXPECT_GT(manifoldOf(4.0 * bend_rad, Vec3::Zero()).count, 4);
 }
 
-// Every point of the overlap is within the radius in which points are one, and a twentieth for straight edges, of the border that
-// is left.
+// Every point of the overlap is within the merge radius, plus a twentieth for straight edges, of the remaining boundary.
 TEST(Manifold, ItsPointsSpanTheOverlap) {
   const Vec3 shift_m(0.003, 0.002, 0.0);
   for (double turn_rad = 0.0; turn_rad < 1.5; turn_rad += 0.0007) {

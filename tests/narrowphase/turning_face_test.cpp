@@ -1,4 +1,4 @@
-// Directions that turn with a block, and what they prove.
+// Directions that rotate with a block, as separating axes.
 #include "narrowphase/turning_face.h"
 
 #include "core/random.h"
@@ -30,7 +30,7 @@ void place(ParticleArray& corners, std::size_t block, const Eigen::Quaterniond& 
   }
 }
 
-// Two blocks of a row, apart by a gap, that turn together about the upright axis through the first one's centre.
+// Two blocks of a row, separated by a gap, that rotate together about the vertical axis through the centre of the first one.
 Step rowThatTurns(double gap_m, double turn_rad) {
   const Vec3 aside(0.0, kDimensions_m.y() + gap_m, 0.0);
   const Eigen::Quaterniond turn(Eigen::AngleAxisd(turn_rad, Vec3::UnitZ()));
@@ -42,8 +42,8 @@ Step rowThatTurns(double gap_m, double turn_rad) {
   return step;
 }
 
-// The gap closes along the direction that separates the blocks at the start, by half their length times the angle on either side,
-// and along that which turns with them by no more than what a chord is shorter than its arc.
+// The gap closes along the direction that separates the blocks at the start, by half their length times the angle on either side;
+// along the direction that rotates with them it closes by at most the difference between an arc and its chord.
 TEST(TurningFace, SeparatesBlocksThatTurnTogether) {
   const double gap_m = 1e-4;
   const double turn_rad = 0.01;
@@ -64,8 +64,8 @@ TEST(TurningFace, TakesTheFaceOfEitherBlock) {
   EXPECT_LT((gapAlongTurningFace(Vec3::UnitY(), step.block(0), step.block(1)).normalAtEnd - Vec3::UnitY()).norm(), 1e-12);
 }
 
-// The least gap is no more than that at any time, with the corners on their straight ways.
-TEST(TurningFace, NeverPromisesMoreThanThereIs) {
+// The least gap is at most the gap at any time, with the corners on their straight paths.
+TEST(TurningFace, NeverExceedsTheGap) {
   RandomStream random(7, 0);
   const auto number = [&](double most) { return most * (2.0 * random.uniform() - 1.0); };
   const auto shift = [&](double most) { return Vec3(number(most), number(most), number(most)); };

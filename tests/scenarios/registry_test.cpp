@@ -1,4 +1,4 @@
-// The scenes that have a name.
+// The named scenes.
 #include "scenarios/registry.h"
 
 #include "core/error.h"
@@ -23,7 +23,7 @@ using ::testing::HasSubstr;
 using ::testing::StartsWith;
 using ::testing::ThrowsMessage;
 
-constexpr double kSameNumber = 1e-15;  // rounding in how a file spells a length and code computes it
+constexpr double kSameNumber = 1e-15;  // rounding between a length written in a file and computed in code
 
 TEST(Scenarios, AreEachMadeAtTheirUsualSizeAndStartSoundly) {
   for (const Scenario& scenario : scenarios()) {
@@ -110,7 +110,7 @@ TEST(ScenarioName, TakesOptionsOfTowersForTowersOnly) {
               ThrowsMessage<InputError>("wall:3x2: found a start gap, allowed for towers only"));
 }
 
-// The files show how such a scene is written; who changes one of the two changes both.
+// The files show how such a scene is written; a change of one requires a change of the other.
 TEST(Scenarios, AreThoseOfTheFilesOfTheSameScenes) {
   for (const auto& [name, file] : {std::pair{"slope", "block_on_slope"}, std::pair{"thin-wall", "thin_wall"}}) {
     const Scene made = sceneNamed(name);

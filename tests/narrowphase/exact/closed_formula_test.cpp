@@ -11,7 +11,7 @@
 namespace springtower {
 namespace {
 
-// The real roots of a t^3 + b t^2 + c t + d as the report finds them (its 4.4): in closed form, in double precision.
+// The real roots of a t^3 + b t^2 + c t + d as in the report (its 4.4): in closed form, in double precision.
 std::vector<double> rootsInClosedForm(const std::array<double, 4>& power) {
   const auto& [a, b, c, d] = power;
   const double p = c / a - b * b / (3.0 * a * a);
@@ -29,7 +29,7 @@ std::vector<double> rootsInClosedForm(const std::array<double, 4>& power) {
 
 // "Occasionally a block can become embedded with another block causing the blocks to stretch apart: this problem is down to
 // numerical accuracy" (report 6.2.2). Where faces or edges move nearly in one plane the closed form loses the time of contact,
-// and what was not seen to meet is inside. The queries are those of blocks in stacks and of degenerate cases.
+// and blocks whose contact was missed are inside one another. The queries are those of blocks in stacks and of degenerate cases.
 TEST(ReportFailure, TheClosedFormulaLosesCollisionsThatEmbedBlocks) {
   std::size_t lost = 0;
   std::size_t missed = 0;

@@ -48,7 +48,7 @@ TEST(ExactInteger, LongNumbersObeyTheRulesOfArithmetic) {
     Integer<20> a, b, c;
     for (Integer<20>* number : {&a, &b, &c}) {
       for (std::uint64_t limb = 0; limb < 1 + random() % 18U; ++limb) {
-        // Limbs of ones and of zeros carry and borrow the farthest.
+        // Limbs of ones and of zeros give the longest carries and borrows.
         const std::int64_t part = random() % 3U == 0U ? randomNumber(random) : (random() % 2U == 0U ? 0 : -1);
         *number = shiftedLeft<20>(*number, 64) + Integer<1>(part);
       }
@@ -104,7 +104,7 @@ TEST(ExactPolynomial, FindsEachRootOnceInOrderAndRoundsItDown) {
   EXPECT_EQ(roots(cubicWithRoots({{{1, 3}, {1, 3}, {1, 3}}})), (std::vector<double>{third}));
   EXPECT_EQ(roots(cubicWithRoots({{{1, 3}, {1, 3}, {3, 4}}})), (std::vector<double>{third, 0.75}));
   EXPECT_EQ(roots(cubicWithRoots({{{-1, 3}, {5, 4}, {7, 4}}})), (std::vector<double>{}));
-  // Two roots 2^-60 apart, closer than doubles there are.
+  // Two roots 2^-60 apart, closer than neighbouring doubles.
   const std::int64_t close = std::int64_t{1} << 60;
   EXPECT_EQ(roots(cubicWithRoots({{{close / 2 + 1, close}, {1, 2}, {2, 1}}})), (std::vector<double>{0.5, 0.5}));
   // A root next to one at the end of the step.

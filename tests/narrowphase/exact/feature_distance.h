@@ -13,7 +13,7 @@ inline Vec3 positionAt(const MovingPoint& point, double time) {
 }
 
 /// The differences of the two features of a query at one time, as the corners of a planar polygon in order: the features share a
-/// point when it holds the origin. Three corners for a point and a triangle (the last one repeated), four for two edges.
+/// point when it contains the origin. Three corners for a point and a triangle (the last one repeated), four for two edges.
 inline std::array<Vec3, 4> differencesAt(const CollisionQuery& query, QueryKind kind, double time) {
   const auto& points = query.points;
   const Vec3 a = positionAt(points[0], time), b = positionAt(points[1], time), c = positionAt(points[2], time),
@@ -22,7 +22,7 @@ inline std::array<Vec3, 4> differencesAt(const CollisionQuery& query, QueryKind 
   return {c - a, d - a, d - b, c - b};
 }
 
-/// Distance of the two features of a query at one time, straight from the definition: over the polygon's inside or its border.
+/// Distance of the two features of a query at one time, from its definition: over the polygon's interior or its boundary.
 inline double distanceAt(const CollisionQuery& query, QueryKind kind, double time) {
   const std::array<Vec3, 4> corners = differencesAt(query, kind, time);
   const Vec3 normal = (corners[1] - corners[0]).cross(corners[2] - corners[1]);
@@ -38,8 +38,8 @@ inline double distanceAt(const CollisionQuery& query, QueryKind kind, double tim
   return inside ? std::min(distance, std::abs(normal.normalized().dot(corners[0]))) : distance;
 }
 
-/// The largest distance that a corner of the polygon of differences moves in the step: no faster does the features' distance
-/// change.
+/// The largest displacement of a corner of the polygon of differences in the step: an upper bound of the change of the features'
+/// distance.
 inline double relativeMotion(const CollisionQuery& query, QueryKind kind) {
   const std::array<Vec3, 4> start = differencesAt(query, kind, 0.0), end = differencesAt(query, kind, 1.0);
   double motion = 0.0;

@@ -35,7 +35,7 @@ std::ostream& operator<<(std::ostream& stream, const Set& set) {
   return stream << set.path();
 }
 
-// The handcrafted set is not part of the repository; its tests exist where it does.
+// The handcrafted set is not part of the repository; its tests exist only if it is present.
 std::vector<Set> sets() {
   const fs::path own = fs::path(SPRINGTOWER_TEST_DATA_DIR) / "ccd";
   std::vector<Set> sets{{"SyntheticPointTriangle", own / "synthetic-sim", QueryKind::pointTriangle, 1910, 124},
@@ -81,7 +81,7 @@ TEST_P(QuerySet, FeaturesTouchAtTheReportedTimeWithinTheStatedError) {
   for (const CollisionQuery& query : readCollisionQueries(GetParam().path())) {
     const TimeOfImpact impact = answer(query, GetParam().kind);
     if (!impact.hit) continue;
-    // The distance itself is computed from coordinates far from the origin in some queries, hence their rounding.
+    // In some queries the distance was computed from coordinates far from the origin, and includes their rounding.
     double coordinate = 0.0;
     for (const MovingPoint& point : query.points)
       coordinate = std::max({coordinate, point.start.cwiseAbs().maxCoeff(), point.end.cwiseAbs().maxCoeff()});

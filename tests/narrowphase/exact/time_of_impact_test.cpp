@@ -27,7 +27,7 @@ struct Case {
   std::string name;
   QueryKind kind;
   std::array<MovingPoint, 4> points;
-  std::optional<double> time;  ///< exact, a dyadic number; nothing if the features never meet
+  std::optional<double> time;  ///< exact, a dyadic number; empty if the features never touch
 };
 
 // Coordinates and times are small dyadic numbers, so every step of the closed forms is exact.
@@ -147,7 +147,7 @@ TEST(TimeOfImpact, ClosedForms) {
 
 TEST(TimeOfImpact, HoveringCloserThanRoundingIsNoContact) {
   // A gap of one unit in the last place above a tilted plane is below every error bound in floating point, and the motion is too
-  // small to tell anything from it.
+  // small to decide.
   const double height = 0.25 + 0x1p-54, motion = 0x1p-46;
   const MovingPoint point = moving({0.25, 0.25, height}, {0.25 + motion, 0.25, height});
   DecidedBy decidedBy;
@@ -200,10 +200,10 @@ CollisionQuery randomQuery(RandomStream& random, double size, double motion, dou
   return query;
 }
 
-/// What dense sampling in time can tell for sure.
+/// Results that dense sampling in time can establish with certainty.
 struct Sampled {
-  bool apart = false;               ///< the features never meet: the samples are farther apart than they can move in between
-  std::optional<double> meetUntil;  ///< the features certainly meet no later than this
+  bool apart = false;               ///< the features never touch: the samples are farther apart than they can move in between
+  std::optional<double> meetUntil;  ///< the features certainly touch no later than this
 };
 
 /// The determinant of the corners, whether the origin lies well inside their polygon seen along its normal, and the polygon's
@@ -335,8 +335,8 @@ TEST(TimeOfImpact, BoxesThatOnlyTouchAreNotCulled) {
   EXPECT_FALSE(pointTriangleBoxesOverlap(moving({2, 0, 0}, {std::nextafter(1.0, 2.0), 0, 0}), a, b, still(0, 1, 0)));
 }
 
-/// The report's test (4.4): the smallest root in [0, 1] of the cubic, solved by formula, and at that time a point in the triangle
-/// or edges that cross, all in plain floating point.
+/// The report's test (4.4): the smallest root in [0, 1] of the cubic by formula, and at that time the point in the triangle or
+/// the crossing of the edges, all in plain floating point.
 bool plainClosedFormulaHits(const CollisionQuery& query, QueryKind kind) {
   const auto& p = query.points;
   const auto [a, b, c, d] = powerCoefficients(coplanarityCubic(p[0], p[1], p[2], p[3]));
@@ -370,7 +370,7 @@ bool plainClosedFormulaHits(const CollisionQuery& query, QueryKind kind) {
 }
 
 TEST(TimeOfImpact, ThePlainClosedFormulaLosesContacts) {
-  // 508 degenerate queries meet. The formula loses 358 of them, 180 because their cubic is zero; the last few depend on the
+  // 508 degenerate queries touch. The formula loses 358 of them, 180 because their cubic is zero; the last few depend on the
   // mathematical library.
   int meeting = 0, lost = 0;
   for (const QueryKind kind : {kPointTriangle, kEdgeEdge}) {

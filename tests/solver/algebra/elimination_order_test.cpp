@@ -89,9 +89,9 @@ TEST(EliminationOrder, IsTheSameForAnyOrderOfEdges) {
   EXPECT_EQ(orderOf(nodes), order);
 }
 
-// A dissected sheet of n nodes takes a number of products that grows as n^1.5, a band of its rows as n^2 (George 1973): n
-// products of 12 x 12 blocks times a factor that is measured here with a margin of a quarter. Bottom up each takes columns^2 / 2
-// a node.
+// A dissected sheet of n nodes requires a number of products that grows as n^1.5, a band of its rows as n^2 (George 1973): n
+// products of 12 x 12 blocks times a factor that was measured here, with a margin of a quarter. Bottom up each node requires
+// columns^2 / 2.
 TEST(EliminationOrder, FillsInLittleInSheetsAndSolids) {
   const Coupled small = wall(40, 25);
   EXPECT_LT(productsOf(orderOf(small), small), 75U * small.centre.size());
@@ -101,7 +101,7 @@ TEST(EliminationOrder, FillsInLittleInSheetsAndSolids) {
   EXPECT_LT(2 * productsOf(orderOf(cube), cube), productsOf(bottomUp(cube), cube));
 }
 
-TEST(EliminationOrder, DoesNotMindPartsThatAreNotCoupled) {
+TEST(EliminationOrder, HandlesPartsThatAreNotCoupled) {
   Coupled nodes = wall(10, 10);
   const Coupled other = wall(8, 9);
   for (const Vec3& centre : other.centre) nodes.centre.emplace_back(centre + Vec3(0.25, 3.0, 0.5));

@@ -29,7 +29,7 @@ std::vector<BlockPair> towerEdges(std::int32_t rows) {
   return edges;
 }
 
-// A random matrix of that pattern, positive definite as its diagonal outweighs the rest; put into `matrix` and returned in full.
+// A random matrix of that pattern, diagonally dominant and so positive definite; stored in `matrix` and returned as a dense one.
 Eigen::MatrixXd randomMatrix(const std::vector<BlockPair>& edges, BlockCholesky& matrix) {
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> number(-1.0, 1.0);
@@ -60,7 +60,7 @@ Eigen::MatrixXd randomMatrix(const std::vector<BlockPair>& edges, BlockCholesky&
   return full;
 }
 
-// In float with some hundred additions an entry: 1e-5 of the largest entry of the answer.
+// In float with some hundred additions an entry: 1e-5 of the largest entry of the solution.
 TEST(BlockCholesky, SolvesAsADenseFactorisationDoes) {
   const std::int32_t rows = 7;
   std::vector<std::int32_t> order(static_cast<std::size_t>(3 * rows));
@@ -79,7 +79,7 @@ TEST(BlockCholesky, SolvesAsADenseFactorisationDoes) {
   }
 }
 
-// In double, of a matrix rounded to float; in a copy to the last bit.
+// In double, for a matrix rounded to float; a copy gives the same bits.
 TEST(SparseFactors, SolveAsADenseFactorisationDoes) {
   const std::int32_t rows = 7;
   std::vector<std::int32_t> order(static_cast<std::size_t>(3 * rows));
@@ -106,7 +106,7 @@ TEST(SparseFactors, SolveAsADenseFactorisationDoes) {
   EXPECT_FALSE(factorise(matrix, slots, factors)) << "not positive definite";
 }
 
-TEST(BlockCholesky, SaysWhenAMatrixIsNotPositiveDefinite) {
+TEST(BlockCholesky, ReportsAMatrixThatIsNotPositiveDefinite) {
   const std::vector<BlockPair> edges = towerEdges(3);
   std::vector<std::int32_t> order(9);
   std::iota(order.begin(), order.end(), 0);
@@ -117,7 +117,7 @@ TEST(BlockCholesky, SaysWhenAMatrixIsNotPositiveDefinite) {
   EXPECT_FALSE(factorise(matrix));
 }
 
-// Eliminated bottom up, the matrix of a tower is a band three blocks wide: nothing fills in but the rows' own couplings.
+// Eliminated bottom up, the matrix of a tower is a band three blocks wide: the only fill is between the blocks of a row.
 TEST(BlockCholesky, ATowerFillsInNoMoreThanItsRows) {
   const std::int32_t rows = 10;
   std::vector<std::int32_t> order(static_cast<std::size_t>(3 * rows));
@@ -168,8 +168,8 @@ Eigen::MatrixXd fullMatrix(const Simulation& simulation, Inertia inertia, double
   return full;
 }
 
-// Against the block's 24 x 24 matrix, its springs differentiated by central differences: at steps of 1e-7 of the block these are
-// right to 1e-7.
+// Against the block's 24 x 24 matrix, with its springs differentiated by central differences: with steps of 1e-7 of the block
+// these are accurate to 1e-7.
 TEST_P(JacobianTest, SolvesAsTheFullMatrixDoes) {
   Scene scene = oneBlockScene(false);
   scene.settings.inertia = GetParam();

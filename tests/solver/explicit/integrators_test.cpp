@@ -29,8 +29,8 @@ std::string methodTestName(Method method) {
 
 struct MethodTest : ::testing::TestWithParam<Method> {};
 
-// All three methods integrate a constant acceleration's position without error, so only rounding is left. The velocities of
-// semi-implicit Euler live half a step earlier.
+// All three methods integrate the position under a constant acceleration without error, so only rounding is left. The velocities
+// of semi-implicit Euler belong to a time half a step earlier.
 TEST_P(MethodTest, FreeFallFollowsTheClosedForm) {
   Scene scene = oneBlockScene(false);
   scene.blocks[0].velocity = Vec3(0.3, -0.2, 1.5);
@@ -48,9 +48,9 @@ TEST_P(MethodTest, FreeFallFollowsTheClosedForm) {
   EXPECT_LT((centre(simulation.state.velocity, 0) - scene.blocks[0].velocity - velocityTime * gravity).norm(), 1e-11);
 }
 
-// Springs pull in pairs along their line, so momentum changes by rounding alone: some 1e5 steps of 1e-16, in every method.
-// Angular momentum too in semi-implicit Euler, whose kicks and drifts keep it one by one; the others only keep it to their order,
-// for which the stiffest mode's w dt is 0.2 here: 0.2^3 and 0.2^5 of the small share of the ringing.
+// Springs act in pairs along their line, so momentum changes by rounding only: some 1e5 steps of 1e-16, in every method. In
+// semi-implicit Euler angular momentum as well, because each kick and each drift conserves it; the others conserve it to their
+// order, for which the stiffest mode's w dt is 0.2 here: 0.2^3 and 0.2^5 of the small share of the vibration.
 TEST_P(MethodTest, FreeFlightKeepsMomentum) {
   Simulation simulation = ringingBlock(Inertia::cuboid, GetParam(), 1e-3, 10, 200.0);
   const Eigen::Quaterniond turn(Eigen::AngleAxisd(0.3, Vec3(1.0, -2.0, 0.5).normalized()));
@@ -69,9 +69,9 @@ TEST_P(MethodTest, FreeFlightKeepsMomentum) {
   EXPECT_LT((after.angular - before.angular).norm(), angularBound * before.angular.norm());
 }
 
-// A block starts stretched and spinning; against a run with Runge-Kutta steps at least 16 times finer the error in position and
-// velocity together falls by 2^order when the step is halved. w dt of the stiffest mode is 0.1 at most, so the leading term
-// decides: a tenth in the exponent is left for the rest.
+// A block starts stretched and spinning. Relative to a run with Runge-Kutta steps at least 16 times finer, the error in position
+// and velocity together decreases by 2^order when the step is halved. w dt of the stiffest mode is at most 0.1, so the leading
+// term dominates: a tenth in the exponent is allowed for the rest.
 struct OrderOfConvergence {
   static Simulation run(Method method, int steps) {
     constexpr double kOmega = 40.0;
@@ -108,13 +108,13 @@ TEST_P(MethodTest, ConvergesWithItsOrder) {
 INSTANTIATE_TEST_SUITE_P(Methods, MethodTest, ::testing::Values(Method::semiImplicitEuler, Method::midpoint, Method::rungeKutta4),
                          [](const auto& test) { return methodTestName(test.param); });
 
-// A symplectic method has no drift: what the energy loses and gains is the spring's departure from linearity over a period. Three
-// amplitudes; the bound is ten times under what a drift of 1e-9 a step would sum up to.
+// A symplectic method has no drift: the energy changes only by the spring's nonlinearity over a period. Three amplitudes; the
+// bound is a tenth of the sum of a drift of 1e-9 a step.
 TEST(Energy, OfUndampedSpringsStaysBoundedOverAMillionSteps) {
   for (const double amplitude : {1e-4, 1e-3, 3e-3}) {
     Simulation simulation = ringingBlock(Inertia::cuboid, Method::semiImplicitEuler, 1e-3, 100, 500.0);  // w dt = 0.5
     stretch(simulation.state.position, 0, amplitude * Vec3(1.0, -0.6, 0.8));
-    stepFrame(simulation);  // the first kick is half, so the energy that is kept is that of the steps after it
+    stepFrame(simulation);  // the first kick is half, so the conserved energy is that of the steps after it
     const double start = energy(simulation).total();
     double lowest = start;
     double highest = start;
@@ -129,8 +129,8 @@ TEST(Energy, OfUndampedSpringsStaysBoundedOverAMillionSteps) {
   }
 }
 
-// Tens of thousands a frame where contacts give by micrometres and dashpots are strong; with 6000 the rows burst at once.
-TEST(ExplicitSteps, AreAsManyAsStiffnessAndDashpotsAskFor) {
+// Tens of thousands a frame where contacts deform by micrometres and dashpots are strong; with 6000 the rows burst at once.
+TEST(ExplicitSteps, AreAsManyAsStiffnessAndDashpotsRequire) {
   Scene scene = towerScene(6);
   scene.settings.method = Method::semiImplicitEuler;
   scene.settings.tolerance_m = 1e-6;
@@ -144,9 +144,9 @@ TEST(ExplicitSteps, AreAsManyAsStiffnessAndDashpotsAskFor) {
 
 struct InertiaTest : ::testing::TestWithParam<Inertia> {};
 
-// Each breathing mode by itself: 50 periods timed by their zero crossings. Steps of a hundredth of the shortest period shift the
+// Each breathing mode separately: 50 periods timed by their zero crossings. Steps of a hundredth of the shortest period shift the
 // frequency by (w dt)^2 / 24 < 2e-4.
-TEST_P(InertiaTest, ModesRingWithTheFrequencyOfTheory) {
+TEST_P(InertiaTest, ModesVibrateAtTheFrequencyOfTheory) {
   Simulation pattern = ringingBlock(GetParam(), Method::semiImplicitEuler, 1e-3, 1, 20.0);
   const BreathingModes modes = breathingModes(pattern.model, GetParam(), 0);
   for (Eigen::Index mode = 0; mode < 3; ++mode) {
@@ -183,8 +183,8 @@ TEST_P(InertiaTest, ModesRingWithTheFrequencyOfTheory) {
   }
 }
 
-// Whether a tiny swing of the stiffest mode grows a hundredfold within some hundred steps. Just inside the limit semi-implicit
-// Euler's swing is up to 1 / sqrt(1 - (w dt / 2)^2) times larger than the start, 7 times at 0.99 of the limit.
+// Whether a tiny vibration of the stiffest mode grows a hundredfold within some hundred steps. Just inside the limit the
+// amplitude of semi-implicit Euler is up to 1 / sqrt(1 - (w dt / 2)^2) times the initial one, 7 times at 0.99 of the limit.
 bool grows(Method method, Inertia inertia, double omegaStep) {
   constexpr double kOmega = 100.0;
   Simulation simulation = ringingBlock(inertia, method, omegaStep / kOmega, 1, kOmega);
@@ -237,7 +237,7 @@ TEST_P(InertiaTest, MidpointGrowsByTheFourthPowerOfTheStep) {
 }
 
 // A couple of four forces at the corners of each end, about the vertical through the centre, in free fall. Eight lumps have three
-// times a cuboid's moment.
+// times a cuboid's moment of inertia.
 TEST_P(InertiaTest, ACoupleTurnsABlockAsTheorySays) {
   Scene scene = oneBlockScene(false);
   scene.settings.inertia = GetParam();
@@ -260,10 +260,10 @@ TEST_P(InertiaTest, ACoupleTurnsABlockAsTheorySays) {
   EXPECT_LT(std::hypot(spin.x(), spin.y()), 0.001 * expected);
 }
 
-// A block of the game stands on one of its faces, held by friction, with gravity tilted to six degrees past the angle at which it
-// balances on its lower edge: it tips about that edge. The pressure first moves there, and the edge rings for some milliseconds;
-// from the angle and spin at 1/30 s on the spin gains what a rigid pendulum gains until 0.1 s. Eight lumps have 1.5 times a
-// cuboid's moment about an edge. What is returned is the gain over that of the pendulum, less 1.
+// A block of the game stands on one of its faces, held by friction, with gravity tilted by six degrees beyond the angle at which
+// it balances on its lower edge: it tips about that edge. The pressure first moves there, and the edge vibrates for some
+// milliseconds; from the angle and spin at 1/30 s on the spin increases like that of a rigid pendulum until 0.1 s. Eight lumps
+// have 1.5 times a cuboid's moment about an edge. Returns the increase over that of the pendulum, minus 1.
 double tippingError(const Vec3& size, const Settings& settings) {
   Scene scene = oneBlockScene(true);
   scene.blocks[0].dimensions = size;
@@ -281,7 +281,7 @@ double tippingError(const Vec3& size, const Settings& settings) {
   const double start_s = simulation.time_s;
   const double start = spin();
   double rate = start;
-  double angle = turned() + scene.gravity.tilt_deg * std::numbers::pi / 180.0 - balance;  // of the centre from over the edge
+  double angle = turned() + scene.gravity.tilt_deg * std::numbers::pi / 180.0 - balance;  // of the centre from above the edge
   stepFor(simulation, 4.0 / 60.0);
 
   const double squared = size.y() * size.y() + size.z() * size.z();
@@ -305,17 +305,17 @@ const std::array<Vec3, 6>& waysToTip() {
   return ways;
 }
 
-// As users have it: implicit steps and the default tolerance. The centre starts 2 to 4 mm beyond the edge, and an edge that gives
-// way by some hundredths of a millimetre shifts that by up to 0.8 %.
+// Default settings of users: implicit steps and the default tolerance. The centre starts 2 to 4 mm beyond the edge, and a
+// compression of the edge by some hundredths of a millimetre shifts that by up to 0.8 %.
 TEST_P(InertiaTest, TipsAboutEachBottomEdgeAsTheorySays) {
   Settings settings;
   settings.inertia = GetParam();
   for (const Vec3& size : waysToTip()) EXPECT_NEAR(tippingError(size, settings), 0.0, 0.01) << 1e3 * size.transpose() << " mm";
 }
 
-// An edge at the default tolerance rings while the block tips. Explicit steps follow that, and it comes and goes in the spin by
-// several percent, by more where little weight holds the block down: softness of the contact, not inertia. A tolerance of a
-// micrometre, fifty times as stiff, keeps it out of what the methods themselves do.
+// At the default tolerance the edge vibrates while the block tips. Explicit steps resolve that, and the spin varies by several
+// percent, by more where little weight holds the block down; this is the compliance of the contact, not an error of inertia. A
+// tolerance of a micrometre, fifty times as stiff, makes it negligible.
 TEST_P(InertiaTest, TipsAboutEachStiffBottomEdgeByAnyMethod) {
   Settings settings;
   settings.inertia = GetParam();
@@ -328,8 +328,8 @@ TEST_P(InertiaTest, TipsAboutEachStiffBottomEdgeByAnyMethod) {
   }
 }
 
-// Without torque a spin about a principal axis stays what it is; about another axis it moves as Euler's equations say. All three
-// moments of eight lumps are three times a cuboid's, so both inertias move alike. Gravity has no torque.
+// Without torque a spin about a principal axis is constant; about another axis it follows Euler's equations. All three moments of
+// eight lumps are three times a cuboid's, so both inertias move alike. Gravity has no torque.
 TEST_P(InertiaTest, TorqueFreeSpinFollowsEulersEquations) {
   const Vec3 size(kBlockLength_m, kBlockWidth_m, kBlockHeight_m);
   const Vec3 squares = size.cwiseAbs2();

@@ -1,4 +1,4 @@
-// A frame calls no allocator once its buffers have grown, and what a scene holds stays within bounds.
+// A frame does not allocate once its buffers have grown, and the memory of a scene stays within bounds.
 #include "core/tuning.h"
 #include "solver/runner/run.h"
 #include "solver/world/memory_use.h"
@@ -42,8 +42,8 @@ struct Case {
 
 class AllocationTest : public ::testing::TestWithParam<Case> {};
 
-// Frames that have run once run again without a call: no buffer is made anew each frame or step. Restoring the state keeps the
-// buffers as large as they have grown.
+// Frames that have run once run again without an allocation: no buffer is created anew in a frame or step. Restoring the state
+// keeps the capacity of the buffers.
 TEST_P(AllocationTest, NoneWhenFramesRunAgain) {
   const tbb::global_control oneThread(tbb::global_control::max_allowed_parallelism, 1);
   const Case& what = GetParam();
@@ -85,11 +85,11 @@ INSTANTIATE_TEST_SUITE_P(Frames, AllocationTest,
                                            Case{.name = "RigidPgs", .tilt_deg = 14.5, .method = Method::rigidPgs},
                                            Case{.name = "RigidLcp", .rows = 2, .method = Method::rigidLcp, .frames = 5},
                                            Case{.name = "Xpbd", .tilt_deg = 14.5, .method = Method::xpbd},
-                                           // More blocks than tuning::kParallelBlocks: the kernels that run in ranges.
+                                           // More blocks than tuning::kParallelBlocks: kernels run in ranges.
                                            Case{.name = "LargeIsland", .rows = 90, .frames = 1}),
                          [](const auto& one) { return one.param.name; });
 
-// Bytes a block of the settled tower of 18 rows. The bounds are what was measured, with a tenth to spare.
+// Bytes a block of the settled tower of 18 rows. The bounds are the measured values plus a tenth.
 TEST(MemoryUse, OfABlockOfTheTower) {
   Simulation simulation(towerScene(18));
   stepFor(simulation, 0.5);
@@ -110,7 +110,7 @@ TEST(MemoryUse, OfABlockOfTheTower) {
   EXPECT_EQ(use.total(), use.state + use.model + use.contacts + use.factor + use.working);
 }
 
-// Eigen's factors in double come on top of the matrix as it is assembled.
+// Eigen's factors in double are stored in addition to the assembled matrix.
 TEST(MemoryUse, CountsEigensFactors) {
   const auto factorOf = [](Method method) {
     Scene scene = towerScene(6);
@@ -122,7 +122,7 @@ TEST(MemoryUse, CountsEigensFactors) {
   EXPECT_GT(factorOf(Method::implicitEigen), 2 * factorOf(Method::implicit));
 }
 
-// Nothing grows with time in a scene that stands, nor faster than the blocks.
+// Memory does not grow with time in a scene at rest, nor faster than the number of blocks.
 TEST(MemoryUse, GrowsWithTheBlocksAlone) {
   Simulation small(towerScene(6));
   Simulation large(towerScene(24));

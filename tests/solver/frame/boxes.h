@@ -8,7 +8,7 @@
 
 namespace springtower {
 
-/// A cuboid to build states of tests from.
+/// A cuboid from which states of tests are built.
 struct TestBox {
   Vec3 centre = Vec3::Zero();
   Vec3 dimensions = Vec3::Ones();
@@ -28,7 +28,7 @@ inline ParticleArray cornersOf(const std::vector<TestBox>& boxes) {
   return position;
 }
 
-/// The same boxes, turned together about the origin and moved.
+/// The same boxes, rotated together about the origin and moved.
 inline std::vector<TestBox> moved(std::vector<TestBox> boxes, const Eigen::Quaterniond& turn, const Vec3& move) {
   for (TestBox& box : boxes) {
     box.centre = turn * box.centre + move;

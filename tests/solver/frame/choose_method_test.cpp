@@ -29,7 +29,7 @@ TEST(ChooseMethod, WhatStandsOrFallsFlatIsSteppedImplicitly) {
   EXPECT_EQ(chooseMethod(fallingBlock(1e-5, 10.0)).method, Method::implicit);
 }
 
-// m v^2 against four times k (8 tolerances)^2, with k = (m g / 2) / tolerance: a fall of 64 tolerances is where it changes.
+// m v^2 against four times k (8 tolerances)^2, with k = (m g / 2) / tolerance: the method changes at a fall of 64 tolerances.
 TEST(ChooseMethod, WhatFallsFarAndAskewIsTakenAsRigid) {
   for (const double tolerance_m : {1e-4, 1e-5}) {
     Scene near = fallingBlock(60.0 * tolerance_m, 10.0);
@@ -40,7 +40,7 @@ TEST(ChooseMethod, WhatFallsFarAndAskewIsTakenAsRigid) {
   }
 }
 
-// Implicit methods carry falls of some blocks by rigid steps themselves; not those of very many, which run on many threads.
+// Implicit methods change to rigid steps by themselves for falls of some blocks, but not of very many, which run on many threads.
 TEST(ChooseMethod, SomeBlocksThatFallAskewAreSteppedImplicitly) {
   const auto heap = [](int blocks) {
     Scene scene = fallingBlock(0.05, 10.0);
@@ -56,7 +56,7 @@ TEST(ChooseMethod, SomeBlocksThatFallAskewAreSteppedImplicitly) {
   EXPECT_EQ(chooseMethod(heap(256)).method, Method::rigidPgs);
 }
 
-// What is thrown at something rocks as what falls askew does; a block that slides on its own meets nothing.
+// A block thrown at another rocks like one that falls askew; a single block that slides collides with nothing.
 TEST(ChooseMethod, WhatMeetsAtSpeedIsTakenAsRigid) {
   for (const double gravity : {kStandardGravity_m_s2, 0.0}) {
     Scene scene = oneBlockScene(true);
@@ -73,7 +73,7 @@ TEST(ChooseMethod, WhatMeetsAtSpeedIsTakenAsRigid) {
   }
 }
 
-// The sag of rigid blocks goes as the square of the step: a quarter of the tolerance takes twice the steps.
+// The sag of rigid blocks is proportional to the square of the step: a quarter of the tolerance requires twice the steps.
 TEST(ChooseMethod, RigidStepsFollowTheTolerance) {
   Scene scene = fallingBlock(0.05, 10.0);
   scene.settings.tolerance_m = 4e-6;

@@ -15,7 +15,8 @@
 namespace springtower {
 namespace {
 
-// The state after some frames on a number of threads. The arena asks for as many even where the machine has fewer cores.
+// Hash of the state after some frames on a number of threads. The arena has that many threads even if the machine has fewer
+// cores.
 std::uint64_t hashAfter(
     const Scene& scene, int frames, int threads, const std::function<void(const Simulation&)>& look = [](const Simulation&) {}) {
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
@@ -28,7 +29,7 @@ std::uint64_t hashAfter(
   });
 }
 
-// All hashes are compared bit for bit: there is no tolerance in "the same result on any machine's cores".
+// All hashes are compared bit for bit: the result must not depend on the number of threads.
 void expectSameOnAnyThreads(const Scene& scene, int frames) {
   const std::uint64_t one = hashAfter(scene, frames, 1);
   EXPECT_EQ(hashAfter(scene, frames, 1), one) << "twice in one process";
@@ -43,13 +44,13 @@ Scene unevenTower(int rows) {
   return towerScene(rows, options);
 }
 
-// Many islands: they run side by side.
+// Many islands, which run in parallel.
 Scene manyTowers() {
   return grid(unevenTower(2), 10, 10, 0.2);
 }
 
-// A thousand blocks, each turned at random by up to `mostTurn`, in a lattice without overlap. All move towards the axis and the
-// floor, the faster the farther they are, so that each meets its neighbours within a few frames.
+// A thousand blocks, each rotated at random by up to `mostTurn`, in a lattice without overlap. All move towards the axis and the
+// floor, the faster the farther away they are, so that each collides with its neighbours within a few frames.
 Scene pile(double mostTurn, double inwards_hz) {
   RandomStream random(7, 0);
   const auto signedUnit = [&] { return 2.0 * random.uniform() - 1.0; };
@@ -85,7 +86,7 @@ TEST(Determinism, ManyTowersAreTheSameOnAnyThreads) {
   expectSameOnAnyThreads(scene, 18);
 }
 
-// What the island has met and how it was stepped on one thread; two and four come to the same state.
+// Counters of a scene of one wide island on one thread; the state on two and four threads must be the same.
 Counters sameInOneLargeIsland(const Scene& scene, int frames) {
   Counters counters;
   const std::uint64_t one = hashAfter(scene, frames, 1, [&](const Simulation& simulation) {
@@ -100,7 +101,7 @@ Counters sameInOneLargeIsland(const Scene& scene, int frames) {
   return counters;
 }
 
-// Much turned and fast, and as soft as few explicit steps ask for: what is compared are bits.
+// Large rotations, high speeds, and contacts soft enough for few explicit steps: the comparison is of bits.
 TEST(Determinism, ASoftPileIsTheSameOnAnyThreads) {
   Scene scene = pile(0.3, 4.0);
   scene.settings.method = Method::semiImplicitEuler;
@@ -109,9 +110,9 @@ TEST(Determinism, ASoftPileIsTheSameOnAnyThreads) {
   EXPECT_GT(counters.contactsBorn, scene.blocks.size()) << "two blocks to a contact: each has met two";
 }
 
-// As users have it: the default method and tolerance, which take 500 to 900 steps a frame while a thousand blocks hit one
-// another. A block is turned by a degree at most and meets its neighbours within these five frames: three runs of some 4 s of
-// processor time each. Blocks as fast as those above ask for thousands of steps, half a minute of it a frame.
+// Default settings of users: the default method and tolerance, which require 500 to 900 steps a frame while a thousand blocks
+// collide. A block is rotated by a degree at most and collides with its neighbours within these five frames: three runs of some 4
+// s of CPU time each. Blocks as fast as those above would require thousands of steps, half a minute of CPU time a frame.
 TEST(Determinism, APileIsTheSameOnAnyThreads) {
   const Scene scene = pile(0.02, 0.5);
   ASSERT_EQ(scene.settings.method, Method::implicit);
@@ -128,7 +129,7 @@ struct Resting {
 
 class RestingTest : public ::testing::TestWithParam<Resting> {};
 
-// What stands is stepped implicitly in every frame, while gravity sways it twice a second: too little to part what touches,
+// A scene at rest is stepped implicitly in every frame, while gravity sways it twice a second: too little to open contacts,
 // enough to bend it.
 TEST_P(RestingTest, ALargeIslandIsTheSameOnAnyThreads) {
   Scene scene = GetParam().scene;
@@ -153,8 +154,8 @@ void step(Simulation& simulation, std::uint64_t frames) {
   for (std::uint64_t frame = 0; frame < frames; ++frame) stepFrame(simulation);
 }
 
-// A snapshot of frame `taken` gives the state of frame `end` again, as often as it is restored and wherever. Returns what came
-// between the two.
+// A snapshot of frame `taken` reproduces the state of frame `end`, however often and in whichever simulation it is restored.
+// Returns the counters between the two.
 Counters expectSameFuture(const Scene& scene, std::uint64_t taken, std::uint64_t end) {
   Simulation undisturbed(scene);
   step(undisturbed, end);
@@ -179,7 +180,7 @@ Counters expectSameFuture(const Scene& scene, std::uint64_t taken, std::uint64_t
     EXPECT_EQ(simulation.counters.implicitIterations, undisturbed.counters.implicitIterations);
     EXPECT_EQ(simulation.time_s, undisturbed.time_s);
   }
-  // The state of another simulation of the scene is taken over just as well.
+  // Restoring into another simulation of the scene works as well.
   Simulation other(scene);
   restoreSnapshot(other, *snapshot);
   step(other, end - taken);
@@ -191,7 +192,7 @@ Counters expectSameFuture(const Scene& scene, std::uint64_t taken, std::uint64_t
   return between;
 }
 
-// Rows that drop from 4 mm: they meet at 29 ms, so that half a second holds impacts and settling. The snapshot is taken among
+// Rows that drop from 4 mm: they land at 29 ms, so half a second contains impacts and settling. The snapshot is taken between
 // them.
 TEST_P(SnapshotTest, ARestoredFallRepeatsItsFuture) {
   TowerOptions options;
@@ -202,8 +203,8 @@ TEST_P(SnapshotTest, ARestoredFallRepeatsItsFuture) {
   expectSameFuture(scene, 5, 30);
 }
 
-// Gravity sways and the middle block of the middle row is pushed along, so that it slides under what it bears; the snapshot is
-// taken while both go on. Implicit steps, which have a history of their own to restore, take all of these frames.
+// Gravity sways and the middle block of the middle row is pushed, so that it slides under the blocks on it; the snapshot is taken
+// while both continue. All of these frames have implicit steps, which have a history to restore.
 TEST_P(SnapshotTest, ARestoredSwayRepeatsItsFuture) {
   Scene scene = bitCodeScene("(101)-(111)-(101)");
   scene.settings.method = GetParam();
@@ -228,7 +229,8 @@ INSTANTIATE_TEST_SUITE_P(Methods, SnapshotTest,
                            return name;
                          });
 
-// Sleep is part of a state: a snapshot of a sleeping tower sleeps, whatever the simulation that takes it over was doing.
+// Sleep is part of the state: after restoring a snapshot of a sleeping tower it sleeps, whatever the state of the simulation
+// before.
 TEST(Snapshot, KeepsSleep) {
   const Scene scene = towerScene(2);
   Simulation simulation(scene);

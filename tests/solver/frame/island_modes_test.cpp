@@ -14,7 +14,7 @@ IslandFacts fastIsland() {
   return facts;
 }
 
-TEST(IslandModes, RigidStepsTakeOverWhatIsFastAndLeftAlone) {
+TEST(IslandModes, FastIslandsThatAreLeftAloneTakeRigidSteps) {
   EXPECT_EQ(nextMode(ModeChange::frameBegins, fastIsland()), IslandMode::rigid);
   IslandFacts slow = fastIsland();
   slow.fast = false;
@@ -33,7 +33,7 @@ TEST(IslandModes, OneOrTwoBlocksReboundSoTheyStayImplicit) {
   }
 }
 
-// Below the speed at which it would begin, a fall goes on until it is slow.
+// Below the entry speed, rigid mode continues until the exit speed is reached.
 TEST(IslandModes, AFallGoesOnUntilItIsSlow) {
   IslandFacts falling = fastIsland();
   falling.rigidBefore = true;
@@ -47,7 +47,7 @@ TEST(IslandModes, AFallGoesOnUntilItIsSlow) {
   EXPECT_EQ(nextMode(ModeChange::frameBegins, falling), IslandMode::implicit) << "a hand takes hold";
 }
 
-TEST(IslandModes, WhatImplicitStepsGiveUpGoesToRigidOnesWhereItHasFallen) {
+TEST(IslandModes, FailedImplicitStepsAreFollowedByRigidOnesWhereBlocksHaveFallen) {
   IslandFacts facts = fastIsland();
   EXPECT_EQ(nextMode(ModeChange::implicitGaveUp, facts), IslandMode::explicitFallback);
   facts.mostlyFallen = true;

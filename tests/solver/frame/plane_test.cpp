@@ -1,4 +1,4 @@
-// Scenes of rectangles: what keeps a motion in a plane, and the report's two prototypes in it.
+// Scenes of rectangles: the constraint of motion to a plane, and the report's two prototypes in it.
 #include "core/error.h"
 #include "core/scene/scene.h"
 #include "solver/metrics/measures.h"
@@ -39,8 +39,8 @@ struct Outcome {
   double meanPenetration_m = 0.0;  // deepest of each frame of the last half second, mean
   double strain = 0.0;             // largest of the same
   double asymmetry_m = 0.0;
-  bool atRest = false;    // in the end, by the rule for sleep
-  double lowest_m = 0.0;  // centre of the lower row's blocks in the end
+  bool atRest = false;    // at the end, by the rule for sleep
+  double lowest_m = 0.0;  // centre of the lower row's blocks at the end
 };
 
 Outcome outcomeOf(const Scene& scene) {
@@ -61,8 +61,7 @@ Outcome outcomeOf(const Scene& scene) {
   return outcome;
 }
 
-// Report Figure 3.2: "the collision routine could not be time limited". Pivoting brings the stack to rest, and it stays in the
-// plane.
+// Report Figure 3.2: "the collision routine could not be time limited". Pivoting brings the stack to rest, in the plane.
 TEST(Prototypes, RigidRectanglesComeToRest) {
   const Outcome rigid = outcomeOf(prototype(Method::rigidLcp));
   EXPECT_LT(rigid.meanPenetration_m, 5e-4);
@@ -72,8 +71,8 @@ TEST(Prototypes, RigidRectanglesComeToRest) {
   EXPECT_NEAR(rigid.lowest_m, 0.5 * kBlockHeight_m, 5e-4);
 }
 
-// Report Figure 3.4: "deformation was barely noticeable". A row gives way by no more than the tolerance. With as many steps in
-// every frame, as the report has, and as many as the tolerance needs.
+// Report Figure 3.4: "deformation was barely noticeable". A row is compressed by no more than the tolerance. With a fixed number
+// of steps a frame, as in the report, and with as many as the tolerance requires.
 TEST(Prototypes, SprungRectanglesComeToRest) {
   for (const int substeps : {100, 0}) {
     Scene scene = prototype(Method::semiImplicitEuler);
@@ -89,7 +88,7 @@ TEST(Prototypes, SprungRectanglesComeToRest) {
   }
 }
 
-// A blow across the plane moves nothing; the same blow moves the same stack where the scene is in space.
+// A kick across the plane moves nothing; the same kick moves the same stack if the scene is not restricted to the plane.
 TEST(Plane, NothingLeavesIt) {
   for (const Method method : {Method::implicit, Method::midpoint, Method::rigidPgs}) {
     Scene scene = prototype(method);

@@ -49,7 +49,7 @@ Scene slopeScene(double shareOfFrictionAngle, double direction_deg) {
   return awake(blockOnSlopeScene(shareOfFrictionAngle * kFrictionAngle_deg, direction_deg));
 }
 
-// Angle between two boxes, degrees, from the sines of the axes' turns: exact where it is small.
+// Angle between two boxes, degrees, from the sines of the axes' rotations: accurate for small angles.
 double turnBetween(const FittedBox& from, const FittedBox& to) {
   Vec3 sum = Vec3::Zero();
   for (std::size_t a = 0; a < 3; ++a) sum += from.axis[a].cross(to.axis[a]);
@@ -58,8 +58,8 @@ double turnBetween(const FittedBox& from, const FittedBox& to) {
 
 struct SlopeTest : ::testing::TestWithParam<double> {};
 
-// True static friction: the friction angle is 21.8 degrees. It may creep by a micrometre in a minute; a friction that
-// is only drag would slide by a decimetre.
+// True static friction: the friction angle is 21.8 degrees. It may creep by a micrometre in a minute; viscous friction would
+// slide by a decimetre.
 TEST_P(SlopeTest, StaysJustBelowTheFrictionAngle) {
   Simulation simulation(slopeScene(0.99, GetParam()));
   stepFor(simulation, 1.0);
@@ -72,8 +72,8 @@ TEST_P(SlopeTest, StaysJustBelowTheFrictionAngle) {
   EXPECT_LT(move_m, 1e-6);
 }
 
-// Between 1 s and 3 s the acceleration is that of theory; 1 % of it is 4e-5 g, so it is mostly friction's exactness that is
-// tested. The first second is left for the block to come down to its resting depth.
+// Between 1 s and 3 s the acceleration is that of theory; 1 % of it is 4e-5 g, so this mostly tests the accuracy of friction. In
+// the first second the block descends to its resting depth.
 TEST_P(SlopeTest, SlidesJustAboveTheFrictionAngle) {
   Simulation simulation(slopeScene(1.01, GetParam()));
   stepFor(simulation, 1.0);
@@ -86,14 +86,14 @@ TEST_P(SlopeTest, SlidesJustAboveTheFrictionAngle) {
   EXPECT_LT((acceleration - acceleration.dot(horizontal(GetParam())) * horizontal(GetParam())).norm(), 0.01 * expected);
 }
 
-// Coulomb friction takes v^2 / (2 mu g) to stop a block and does not turn it: its torque about the vertical vanishes because the
-// pressure is even across the direction of motion. Along 30 degrees it is not; the block may not turn by more all the same.
+// Coulomb friction stops a block within v^2 / (2 mu g) and does not rotate it: its torque about the vertical vanishes because the
+// pressure is symmetric about the direction of motion. Along 30 degrees it is not, but the bound on the rotation is the same.
 TEST_P(SlopeTest, ThrownFlatStopsWhereTheoryStopsIt) {
   Scene scene = oneBlockScene(true);
   scene.blocks[0].velocity = 0.5 * horizontal(GetParam());
   Simulation simulation(scene);
   const FittedBox start = fittedBox(simulation.state.position, 0);
-  stepFor(simulation, 1.0);  // it needs 0.13 s
+  stepFor(simulation, 1.0);  // it takes 0.13 s
   const FittedBox end = fittedBox(simulation.state.position, 0);
   const double expected = 0.25 / (2.0 * kBlockFriction * kStandardGravity_m_s2);
   Vec3 way = end.centre - start.centre;
@@ -106,8 +106,8 @@ TEST_P(SlopeTest, ThrownFlatStopsWhereTheoryStopsIt) {
 INSTANTIATE_TEST_SUITE_P(Directions, SlopeTest, ::testing::Values(0.0, 90.0, 30.0),
                          [](const auto& test) { return std::to_string(static_cast<int>(test.param)) + "Degrees"; });
 
-// What every impact must keep: a millimetre of penetration is a twentieth of a block's height; the energy may rise by rounding
-// and by the second order of the step only; and no contact may be found late.
+// Bounds of every impact: a millimetre of penetration is a twentieth of a block's height; the energy may rise only by rounding
+// and by the second order of the step; and no contact may be found late.
 void expectCleanImpact(const RunResult& result) {
   EXPECT_LE(result.deepest.depth, 1e-3) << "at " << result.deepestTime_s << " s";
   ASSERT_TRUE(result.maxEnergyRise.has_value());
@@ -122,11 +122,11 @@ TEST(SingleBlock, DroppedFlatKeepsItsBounds) {
   Simulation simulation(scene);
   const RunResult result = runFor(simulation, 2.0);
   expectCleanImpact(result);
-  // At rest on the floor: as high as its half height, but for the tolerance.
+  // At rest on the floor: its centre at half its height, within the tolerance.
   EXPECT_NEAR(centre(simulation.state.position, 0).z(), 0.5 * kBlockHeight_m, simulation.tolerance_m);
 }
 
-// Where in a frame the block meets the floor, and how fast, decides by which steps it is stopped.
+// Phase and speed at which the block reaches the floor determine the kind of steps that stop it.
 TEST(SingleBlock, DroppedFromAnyHeightAtAnyTimeKeepsItsBounds) {
   constexpr int kCases = 24;
   for (const Method method : {Method::implicit, Method::semiImplicitEuler}) {
@@ -151,7 +151,7 @@ TEST(SingleBlock, DroppedOnACornerKeepsItsBounds) {
   Simulation simulation(scene);
   const RunResult result = runFor(simulation, 3.0);
   expectCleanImpact(result);
-  // The floor's own answer to a resting block stays within the tolerance.
+  // The penetration of a resting block into the floor is within the tolerance.
   PenetrationWorkspace workspace;
   EXPECT_LE(maxPenetration(simulation.state.position, true, workspace).depth, simulation.tolerance_m);
 }
@@ -165,8 +165,8 @@ TEST(TwoBlocks, ThrownAtEachOtherKeepTheirBounds) {
   EXPECT_LE(maxPenetration(simulation.state.position, true, workspace).depth, simulation.tolerance_m);
 }
 
-// A tilted block that comes down on a flat one anywhere, at any angle, and slides off it or stays: edges cross, faces share a
-// line or a corner, and one turns into the other. Nothing may slip in between.
+// A tilted block that lands on a flat one anywhere, at any angle, and slides off it or stays: edges cross, faces touch along a
+// line or at a corner, and one kind of contact changes into the other. No contact may be missed.
 TEST(TwoBlocks, MeetingAtAnyAngleStayOutsideEachOther) {
   for (const Method method : {Method::semiImplicitEuler, Method::implicit}) {
     for (std::uint64_t seed = 1; seed <= 60; ++seed) {
@@ -180,7 +180,7 @@ TEST(TwoBlocks, MeetingAtAnyAngleStayOutsideEachOther) {
       const double yaw = between(0.0, 2.0 * std::numbers::pi);
       block.orientation =
           Eigen::AngleAxisd(tilt, Vec3(std::cos(direction), std::sin(direction), 0.0)) * Eigen::AngleAxisd(yaw, Vec3::UnitZ());
-      // Half a millimetre above the other's top with its lowest corner.
+      // Its lowest corner half a millimetre above the other's top.
       const Eigen::Matrix3d axes = block.orientation.toRotationMatrix();
       const double reach = 0.5 * axes.row(2).cwiseAbs().dot(block.dimensions);
       block.centre = {between(-0.05, 0.05), between(-0.02, 0.02), kBlockHeight_m + 0.0005 + reach};
@@ -197,7 +197,7 @@ TEST(TwoBlocks, MeetingAtAnyAngleStayOutsideEachOther) {
   }
 }
 
-// Head on in flight, without floor or gravity's help: they must part again and keep their momentum, which is nil.
+// A head-on collision without floor and gravity: they must separate again and conserve their momentum, which is zero.
 TEST(TwoBlocks, ThrownAtEachOtherWithoutGravityPart) {
   Scene scene = sceneFile("two_thrown_blocks");
   scene.gravity.magnitude = 0.0;
@@ -211,7 +211,7 @@ TEST(TwoBlocks, ThrownAtEachOtherWithoutGravityPart) {
   EXPECT_EQ(overlapDepth(simulation.state.position, 0, 1), 0.0);
 }
 
-// The block flies at 5 m/s towards a wall 0.2 m away: in 0.1 s it is 0.3 m beyond it if nothing has stopped it.
+// The block flies at 5 m/s towards a wall 0.2 m away: after 0.1 s it is 0.3 m beyond it unless it was stopped.
 struct ThinWall : ::testing::Test {
   static Simulation thrown(bool continuousTests) {
     Scene scene = sceneFile("thin_wall");
@@ -234,8 +234,8 @@ TEST_F(ThinWall, IsHitWithCubicTests) {
   EXPECT_EQ(simulation.counters.contactsBornPenetrating, 0U);
 }
 
-// Two blocks on the floor with springs and contacts for the heavier one, of 20 kg, and steps that suit it. The lighter one would
-// need thirty times as many.
+// Two blocks on the floor with springs and contacts for the heavier one, of 20 kg, and a step that is stable for it. The lighter
+// one would require thirty times as many steps.
 TEST(Divergence, IsCaughtInItsStepWithBlockAndTime) {
   Scene scene = oneBlockScene(true);
   scene.blocks.push_back(scene.blocks[0]);
@@ -264,7 +264,7 @@ TEST(Divergence, IsCaughtInItsStepWithBlockAndTime) {
   EXPECT_GT(time_s, 0.0);
 }
 
-// An upper block lies on a lower one, parallel to it, its middle `offset` aside. Over the edge at 13.35 mm it cannot stay.
+// An upper block lies on a lower one, parallel to it, its middle displaced by `offset`. Beyond the edge at 13.35 mm it must fall.
 Scene overhangScene(double offset) {
   Scene scene = oneBlockScene(true);
   scene.blocks.push_back(scene.blocks[0]);
@@ -274,7 +274,7 @@ Scene overhangScene(double offset) {
   return scene;
 }
 
-// Time of the fall; fails when the upper block sleeps before. -1 when it stands at the end.
+// Time of the fall; fails if the upper block sleeps before. -1 if it stands at the end.
 double fallWithoutSleep(Simulation& simulation, double from_s, double until_s) {
   const std::vector<FittedBox> start = fittedBoxes(simulation.state.position);
   while (simulation.time_s < until_s) {
@@ -297,8 +297,8 @@ TEST_P(OverTheEdge, NeverSleepsBeforeItFalls) {
 
 INSTANTIATE_TEST_SUITE_P(Offsets, OverTheEdge, ::testing::Values(0.0136, 0.015, 0.02));
 
-// Asleep at first; then a force 20 % above the friction of 0.0769 N pushes the upper block for as long as it takes to come so
-// far, counting the way it still slides. Afterwards it falls from 2 cm, and from 1 cm it stays and sleeps again.
+// Asleep at first; then a force 20 % above the friction of 0.0769 N pushes the upper block until it will stop at a given
+// distance, including the slide after the push. Beyond 2 cm it falls; at 1 cm it stays and sleeps again.
 struct Pushed : ::testing::Test {
   static Simulation afterRest(double way) {
     const double friction = kBlockFriction * kBlockMass_kg * kStandardGravity_m_s2;

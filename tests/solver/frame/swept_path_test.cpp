@@ -8,9 +8,9 @@ namespace {
 
 class SweptPathTest : public ::testing::TestWithParam<Method> {};
 
-// A tower that goes over: its blocks are turned round and thrown aside within a frame, which makes their paths longer than their
-// boxes were swept for, and yet hardly ever leads out of these. When every such path had its frame run again, that happened 39
-// and 56 times in these 90 frames.
+// A toppling tower: its blocks rotate and are thrown aside within a frame, so that their paths are longer than the margins of
+// their swept boxes, and yet rarely lead out of these. When every such path had its frame run again, that happened 39 and 56
+// times in these 90 frames.
 TEST_P(SweptPathTest, SeldomLeadsOutOfItsBox) {
   Scene scene = towerScene(6);
   scene.gravity.tilt_deg = 35.0;

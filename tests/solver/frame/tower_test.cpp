@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kMillimetre = 1e-3;
 
-// The full tower of 54 blocks, awake to the end.
+// The full tower of 54 blocks, without sleep.
 Scene fullTower(const TowerOptions& options = {}) {
   Scene scene = towerScene(18, options);
   scene.settings.sleep = Sleep::off;
@@ -28,14 +28,14 @@ RunResult runFor(const Scene& scene, double seconds) {
   return runScene(simulation, options);
 }
 
-// A run of the full tower on one thread, as the time that a frame may take is meant.
+// A run of the full tower on one thread, to which the time limit of a frame refers.
 RunResult runMinute(const Scene& scene) {
   const tbb::global_control oneThread(tbb::global_control::max_allowed_parallelism, 1);
   return runFor(scene, 60.0);
 }
 
-// The minute that users are promised: the tower comes to rest within a second, and all of what is left is rest, in which it must
-// neither sink nor creep nor ring.
+// The requirement for users: the tower comes to rest within a second, and for the rest of a minute it neither sinks nor creeps
+// nor vibrates.
 TEST(FullTower, StandsStillWithoutSleep) {
   const RunResult result = runMinute(fullTower());
   EXPECT_TRUE(result.standing.stands) << describe(result.standing);
@@ -48,16 +48,16 @@ TEST(FullTower, StandsStillWithoutSleep) {
   EXPECT_GT(result.bottomRowCompression_m, 0.0) << "springs that bear a load give way";
   EXPECT_EQ(result.counters.contactsBornPenetrating, 0U);
 #ifdef NDEBUG  // sanitizers and assertions cost more than what they check
-  // Half of a frame at 60 Hz, and some seventy times what the median frame of 3600 takes: processor time of this process alone,
-  // so that a busy machine does not count.
+  // Half of a frame at 60 Hz, and some seventy times the median of 3600 frames: CPU time of this process, so that the load of the
+  // machine does not matter.
   EXPECT_LT(result.frameTimes.cpuMedian, 8.0) << "ms";
 #endif
 }
 
 class UnevenTowerTest : public ::testing::TestWithParam<std::uint64_t> {};
 
-// Uneven heights leave each row on few points, which then bear several times their share: twice the tolerance. Blocks that rock
-// on two points take longer to come to rest, hence ten times the jitter.
+// With uneven heights each row rests on few points, which then carry several times their even share: twice the tolerance. Blocks
+// that rock on two points take longer to come to rest, hence ten times the jitter.
 TEST_P(UnevenTowerTest, StandsStillWithoutSleep) {
   TowerOptions options;
   options.heightsSigma_m = 0.0002;
@@ -74,8 +74,8 @@ TEST_P(UnevenTowerTest, StandsStillWithoutSleep) {
 INSTANTIATE_TEST_SUITE_P(FullTower, UnevenTowerTest, ::testing::Range(std::uint64_t{1}, std::uint64_t{6}),
                          [](const auto& tested) { return "Seed" + std::to_string(tested.param); });
 
-// A tower of 18 rows of 81 mm tips at atan(81 / 327.6), 13.9 degrees, if it is rigid. At 10 degrees, with gravity pulling along
-// every second row, only static friction between all rows keeps it where it is.
+// A rigid tower of 18 rows of 81 mm tips at atan(81 / 327.6), 13.9 degrees. At 10 degrees, with gravity along every second row,
+// only static friction between all rows holds it.
 TEST(FullTower, StandsUnderTiltedGravity) {
   Scene scene = fullTower();
   scene.gravity.tilt_deg = 10.0;
@@ -88,8 +88,8 @@ TEST(FullTower, StandsUnderTiltedGravity) {
 
 class CollapseTest : public ::testing::TestWithParam<Sleep> {};
 
-// Beyond the angle at which it tips the tower comes down: hundreds of impacts at up to 3 m/s. The heap lies still before 6 s; in
-// the seconds that follow nothing may come up that sleep, or its absence, does to it.
+// Beyond its tipping angle the tower comes down: hundreds of impacts at up to 3 m/s. The pile is at rest before 6 s; in the
+// seconds that follow neither sleep nor its absence may disturb it.
 TEST_P(CollapseTest, IsWithoutFlaw) {
   Scene scene = towerScene(18);
   scene.settings.sleep = GetParam();
@@ -104,8 +104,8 @@ TEST_P(CollapseTest, IsWithoutFlaw) {
   EXPECT_EQ(result.counters.contactsBornPenetrating, 0U);
   ASSERT_TRUE(result.maxEnergyRise);
   EXPECT_LE(*result.maxEnergyRise, 1e-6) << "of the energy at the start, in any frame: impacts and changes of contact only lose";
-  // Blocks that have come to rest on few points are no deeper in one another than those of an uneven tower. A block embedded in
-  // another would show by millimetres.
+  // Blocks at rest on few points penetrate no more than those of an uneven tower. A block embedded in another would show as
+  // millimetres.
   PenetrationWorkspace workspace;
   EXPECT_LE(maxPenetration(simulation.state.position, true, workspace).depth, 0.1 * kMillimetre);
 }
@@ -115,8 +115,8 @@ INSTANTIATE_TEST_SUITE_P(FullTower, CollapseTest, ::testing::Values(Sleep::on, S
 
 class DroppedRowsTest : public ::testing::TestWithParam<double> {};
 
-// Three rows fall together from 2 cm: all contacts of a block begin to push in the same step, each stiffened for the impact. They
-// land, rebound and stay a tower; an impact that counted on one contact at a time added more energy than there was.
+// Three rows fall together from 2 cm: all contacts of a block begin in the same step, each stiffened for the impact. They land,
+// rebound and remain a tower; when the step count assumed one new contact at a time, energy was added.
 TEST_P(DroppedRowsTest, LandWithoutGainingEnergy) {
   for (const Method method : {Method::implicit, Method::semiImplicitEuler}) {
     Scene scene = towerScene(3);
@@ -142,11 +142,11 @@ struct Published {
 
 class PublishedTest : public ::testing::TestWithParam<Published> {};
 
-// The report's static configurations (its section 6.1.1), as it found them with the real tower, but for T2. There the top block
+// The report's static configurations (its section 6.1.1), with its results for the real tower, except for T2. There the top block
 // keeps the one under it from tipping off the lowest. With the pitch of 27.15 mm used here the common centre of mass of these two
-// lies half a pitch from the axis, at 13.575 mm, while the lowest block begins at 27.15 - 13.35 = 13.8 mm: the centre lies 0.225
-// mm outside its edge, and nominal T2 falls, slowly. With the top block 2 mm further from the axis the centre moves out by 1 mm,
-// comes to lie over the lowest block, and all stand as the real ones did; with it 1 mm further in they fall.
+// lies half a pitch from the axis, at 13.575 mm, while the lowest block begins at 27.15 - 13.35 = 13.8 mm: the centre is 0.225 mm
+// outside its edge, and nominal T2 falls, slowly. With the top block 2 mm further from the axis the centre moves out by 1 mm and
+// lies over the lowest block, and all stand as the real ones did; with it 1 mm further in they fall.
 TEST_P(PublishedTest, DoesWhatTheRealTowerDid) {
   TowerOptions tower;
   if (GetParam().dy_m != 0.0) tower.offsets.push_back({2, 3, 0.0, GetParam().dy_m});
@@ -176,8 +176,8 @@ INSTANTIATE_TEST_SUITE_P(Report, PublishedTest,
 
 struct PlacedTest : ::testing::TestWithParam<double> {};
 
-// A block let down half a millimetre, crosswise, onto the end of a block that lies across another: the pair's centre of mass is
-// at half the distance, and the lower edge at half a block's width, so it stays where the distance is less than that width.
+// A block lowered by half a millimetre, crosswise, onto the end of a block that lies across another: the pair's centre of mass is
+// at half the distance, and the lower edge at half a block's width, so it stays if the distance is less than that width.
 TEST_P(PlacedTest, ABlockLaidOnTopStaysOrTipsWhatIsBelow) {
   const double distance_m = GetParam();
   const bool stays = distance_m < kBlockWidth_m;

@@ -40,7 +40,7 @@ void wait(Held& held, int frames) {
   for (int i = 0; i < frames; ++i) stepFrame(held.simulation);
 }
 
-// Leads the hand in a straight line by `way` at a speed, then holds it still for a time.
+// Moves the hand in a straight line by `way` at a speed, then holds it still for a time.
 void lead(Held& held, Hand& hand, const Vec3& way, double speed_m_s, double still_s = 0.2) {
   const int frames = std::max(1, static_cast<int>(std::ceil(way.norm() / (speed_m_s * kFrame_s))));
   const Vec3 from = hand.place;
@@ -55,7 +55,7 @@ Hold holdOf(const Held& held, BlockId block) {
   return holdOf(contactForces(held.simulation), block);
 }
 
-// Depths of both kinds over a run.
+// Largest depth of contacts and of geometry over a run.
 double deepest(Held& held, const Hand& hand, int frames) {
   PenetrationWorkspace workspace;
   double depth = 0.0;
@@ -77,7 +77,7 @@ TEST(Grip, TheClosedFormFallsAndIsSettledInTime) {
   EXPECT_LT(followCourse(tuning::kFollowFrequency_rad_s, kSettled * kFrame_s), 0.02);
 }
 
-// The engine's own course of a held block against the closed form: overshoot under 2 % and settled in 0.15 s.
+// Simulated path of a held block against the closed form: overshoot under 2 % and settled in 0.15 s.
 TEST(Grip, ABlockInTheAirFollowsCriticallyDamped) {
   struct Engine {
     Method method;
@@ -171,7 +171,7 @@ TEST(Grip, ForcesAtTheCornersAddUp) {
   }
 }
 
-// It holds a block's edges: how the corners warp is the springs' business, and the matrix of implicit steps takes it so.
+// The hand acts on a block's edges: warps are left to the springs, which the matrix of implicit steps relies on.
 TEST(Grip, LeavesWarpsToTheBlock) {
   Simulation simulation(blockInTheAir());
   Grip grip;
@@ -189,7 +189,7 @@ TEST(Grip, LeavesWarpsToTheBlock) {
     EXPECT_LT((after[c] - before[c]).norm(), 1e-9 * simulation.tether.cornerStiffness_n_m * 1e-4) << c;
 }
 
-// On the floor friction decides: below its bound the block stays, above it slides.
+// On the floor: below the friction limit the block stays, above it slides.
 TEST(Grip, FrictionAnswersTheHand) {
   Scene scene = oneBlockScene(true);
   const double bound = scene.staticFriction * scene.blocks[0].mass * kStandardGravity_m_s2;
@@ -223,8 +223,8 @@ TEST(Grip, TakingABlockOfTheTowerMovesNothing) {
   EXPECT_EQ(holdOf(held, hand.block), Hold::sticks);
 }
 
-// Before the first frame blocks are laid into equilibrium; the hand has no part in that. It knows of no contacts yet, so it takes
-// the block's weight and hands it back within some frames.
+// Before the first frame blocks are put into equilibrium without the hand. There are no contacts yet, so the hand supports the
+// block's weight and transfers it to the contacts within some frames.
 TEST(Grip, MayHoldABlockFromTheFirstFrame) {
   Held held(towerScene(3));
   const ParticleArray before = held.simulation.state.position;
@@ -233,7 +233,7 @@ TEST(Grip, MayHoldABlockFromTheFirstFrame) {
   EXPECT_LT(largestCornerMove(before, held.simulation.state.position), 2.0 * toleranceOf(held.simulation.scene));
 }
 
-// Rigid methods take long steps, in which the hand's springs give way; the block comes where it is wanted all the same.
+// Rigid methods have long steps, in which the hand's springs are solved implicitly; the block reaches its target nevertheless.
 TEST(Grip, RigidMethodsFollowToo) {
   for (const Method method : {Method::rigidPgs, Method::rigidLcp, Method::xpbd}) {
     Scene scene = blockInTheAir();
@@ -248,7 +248,7 @@ TEST(Grip, RigidMethodsFollowToo) {
   }
 }
 
-// Friction on both faces shears a block by a tenth of a radian: its bottom and its top lie as before, so it is not turned.
+// Friction on both faces shears a block by a tenth of a radian: bottom and top keep their orientation, so it is not rotated.
 TEST(Grip, AShearedBlockIsNotTurned) {
   Simulation simulation(oneBlockScene(false));
   const Eigen::Quaterniond turn = orientationOf(simulation.state.position, 0);
@@ -260,7 +260,7 @@ TEST(Grip, AShearedBlockIsNotTurned) {
   EXPECT_LT(orientationOf(simulation.state.position, 0).angularDistance(turn), 1e-7);
 }
 
-// A hand that lets go of one block and takes another in the same frame.
+// A hand that releases one block and takes another in the same frame.
 TEST(Grip, TakesAnotherBlockAtOnce) {
   Held held(towerScene(6));
   wait(held, 60);
@@ -273,7 +273,7 @@ TEST(Grip, TakesAnotherBlockAtOnce) {
   EXPECT_LT(largestCornerMove(before, held.simulation.state.position), 2e-5);
 }
 
-// The middle block of the third of six rows, out of which the hand draws it whole: at its speed, nearly level, and the tower
+// The middle block of the third of six rows: the hand draws it out completely, at its speed and nearly level, and the tower
 // stands.
 TEST(Grip, DrawsABlockOutAtItsSpeed) {
   constexpr double kSpeed_m_s = 0.04;
@@ -284,7 +284,7 @@ TEST(Grip, DrawsABlockOutAtItsSpeed) {
   std::vector<std::uint8_t> leftOut(18, 0);
   leftOut[block] = 1;
   Draw draw = drawingFrom(simulation, blockId(block), Vec3::UnitX(), kSpeed_m_s);
-  std::vector<double> times_s;  // when it had come so many millimetres
+  std::vector<double> times_s;  // times at which it has moved by so many millimetres
   double tilt = 0.0;
   for (int i = 0; i < 240 && times_s.size() < 90; ++i) {
     advancePull(draw, contactForces(simulation), simulation);
@@ -296,12 +296,14 @@ TEST(Grip, DrawsABlockOutAtItsSpeed) {
   }
   ASSERT_EQ(times_s.size(), 90U);
   EXPECT_NEAR(0.05 / (times_s[59] - times_s[9]), kSpeed_m_s, 0.05 * kSpeed_m_s);
-  EXPECT_LT(tilt, kFallTurn_deg /
-                      57.29577951);  // it droops while the hand takes over its weight, and never so that it would have fallen
+  EXPECT_LT(
+      tilt,
+      kFallTurn_deg /
+          57.29577951);  // it droops while its weight is transferred to the hand, but never so far that it would have fallen
   EXPECT_TRUE(standing(simulation.model, start, simulation.state.position, leftOut).stands);
 }
 
-// Full force for two seconds against the tower: nothing gets deeper than a millimetre, whether it stands or goes over.
+// Full force for two seconds against the tower: no penetration exceeds a millimetre, whether the tower stands or topples.
 TEST(Grip, PushedAtFullForceNothingPenetratesAMillimetre) {
   struct Push {
     std::size_t block;
@@ -321,7 +323,8 @@ TEST(Grip, PushedAtFullForceNothingPenetratesAMillimetre) {
   }
 }
 
-// A hand that jerks its block to and fro: at the frame's begin nothing yet moves towards the neighbour that it hits in it.
+// A hand that jerks its block back and forth: at the start of the frame nothing moves yet towards the neighbour that it hits in
+// it.
 TEST(Grip, ABlockJerkedAgainstItsNeighbourStaysOutside) {
   for (const Method method : {Method::semiImplicitEuler, Method::implicit}) {
     for (const double gap_m : {0.0002, 0.0005, 0.001, 0.002, 0.005}) {
@@ -337,13 +340,13 @@ TEST(Grip, ABlockJerkedAgainstItsNeighbourStaysOutside) {
         hand.place.y() += way_m;
         depth = std::max(depth, deepest(held, hand, 2));
       }
-      EXPECT_LT(depth, 6e-4) << nameOf(method) << ", gap " << gap_m;  // an impact aims at 0.4 mm
+      EXPECT_LT(depth, 6e-4) << nameOf(method) << ", gap " << gap_m;  // an impact has a target depth of 0.4 mm
     }
   }
 }
 
-// Held still just above another block and let go: so calm that one implicit step would do for the frame, in which it falls by
-// more than a millimetre.
+// Held still just above another block and released: the island is quiescent, so one implicit step would be chosen for the frame,
+// in which it falls by more than a millimetre.
 TEST(Grip, ABlockLetGoJustAboveAnotherLandsOnIt) {
   for (const double gap_m : {0.00005, 0.0001, 0.0002, 0.0005, 0.001}) {
     Scene scene = oneBlockScene(true);
@@ -364,7 +367,7 @@ TEST(Grip, ABlockLetGoJustAboveAnotherLandsOnIt) {
   }
 }
 
-// The same with a block in the hand as the tool, brought up from outside against the side of the tower.
+// The same with a block in the hand as a tool, pushed from outside against the side of the tower.
 TEST(Grip, AToolPushedIntoTheSideOfTheTowerStaysOutside) {
   Scene scene = towerScene(6);
   BlockSpec tool;

@@ -27,8 +27,8 @@ RunResult play(Simulation& simulation) {
   return runScene(simulation, options);
 }
 
-// A loose block is drawn out and laid on top: nobody else moves by more than the tolerance, it lies where it was laid, and it
-// counts for `standing` in its new place.
+// A loose block is drawn out and placed on top: no other block moves by more than the tolerance, it lies where it was placed, and
+// it counts for `standing` in its new place.
 TEST(Moves, ALooseBlockGoesToTheTopAndMovesNobody) {
   Scene scene = bitCodeScene("(111)-(1L1)-(111)");
   scene.moves = {take(1, 2, Vec3::UnitY()), put(3, 2)};
@@ -51,8 +51,8 @@ TEST(Moves, ALooseBlockGoesToTheTopAndMovesNobody) {
   EXPECT_TRUE(result.standing.stands);
 }
 
-// The middle block under the top row: as it comes out it hangs over ever more, and its end must not lift the light blocks on it,
-// which lie on it by a third of their weight, and drag them along. Nobody else moves by more than the tolerance.
+// The middle block under the top row: its overhang grows as it comes out, and its end must not lift the light blocks on it, which
+// rest on it with a third of their weight, and drag them along. No other block moves by more than the tolerance.
 TEST(Moves, ABlockUnderTheTopRowLeavesItWhereItIs) {
   for (const char* code : {"(111)-(111)-(111)", "(111)-(101)-(111)-(111)-(111)", "(111)-(111)-(110)-(111)-(111)"}) {
     Scene scene = bitCodeScene(code);
@@ -67,8 +67,8 @@ TEST(Moves, ABlockUnderTheTopRowLeavesItWhereItIs) {
   }
 }
 
-// The same under the top row of 18 that sway, as nothing sleeps: a hand that held the block level against the row that leans
-// under it took the top row along.
+// The same under the top row of 18 swaying rows without sleep: a hand that held the block level against the leaning row under it
+// dragged the top row along.
 TEST(Moves, ABlockUnderTheTopRowOfASwayingTowerLeavesItWhereItIs) {
   Scene scene = towerScene(18);
   scene.settings.sleep = Sleep::off;
@@ -80,7 +80,7 @@ TEST(Moves, ABlockUnderTheTopRowOfASwayingTowerLeavesItWhereItIs) {
   EXPECT_LT(result.moves[0].moved_m, toleranceOf(scene));
 }
 
-// The lone block under others, at the side: statics says that what is left falls, and it falls.
+// The lone block under others, at the side: statics predicts that the rest falls, and it does.
 TEST(Moves, TakingTheLastSupportBringsTheTowerDown) {
   Scene scene = bitCodeScene("(111)-(110)-(111)");
   Move away;
@@ -96,7 +96,7 @@ TEST(Moves, TakingTheLastSupportBringsTheTowerDown) {
   EXPECT_EQ(staticScene(scene).rest, Rest::falls);
 }
 
-// A block taken out and put aside is left out of the verdict, lies on the floor beside the tower, and the rest stands.
+// A block taken out and put aside is excluded from the verdict, lies on the floor beside the tower, and the rest stands.
 TEST(Moves, APutAsideBlockLiesOnTheFloor) {
   Scene scene = towerScene(4);
   Move away;
@@ -113,7 +113,7 @@ TEST(Moves, APutAsideBlockLiesOnTheFloor) {
   EXPECT_GT(place.head<2>().norm(), 0.2);
 }
 
-// A block of the bottom row touches the floor to the end; it comes free all the same.
+// A block of the bottom row touches the floor until the end; it counts as free nevertheless.
 TEST(Moves, ABlockIsDrawnAlongTheFloor) {
   Scene scene = towerScene(3);
   scene.moves = {take(0, 3, Vec3::UnitY()), put(3, 2)};
@@ -124,8 +124,8 @@ TEST(Moves, ABlockIsDrawnAlongTheFloor) {
   EXPECT_TRUE(result.standing.stands);
 }
 
-// What a weak hand cannot draw stays, and the sequence ends there.
-TEST(Moves, AWeakHandGivesUp) {
+// A block that the hand is too weak to draw stays, and the sequence ends there.
+TEST(Moves, AWeakHandStops) {
   Scene scene = towerScene(6);
   scene.moves = {take(0, 2, Vec3::UnitX(), 2.0)};
   scene.moves[0].limit_n = 0.1;
@@ -138,10 +138,10 @@ TEST(Moves, AWeakHandGivesUp) {
   EXPECT_TRUE(result.standing.stands);
 }
 
-// The removals `removal-0-2` of the reference set, by pulling: statics lets the tower stand after five of them, and not after the
-// sixth. Outer blocks are drawn sideways, the shorter way: along their length they drag round what lies on their end. The second
-// one is jerked out: friction asks for 0.69 N eight rows above the first one's place, which is 0.10 N m about the edge of what is
-// left there, and the twelve rows on it bear 0.09.
+// The removals `removal-0-2` of the reference set, by pulling: statics predicts that the tower stands after five of them, and not
+// after the sixth. Outer blocks are drawn sideways, the shorter way: along their length they would rotate the blocks on their
+// end. The second one is jerked out: steady friction would be 0.69 N eight rows above the place of the first, a torque of 0.10 N
+// m about the edge of what is left there, and the twelve rows on it support 0.09.
 TEST(Moves, BlocksPulledOutOneByOneLeaveWhatStaticsSays) {
   Scene scene = towerScene(18);
   Move away;
@@ -163,8 +163,8 @@ TEST(Moves, BlocksPulledOutOneByOneLeaveWhatStaticsSays) {
   EXPECT_FALSE(result.standing.stands);
 }
 
-// The report's sequence 6.1.2 (scenes/moves.toml) to its end: every block comes to its place, no other moves by more than the
-// real tower showed, and the tower stands.
+// The report's sequence 6.1.2 (scenes/moves.toml) to its end: every block reaches its place, no other moves by more than in the
+// real tower, and the tower stands.
 TEST(Moves, TheReportsSequenceEndsStanding) {
   const Scene scene = sceneFromName(SPRINGTOWER_SOURCE_DIR "/scenes/moves.toml");
   ASSERT_EQ(scene.moves.size(), 12U);

@@ -4,7 +4,7 @@
 
 namespace springtower {
 
-/// A move that draws a block out of a tower, by a hand as scene files have it unless told otherwise.
+/// A move that draws a block out of a tower, with the default hand of scene files.
 inline Move take(int row, int position, const Vec3& towards, double speed_m_s = 0.04) {
   Move move;
   move.row = row;

@@ -1,4 +1,4 @@
-// What implicit steps know of contacts beyond their symmetric factors, against the forces themselves and a dense solution.
+// Contact tangents beyond the symmetric factors, compared with the forces themselves and with a dense solution.
 
 #include "solver/implicit/friction_tangent.h"
 
@@ -23,7 +23,7 @@ namespace {
 
 constexpr std::size_t kDrawn = 4;  // middle block of the middle row
 
-// Three rows, the middle block of the second drawn with half more than friction holds, until it slides between its neighbours.
+// Three rows; the middle block of the second is drawn with 1.5 times the friction limit, until it slides between its neighbours.
 struct DrawnBlock {
   DrawnBlock() {
     step.drift_s = 0.25 * simulation.scene.settings.frame_s;
@@ -49,14 +49,14 @@ struct DrawnBlock {
     return simulation;
   }
 
-  // New factors for the contacts as they stand.
+  // Factorises for the present active set.
   bool factorise() {
     for (std::size_t at = 0; at < island().touching.size(); ++at) island().mask[at] = activeSetBits(step, island(), at);
     setJacobians(step, effective_s);
     return assemble(step, island(), effective_s);
   }
 
-  // The tangents' forces at displacements of one freedom each, by columns.
+  // The tangents' forces at unit displacements of one degree of freedom each, by columns.
   Eigen::MatrixXd tangentMatrix() {
     const auto size = static_cast<Eigen::Index>(kNodeSize * step.blocks.size());
     Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(size, size);
@@ -70,7 +70,7 @@ struct DrawnBlock {
 
   NewtonSystem& island() { return simulation.engine->memo.newtonSystems[0]; }
 
-  // Moves the step's end by displacements [node][12], and finds the forces there.
+  // Moves the step's end by displacements [node][12], and evaluates the forces there.
   void move(const std::vector<double>& displacement) {
     Simulation& s = simulation;
     for (const std::int32_t block : step.blocks) {
@@ -89,7 +89,7 @@ struct DrawnBlock {
     evaluateForces(step, s.state, s.engine->scratch.stepVelocity, step.drift_s, Memory::trial);
   }
 
-  // What contacts put on the blocks if the step's end were moved by displacements; both [node][12].
+  // Contact forces on the blocks if the step's end were moved by displacements; both [node][12].
   std::vector<double> contactForcesAt(const std::vector<double>& displacement) {
     Simulation& s = simulation;
     const auto place = s.state;
@@ -127,9 +127,10 @@ std::vector<double> randomVector(std::size_t count, double size) {
   return values;
 }
 
-// With factors that know of no contact the tangents are the contacts' whole derivative, dashpots and friction that follows the
-// normal force included. Central differences over so small a way, against some tenths of a micrometre that contacts are deep:
-// within a part in a thousand of the largest force, which friction alone, at 0.4 of the normal forces, is far above.
+// With factors without any contact the tangents are the whole derivative of the contact forces, including dashpots and the
+// dependence of friction on the normal force. Central differences over a distance that is small against the depth of the
+// contacts, some tenths of a micrometre: within a thousandth of the largest force, far below the contribution of friction, 0.4 of
+// the normal forces.
 void expectTangentsToBeTheDerivative(DrawnBlock& drawn, double way_m) {
   NewtonSystem& island = drawn.island();
   island.mask.assign(island.touching.size(), 0);
@@ -156,10 +157,10 @@ TEST(ContactTangent, IsTheDerivativeOfTheContactsForces) {
   expectTangentsToBeTheDerivative(drawn, 1e-9);
 }
 
-// A block that is lifted: its points still touch, but lift faster than their springs follow.
+// A lifted block: its points still touch, but damping cancels their springs while they separate.
 TEST(ContactTangent, ATouchingPointThatDoesNotPushResistsNothing) {
   constexpr std::size_t kLifted = 7;  // the middle block of the top row
-  constexpr double kLift_m = 6.5e-6;  // of 8 micrometres that its points are deep
+  constexpr double kLift_m = 6.5e-6;  // of 8 micrometres of depth of its points
   DrawnBlock drawn;
   const Engine& engine = *drawn.simulation.engine;
   std::vector<double> lift(kNodeSize * drawn.step.blocks.size());
@@ -176,12 +177,12 @@ TEST(ContactTangent, ATouchingPointThatDoesNotPushResistsNothing) {
   expectTangentsToBeTheDerivative(drawn, 1e-9);
 }
 
-// A block that comes down on its supports within the step: at its end each point pushes as one that has been pressed since it
-// reached the surface, by no more than its depth asks for. A dashpot of the full speed would push as hard from no depth at all,
-// here two and a half times as hard, and no place of the block would balance a force between that and none.
+// A block that lands on its supports within the step: at its end the force of each point is that of a point that has been closing
+// since it reached the surface, limited by its depth. A dashpot with the full closing speed would exert the same force at zero
+// depth, here two and a half times as large, and no position of the block would balance a force between zero and that.
 TEST(ContactTangent, APointThatIsReachedInTheStepPushesFromNothing) {
   constexpr std::int32_t kLanding = 7;  // the middle block of the top row
-  constexpr double kLift_m = 6.5e-6;    // of 8 micrometres that its points are deep
+  constexpr double kLift_m = 6.5e-6;    // of 8 micrometres of depth of its points
   constexpr double kSpeed_m_s = 0.1;
   DrawnBlock drawn;
   Engine& engine = *drawn.simulation.engine;
@@ -218,7 +219,7 @@ TEST(ContactTangent, APointThatIsReachedInTheStepPushesFromNothing) {
   expectTangentsToBeTheDerivative(drawn, 1e-10);
 }
 
-// What the factors know and what the contacts are then differ by what is not symmetric alone.
+// The difference between the tangents in the factors and those of the contacts is the unsymmetric part only.
 TEST(ContactTangent, FactorsLackWhatIsNotSymmetric) {
   DrawnBlock drawn;
   NewtonSystem& island = drawn.island();
@@ -233,7 +234,8 @@ TEST(ContactTangent, FactorsLackWhatIsNotSymmetric) {
   EXPECT_NEAR(symmetric, rest, 0.01 * rest);
 }
 
-// The solution with tangents against a dense one: forces left over are within what was allowed, and ten times as much without.
+// The solution with tangents against a dense one: the residual is within the allowed one, and without tangents ten times as
+// large.
 TEST(CoupledSolve, SolvesWithTangents) {
   DrawnBlock drawn;
   NewtonSystem& island = drawn.island();
@@ -242,7 +244,7 @@ TEST(CoupledSolve, SolvesWithTangents) {
   const std::size_t count = kNodeSize * drawn.step.blocks.size();
   const auto size = static_cast<Eigen::Index>(count);
   const Eigen::MatrixXd tangent = drawn.tangentMatrix();
-  Eigen::MatrixXd inverse(size, size);  // of what the factors are of
+  Eigen::MatrixXd inverse(size, size);  // of the factorised matrix
   for (Eigen::Index i = 0; i < size; ++i) {
     island.affine.assign(count, 0.0);
     island.affine[static_cast<std::size_t>(i)] = 1.0;
@@ -260,7 +262,7 @@ TEST(CoupledSolve, SolvesWithTangents) {
   EXPECT_LT(left(Eigen::Map<const Eigen::VectorXd>(island.affine.data(), size)), 2.0 * kAllowed_n);  // in float
 }
 
-// Sets a force that draws a block steadily: what it took so far, and half of what would mend its speed within a frame.
+// Sets a force that draws a block steadily: the previous force, plus half of the correction of its speed within a frame.
 void draw(Simulation& simulation, int block, const Vec3& way, double& held_n) {
   constexpr double kSpeed_m_s = 0.04;
   const double frame_s = simulation.scene.settings.frame_s;
@@ -271,8 +273,8 @@ void draw(Simulation& simulation, int block, const Vec3& way, double& held_n) {
   stepFrame(simulation);
 }
 
-// Friction on a drawn block follows the loads on it, which no symmetric matrix tells: with that alone a step took three
-// iterations and a frame more than one new factorisation. With the contacts' tangents beside the factors most steps take one.
+// Friction on a drawn block depends on the loads on it, which no symmetric matrix represents: with that alone a step took three
+// iterations and a frame more than one factorisation. With the contact tangents beside the factors most steps take one iteration.
 TEST(CoupledSolve, ADrawnBlockTakesHardlyMoreThanAnIterationAStep) {
   constexpr int kBlock = 28;  // the middle of row 10
   constexpr int kFrames = 24;

@@ -15,10 +15,10 @@ namespace {
 
 constexpr int kRows = 18;
 
-constexpr int kRinging = 90;  // frames after a kick in which a tower is not calm yet
+constexpr int kVibratingFrames = 90;  // frames after a kick in which a tower is not yet quiescent
 
-// How the mean of the top row moves along x over 2 s after its blocks were given a velocity, m, a value a frame; and the least
-// steps of the frames in which it is not calm yet.
+// Mean displacement of the top row along x over 2 s after its blocks were given a velocity, m, a value a frame; and the least
+// number of steps of the frames in which the tower is not yet quiescent.
 struct KickedTop {
   std::vector<double> moved;
   int leastSteps = 0;
@@ -43,7 +43,8 @@ KickedTop kickedTowerTop(Method method, double speed, double tolerance_m) {
   for (int frame = 0; frame < 120; ++frame) {
     stepFrame(simulation);
     top.moved.push_back(place() - start);
-    if (frame < kRinging) top.leastSteps = frame == 0 ? simulation.substeps : std::min(top.leastSteps, simulation.substeps);
+    if (frame < kVibratingFrames)
+      top.leastSteps = frame == 0 ? simulation.substeps : std::min(top.leastSteps, simulation.substeps);
   }
   return top;
 }
@@ -65,8 +66,8 @@ struct Kick {
 
 struct KickTest : ::testing::TestWithParam<Kick> {};
 
-// The sway of the tower is what an implicit step may damp away unseen, the faster it sways the more: 9 times a second at 0.05 mm,
-// 13 times at 0.01. Explicit steps, 170 to 550 a frame, are the reference.
+// The sway of the tower is the motion that numerical damping of implicit steps would affect, the faster the more: 9 Hz at 0.05
+// mm, 13 Hz at 0.01 mm. Explicit steps, 170 to 550 a frame, are the reference.
 TEST_P(KickTest, TheTopSwingsAsWithExplicitSteps) {
   const auto [speed, tolerance_m] = GetParam();
   const std::vector<double> reference = kickedTowerTop(Method::semiImplicitEuler, speed, tolerance_m).moved;
@@ -75,7 +76,7 @@ TEST_P(KickTest, TheTopSwingsAsWithExplicitSteps) {
   const double trough = *std::min_element(reference.begin(), reference.end());
   EXPECT_NEAR(*std::max_element(implicit.begin(), implicit.end()), peak, 0.05 * peak);
   EXPECT_NEAR(*std::min_element(implicit.begin(), implicit.end()), trough, 0.05 * (peak - trough));
-  // What is left of the swing in the second half second against the first, as both damp.
+  // Ratio of the amplitude in the second half second to that in the first, as both damp.
   const double kept = ringOver(reference, 90, 120) / ringOver(reference, 0, 30);
   EXPECT_NEAR(ringOver(implicit, 90, 120) / ringOver(implicit, 0, 30), kept, 0.3 * kept);
   EXPECT_GE(leastSteps, 2) << "where a swing turns round the tower is slow, but not calm";
@@ -88,17 +89,16 @@ INSTANTIATE_TEST_SUITE_P(Speeds, KickTest,
                                   std::to_string(std::lround(1e6 * tested.param.tolerance_m)) + "um";
                          });
 
-// Implicit Euler is as sound at rest and dishonest in motion: at four steps a frame it swallows most of a swing that the two-step
-// formula and explicit steps keep. The chart shows the first; this is the second.
-TEST(ImplicitEuler, SwallowsASwingThatTheTwoStepFormulaKeeps) {
+// Implicit Euler is as accurate at rest but not in motion: with four steps a frame it damps out most of a vibration that BDF2 and
+// explicit steps keep. The chart shows the former; this test the latter.
+TEST(ImplicitEuler, DampsAVibrationThatBdf2Keeps) {
   const std::vector<double> twoSteps = kickedTop(Method::implicit, 0.02);
   const std::vector<double> oneStep = kickedTop(Method::implicitEuler, 0.02);
   const double kept = ringOver(twoSteps, 90, 120) / ringOver(twoSteps, 0, 30);
   EXPECT_LT(ringOver(oneStep, 90, 120) / ringOver(oneStep, 0, 30), 0.5 * kept);
 }
 
-// The factors are only the way to the same solution: steps end where the residual allows, a hundred-thousandth of a block's
-// weight.
+// The factors only affect the path to the same solution: steps end within the residual, a hundred-thousandth of a block's weight.
 TEST(ImplicitEigen, MovesATowerAsOurOwnFactorsDo) {
   const std::vector<double> ours = kickedTop(Method::implicit, 0.02);
   const std::vector<double> eigens = kickedTop(Method::implicitEigen, 0.02);
@@ -120,8 +120,8 @@ TEST(ImplicitEuler, HoldsATowerWithinItsTolerance) {
   EXPECT_EQ(simulation.counters.handedOver, 0U);
 }
 
-// A tower of unequal blocks that is laid down begins at rest, however strong its dashpots are: these hold nothing up in the end.
-// Explicit steps took 10000 a frame here.
+// A tower of unequal blocks starts at rest, however strong its dashpots are, as these do not affect the equilibrium. Explicit
+// steps took 10000 a frame here.
 TEST(Implicit, ATowerWithStrongDashpotsBeginsAtRest) {
   for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {
     TowerOptions options;
@@ -144,8 +144,8 @@ TEST(Implicit, ATowerWithStrongDashpotsBeginsAtRest) {
   }
 }
 
-// A block on the floor pulled for six frames with twice what friction holds, and let go: with a = mu g it goes a t^2 / 2 while it
-// is pulled and as far again until friction has stopped it, whichever steps a frame has.
+// A block on the floor is pulled for six frames with twice the friction limit and released: with a = mu g it moves by a t^2 / 2
+// during the pull and by the same distance again until friction has stopped it, for any number of steps a frame.
 TEST(Implicit, AForceActsForJustItsTime) {
   Scene scene = oneBlockScene(true);
   scene.settings.method = Method::implicit;
@@ -161,7 +161,7 @@ TEST(Implicit, AForceActsForJustItsTime) {
   EXPECT_LT(centre(simulation.state.velocity, 0).norm(), 1e-6);
 }
 
-// The frame in which a force has ended, run again as it is where a block leaves its swept box: it still knows of the force.
+// The frame after the end of a force, run again as after a block has left its swept box: the history still includes the force.
 TEST(Implicit, AFrameRunAgainTakesTheSameSteps) {
   Scene scene = oneBlockScene(true);
   scene.settings.method = Method::implicit;
@@ -183,7 +183,7 @@ TEST(Implicit, AFrameRunAgainTakesTheSameSteps) {
   EXPECT_EQ(stateHash(simulation), hash);
 }
 
-// A block that spins in the air for 2 s; what holds it together must not brake it.
+// A block that spins in the air for 2 s; its springs must not slow it down.
 TEST(Implicit, ASpinningBlockKeepsItsSpin) {
   Scene scene = oneBlockScene(false);
   scene.settings.method = Method::implicit;
@@ -201,7 +201,7 @@ TEST(Implicit, ASpinningBlockKeepsItsSpin) {
   EXPECT_NEAR(moment.z() / inertia, 10.0, 0.1);
 }
 
-// Nothing is handed to explicit steps where nothing meets or spins, and hardly any iterations are needed at rest.
+// No explicit steps where no blocks collide or spin, and hardly any iterations at rest.
 TEST(Implicit, ATowerAtRestTakesOneIterationAStep) {
   Scene scene = towerScene(kRows);
   scene.settings.sleep = Sleep::off;
@@ -217,12 +217,12 @@ TEST(Implicit, ATowerAtRestTakesOneIterationAStep) {
   EXPECT_EQ(simulation.counters.factorisations, before.factorisations);
 }
 
-// Gravity sways by a tenth of a degree once a second: slow against the tower, which follows it in a step a frame as in four.
-// At 0.01 mm that is calm; at 0.05 mm it is not, but slow: what it still rings with from the start is a fortieth of the
-// tolerance.
+// Gravity sways by a tenth of a degree once a second: slowly compared with the tower, which follows it as well with one step a
+// frame as with four. At 0.01 mm it counts as quiescent; at 0.05 mm it does not, but it is slow: the vibration left from the
+// start is a fortieth of the tolerance.
 struct Sway {
   double tolerance_m;
-  double allowedShare;  // of the swing
+  double allowedShare;  // of the amplitude
 };
 
 struct SwayTest : ::testing::TestWithParam<Sway> {};
@@ -261,16 +261,16 @@ INSTANTIATE_TEST_SUITE_P(Tolerances, SwayTest, ::testing::Values(Sway{1e-5, 0.02
 
 class GoingOverTest : public ::testing::TestWithParam<double> {};
 
-// A tower that begins to go over lets go of contacts in every step. Where a step begins from where the blocks are when velocities
-// carry them astray, and points that are reached in it push from nothing, three to seven iterations a step do: seven to fourteen
-// took 9 to 48 ms in the worst frame, and some steps never came to an end.
+// A tower that begins to topple opens contacts in every step. With the choice of the initial positions, and with points that
+// start without force at first contact, it takes three to seven iterations a step; before, seven to fourteen took 9 to 48 ms in
+// the worst frame, and some steps did not converge.
 TEST_P(GoingOverTest, TakesFewIterations) {
   Scene scene = towerScene(kRows);
   scene.settings.tolerance_m = GetParam();
   scene.settings.sleep = Sleep::off;
   scene.gravity.tilt_deg = 14.5;
   Simulation simulation(scene);
-  stepFrame(simulation);  // looks for the equilibrium it begins from
+  stepFrame(simulation);  // searches for the initial equilibrium
   for (int frame = 1; frame < 24; ++frame) {
     const Counters before = simulation.counters;
     stepFrame(simulation);
@@ -284,8 +284,8 @@ TEST_P(GoingOverTest, TakesFewIterations) {
 INSTANTIATE_TEST_SUITE_P(Tolerances, GoingOverTest, ::testing::Values(1e-5, 1.3e-5, 1.5e-5, 2e-5, 2.2e-5, 3e-5),
                          [](const auto& tested) { return std::to_string(std::lround(1e7 * tested.param)) + "tenths_um"; });
 
-// The weight of a tower that is laid down comes to its foot row by row, an iteration a row; where the iteration ended before, 144
-// rows went to 6000 explicit steps a frame.
+// In the search for equilibrium the weight of a tower reaches its foot row by row, one iteration a row; with a smaller iteration
+// limit, 144 rows required 6000 explicit steps a frame.
 TEST(Implicit, ATowerOf144RowsStandsFromTheStart) {
   Scene scene = towerScene(144);
   scene.settings.sleep = Sleep::off;

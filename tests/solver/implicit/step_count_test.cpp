@@ -1,4 +1,4 @@
-// How many steps a frame implicit steps take: as many as what rings asks for.
+// Number of implicit steps a frame as a function of the vibration.
 
 #include "solver/implicit/step_count.h"
 
@@ -16,16 +16,16 @@
 namespace springtower {
 namespace {
 
-// A block in the air, whose steps the tests make up.
-struct RingingBlock {
-  RingingBlock() {
+// A block in the air, with synthetic steps.
+struct VibratingBlock {
+  VibratingBlock() {
     step.drift_s = 0.25 * simulation.scene.settings.frame_s;
     step.gravity = simulation.scene.gravity.at(0.0);
   }
 
   BlockHistory& history() { return simulation.engine->memo.blockHistory[0]; }
 
-  // A step that ends at time `end_s` of a swing of angular frequency `omega` along x.
+  // A step that ends at time `end_s` of a vibration of angular frequency `omega` along x.
   void swing(double omega, double end_s) {
     const double h = step.drift_s;
     const auto speed = [&](double time_s) { return 0.01 * std::cos(omega * time_s); };
@@ -39,7 +39,7 @@ struct RingingBlock {
     note(engine.memo.previousVelocity.values(0, 0)[0], before, before + acceleration_m_s2 * step.drift_s);
   }
 
-  // A step in which all goes from speed `before` to `now` along x, after one from `first`.
+  // A step in which the velocity along x changes from `before` to `now`, after one that started at `first`.
   void note(double first, double before, double now) {
     Engine& engine = *simulation.engine;
     const double h = step.drift_s;
@@ -74,10 +74,10 @@ struct RingingBlock {
   IslandStep step{simulation, *simulation.engine, blocks, pairs, counters, times, contactLaw(simulation)};
 };
 
-// Means over some frames waver about the truth while a swing speeds up and slows down: by a few hundredths here.
-TEST(Ringing, IsNotedWithItsFrequency) {
+// Means over some frames fluctuate about the exact value during a period: by a few hundredths here.
+TEST(FrequencyEstimate, MatchesTheFrequencyOfAVibration) {
   for (const double omega : {40.0, 80.0}) {
-    RingingBlock block;
+    VibratingBlock block;
     for (int i = 0; i < 240; ++i) {
       block.swing(omega, (i + 1) * block.step.drift_s);
       if (i < 120) continue;
@@ -86,9 +86,9 @@ TEST(Ringing, IsNotedWithItsFrequency) {
   }
 }
 
-// A frame of n steps damps a swing by (w T)^4 / (4 n^3), of which a 150th is allowed: n = cbrt(37.5 (w T)^4), rounded up.
-TEST(Ringing, StepsFollowItsFrequency) {
-  RingingBlock block;
+// A frame of n steps damps a vibration by (w T)^4 / (4 n^3), of which a 150th is allowed: n = cbrt(37.5 (w T)^4), rounded up.
+TEST(FrequencyEstimate, DeterminesTheStepCount) {
+  VibratingBlock block;
   const double frame_s = block.simulation.scene.settings.frame_s;
   const auto stepsAt = [&](double turn, int present) {
     block.history().motion = 1.0;
@@ -104,11 +104,11 @@ TEST(Ringing, StepsFollowItsFrequency) {
   EXPECT_EQ(stepsAt(0.6, 5), 3) << "but not where they are more than that";
 }
 
-// A force that jumps at each frame, as a user's does, in one of eight steps: that looks the faster the finer these are, and yet
-// they become fewer.
-TEST(Ringing, JumpsOfTheForceDoNotKeepTheStepsFine) {
+// A force that jumps at each frame, like a user's, in one of eight steps: the finer the steps, the higher the apparent frequency;
+// the step count decreases nevertheless.
+TEST(FrequencyEstimate, JumpsOfTheForceDoNotKeepTheStepsFine) {
   constexpr int kSteps = 8;
-  RingingBlock block;
+  VibratingBlock block;
   block.step.drift_s = block.simulation.scene.settings.frame_s / kSteps;
   for (int frame = 0; frame < 60; ++frame) {
     for (int i = 0; i < kSteps; ++i) block.push(frame % 2 == 0 ? 2.0 : -2.0);
@@ -116,8 +116,8 @@ TEST(Ringing, JumpsOfTheForceDoNotKeepTheStepsFine) {
   EXPECT_LE(stepsForFrequency(block.step, kSteps), kSteps / 2 + 1);
 }
 
-TEST(Ringing, OfWhatIsCalmIsNotFollowed) {
-  RingingBlock block;
+TEST(FrequencyEstimate, IgnoresAQuiescentBlock) {
+  VibratingBlock block;
   const double frame_s = block.simulation.scene.settings.frame_s;
   const double calm = quiescentSpeed(block.simulation);
   const auto stepsAt = [&](double speed) {

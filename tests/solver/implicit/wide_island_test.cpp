@@ -17,7 +17,7 @@
 namespace springtower {
 namespace {
 
-// Cubes as dense as the game's blocks.
+// Cubes of the density of the game's blocks.
 Scene densePyramid(int rows) {
   const BlockSpec brick;
   return awake(cubePyramidScene(rows, brick.mass * kCubeSide_m * kCubeSide_m * kCubeSide_m / brick.dimensions.prod()));
@@ -28,14 +28,14 @@ double deepest(const Simulation& simulation) {
   return maxPenetration(simulation.state.position, true, workspace).depth;
 }
 
-// What moved farthest, m.
+// Largest displacement, m.
 double farthest(const ParticleArray& before, const ParticleArray& now) {
   double most = 0.0;
   for (std::size_t b = 0; b < now.blockCount(); ++b) most = std::max(most, (centre(now, b) - centre(before, b)).norm());
   return most;
 }
 
-// After a second nothing moves any more and no equation is solved: a frame evaluates the forces and is done. It used to take 233
+// After a second nothing moves any more and no equation is solved: a frame only evaluates the forces. Before, it took 233
 // explicit steps a frame.
 TEST(WideIsland, AWallRestsWithoutASolution) {
   Simulation simulation(awake(wallScene(20, 12)));
@@ -51,8 +51,8 @@ TEST(WideIsland, AWallRestsWithoutASolution) {
   EXPECT_LE(farthest(before, simulation.state.position), 1e-6 / 60.0) << "0.001 mm a minute";
 }
 
-// Weight goes down a pyramid along its sides, and thousands of points slide before it rests: without what friction does as normal
-// forces change, the search for its equilibrium ended or not as rounding had it.
+// In a pyramid the weight is carried along its sides, and thousands of points slide before it rests. Without the derivative of
+// friction with respect to the normal forces, rounding decided whether its equilibrium was found.
 TEST(WideIsland, APyramidOf40RowsBeginsInEquilibrium) {
   Simulation simulation(densePyramid(40));
   const ParticleArray start = simulation.state.position;
@@ -65,8 +65,8 @@ TEST(WideIsland, APyramidOf40RowsBeginsInEquilibrium) {
   EXPECT_LE(farthest(start, simulation.state.position), 40.0 * simulation.tolerance_m) << "a row sags by a tolerance at most";
 }
 
-// A brick in the middle is pushed across the wall by a little more than friction bears, on its lower and its upper face, for 0.03
-// s: then friction stops it. Points slide and let go; the order of elimination stays, and no step falls back on explicit ones.
+// A brick in the middle is pushed across the wall by slightly more than the friction limit of its lower and upper face, for 0.03
+// s; then friction stops it. Points slide and open; the elimination order is kept, and no step falls back to explicit ones.
 TEST(WideIsland, ABrickIsPushedOutOfAWallByImplicitSteps) {
   Scene scene = awake(wallScene(20, 12));
   const int pushed = 130;
@@ -81,7 +81,7 @@ TEST(WideIsland, ABrickIsPushedOutOfAWallByImplicitSteps) {
   const Vec3 start = centre(simulation.state.position, pushed);
   stepFor(simulation, 1.0);
   const double moved = centre(simulation.state.position, pushed).y() - start.y();
-  // Driven by `excess` of friction for push_s, then stopped by all of it; walls do not share their weight evenly.
+  // Accelerated by `excess` of friction for push_s, then decelerated by all of it; walls do not share their weight evenly.
   const double expected = 0.5 * excess * friction_n / brick.mass * push_s * push_s * (1.0 + excess);
   EXPECT_GT(moved, 0.3 * expected);
   EXPECT_LT(moved, 3.0 * expected);
@@ -89,7 +89,7 @@ TEST(WideIsland, ABrickIsPushedOutOfAWallByImplicitSteps) {
   EXPECT_LE(deepest(simulation), 2.0 * simulation.tolerance_m);
 }
 
-// A chain of rows fills in least from the bottom up, however long it is; a wall does not.
+// A chain of rows has the least fill bottom up, for any length; a wall does not.
 TEST(WideIsland, IsEliminatedInTheOrderThatFillsInLess) {
   const auto fromBelow = [](const Scene& scene) {
     Simulation simulation(scene);

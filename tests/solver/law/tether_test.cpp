@@ -25,7 +25,7 @@ struct Limits {
   bool onLine;
 };
 
-// A block that is off its copy by some millimetres and hundredths of a radian every way, and moves.
+// A moving block that deviates from its copy by some millimetres and hundredths of a radian in every direction.
 struct HeldBlock {
   explicit HeldBlock(const Limits& limits) {
     Tether& tether = simulation.tether;
@@ -49,7 +49,7 @@ struct HeldBlock {
     tether.torqueLimit_n_m = limits.torque_n_m;
   }
 
-  // Forces on [C, E_0, E_1, E_2] with the block displaced by `way`, and its velocities by 1 / step of it.
+  // Forces on [C, E_0, E_1, E_2] with the block displaced by `way`, and its velocities changed by 1 / step of it.
   Eigen::Matrix<double, 12, 1> forcesAt(const Eigen::Matrix<double, 12, 1>& way) const {
     MotionState state = simulation.state;
     for (std::size_t c = 0; c < kCorners; ++c) {
@@ -99,7 +99,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Limits{"Torque", kNoLimit, kNoLimit, 1e-3, true}, Limits{"All", 0.5, 0.3, 1e-3, true}),
     [](const testing::TestParamInfo<Limits>& tested) { return tested.param.name; });
 
-// The middle block of the tenth of 18 rows, awake and settled, and where it is drawn to.
+// The middle block of the tenth of 18 rows, awake and settled, and the target to which it is drawn.
 struct LoadedBlock {
   explicit LoadedBlock(double tolerance_m) : simulation(sceneWith(tolerance_m)) { stepFor(simulation, 1.0); }
 
@@ -120,9 +120,9 @@ struct LoadedBlock {
   double drawn() const { return (centre(simulation.state.position, index(block)) - start).dot(along); }
 };
 
-// A hand that holds a loaded block level while it leads it out: the block tilts on its neighbours by more than the hand may turn
-// it back. Steps that took a torque at its limit to be constant took 9 iterations and more than a factorisation a frame, and
-// farther out explicit steps.
+// A hand that keeps a loaded block level while it draws it out: the block tilts on its neighbours by more than the torque limit
+// can correct. Steps in which a torque at its limit was taken as constant took 9 iterations and more than a factorisation a
+// frame, and farther out explicit steps.
 TEST(Tether, ABlockLedAtTheLimitOfTheTorqueTakesImplicitSteps) {
   LoadedBlock loaded(1e-5);
   Simulation& simulation = loaded.simulation;
@@ -146,8 +146,8 @@ TEST(Tether, ABlockLedAtTheLimitOfTheTorqueTakesImplicitSteps) {
   EXPECT_LT(simulation.counters.factorisations - before.factorisations, 1U * kFrames);
 }
 
-// A loaded block all the way out, past the edges of its supports, one after the other: no frame needs explicit steps, which are
-// hundreds.
+// A loaded block is drawn out completely, past the edges of its supports, one after the other: no frame requires explicit steps,
+// which are hundreds.
 TEST(Tether, ABlockDrawnOutTakesImplicitSteps) {
   for (const double tolerance_m : {1e-5, 2e-5, 5e-5, 1e-4}) {
     LoadedBlock loaded(tolerance_m);

@@ -22,7 +22,8 @@ TEST(Balance, OfAFallingBlockLacksItsWholeWeight) {
   EXPECT_NEAR(imbalanceOf(simulation).torque, 0.0, 1e-12);
 }
 
-// Friction bears 0.4 of the weight; a quarter of it pushes for two seconds, then friction has nothing left to balance.
+// The friction limit is 0.4 of the weight; a force of a quarter of the weight acts for two seconds, then friction has nothing
+// left to balance.
 TEST(Balance, OfAPushedBlockAtRestIncludesThePush) {
   Scene scene = blockAlone(0.0);
   const double weight = scene.blocks[0].mass * scene.gravity.magnitude;
@@ -37,7 +38,7 @@ TEST(Balance, OfAPushedBlockAtRestIncludesThePush) {
   EXPECT_LT(imbalanceOf(simulation).force, 1e-3);
 }
 
-// The weight carried at one point, 1 cm aside of the centre, by a block below that has nothing else under it.
+// The weight is carried at one point, 1 cm from the centre, by a block below that has nothing else under it.
 TEST(Balance, OfTwoBlocksAddsTheReaction) {
   const Simulation simulation(bitCodeScene("(010)-(010)"));
   const double weight = simulation.model.mass[1] * simulation.scene.gravity.magnitude;

@@ -87,7 +87,7 @@ TEST_F(StandingTest, APositionThatIsNoNumberHasFallen) {
   EXPECT_FALSE(standing(model, start, position).stands);
 }
 
-TEST(ClosedRows, AreTheTowerWithoutItsStartGap) {
+TEST(StackedReference, IsTheTowerWithoutItsStartGap) {
   TowerOptions options;
   options.heightsSigma_m = 0.0002;
   const Scene tight = towerScene(6, options);
@@ -99,13 +99,13 @@ TEST(ClosedRows, AreTheTowerWithoutItsStartGap) {
   EXPECT_LT(largestCornerMove(closed, expected), 1e-15);
 }
 
-TEST(ClosedRows, AreTheStartItselfWhenThereIsNoGap) {
+TEST(StackedReference, IsTheStartItselfWhenThereIsNoGap) {
   const Scene scene = bitCodeScene("(101)-(010)-(111)");
   const ParticleArray start = cornersOf(boxesOf(scene));
   EXPECT_LT(largestCornerMove(start, stackedReference(start, rowsOf(scene), true)), 1e-15);
 }
 
-TEST(ClosedRows, LeaveWhatIsInNoRowOrOverNothing) {
+TEST(StackedReference, LeavesWhatIsInNoRowOrOverNothing) {
   std::vector<TestBox> boxes = {{{0.0, 0.0, 0.5}, kBlock}, {{0.5, 0.0, 0.5}, kBlock}, {{0.0, 0.0, 0.6}, kBlock}};
   const ParticleArray start = cornersOf(boxes);
   const std::vector<int> row = {-1, 1, 2};
@@ -168,7 +168,7 @@ TEST(MaxStrain, OfAShearedCubeIsThatOfItsDiagonal) {
   EXPECT_NEAR(maxStrain(modelOf(boxes), position), std::sqrt((1.0 + shear) * (1.0 + shear) + 1.0) / std::sqrt(2.0) - 1.0, 1e-14);
 }
 
-TEST(MaxStrain, SeesEachOfTheTwentyEightSprings) {
+TEST(MaxStrain, IncludesEachOfTheTwentyEightSprings) {
   const std::vector<TestBox> boxes = {{Vec3::Zero(), kBlock}};
   const ParticleArray position = cornersOf(boxes);
   for (std::size_t group = 0; group < kSpringGroups; ++group) {

@@ -14,7 +14,7 @@ namespace {
 const Vec3 kSides(0.081, 0.0267, 0.0182);
 constexpr double kExact = 1e-15;
 
-// The world's axes are among those tried, so each configuration is also looked at from askew.
+// The world's axes are among the test axes, so each configuration is also rotated.
 std::vector<Eigen::Quaterniond> views() {
   return {Eigen::Quaterniond::Identity(), turned(33.0, {1.0, 2.0, 3.0}), turned(141.0, {-2.0, 0.5, 1.0})};
 }
@@ -81,7 +81,7 @@ TEST(OverlapDepth, ABlockInsideAnotherMustLeaveThroughTheNearestFace) {
 }
 
 TEST(OverlapDepth, DeformationCountsInFull) {
-  // One lower corner of the upper block hangs down: its fitted cuboid would hide three quarters of that.
+  // One lower corner of the upper block hangs down: its fitted cuboid would miss three quarters of that.
   const std::vector<TestBox> boxes = {{Vec3::Zero(), kSides}, {{0.0, 0.0, kSides.z()}, kSides}};
   ParticleArray position = cornersOf(boxes);
   position.add(1, 0, {0.0, 0.0, -1e-4});
@@ -127,7 +127,7 @@ TEST(MaxPenetration, NamesThePairThatOverlapsMost) {
   EXPECT_EQ(deepest.second, blockId(3));
 }
 
-// Against all pairs, on a cloud of blocks that moves, with one workspace all the time and with a new one.
+// Against all pairs, on a moving cloud of blocks, with one workspace throughout and with a new one.
 TEST(MaxPenetration, FindsTheDeepestOfAllPairsWhileBlocksMove) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);

@@ -13,7 +13,7 @@
 namespace springtower {
 namespace {
 
-// Method `report` is a baseline: here is what it is known to get wrong, as it is, and its disabling test.
+// Method `report` is a baseline: these tests document its known errors, and its disabling test.
 
 // No static friction (report 5.7.2): far below the angle of friction, 21.8 degrees, a block creeps down.
 TEST(ReportFailure, ABlockCreepsDownASlope) {
@@ -68,14 +68,14 @@ TEST(ReportFailure, ATowerJittersAndCreeps) {
 }
 
 // Figure 6.8b: (010)-(010)-(011)-(010)-(001) presses on one side. Without static friction "the lone middle block" of row 2 is
-// "forced out slowly leading to the collapse of the tower". Here all rows walk with it, the higher the farther, until the tower
-// falls after some 6 s (5 to 8 s for starts up to 0.1 mm higher) and that block is pushed out sideways. With friction that holds
-// nothing moves once it has settled.
+// "forced out slowly leading to the collapse of the tower". Here all rows drift with it, the higher the farther, until the tower
+// falls after some 6 s (5 to 8 s for starts up to 0.1 mm higher) and that block is pushed out sideways. With static friction
+// nothing moves after settling.
 TEST(ReportFailure, ALoneMiddleBlockIsForcedOut) {
   struct Fate {
-    double walked_m = 0.0;   // by the lone middle block, in the first seconds
-    double ended_m = 0.0;    // and in the end
-    double dropped_m = 0.0;  // by the top block in the end
+    double walked_m = 0.0;   // of the lone middle block, in the first seconds
+    double ended_m = 0.0;    // and at the end
+    double dropped_m = 0.0;  // of the top block at the end
   };
   const auto fateOf = [](const Scene& scene) {
     Simulation simulation(scene);
@@ -101,7 +101,8 @@ TEST(ReportFailure, ALoneMiddleBlockIsForcedOut) {
   EXPECT_LT(std::abs(ours.dropped_m), 1e-6);
 }
 
-// Figure 6.21: springs that a frame's few steps allow are soft, and a full tower is squashed. Stiffness must cost no steps.
+// Figure 6.21: springs that are stable with a frame's few steps are soft, and a full tower is squashed. Stiffness must not
+// require more steps.
 TEST(ReportFailure, SoftSpringsSquashAFullTower) {
   const auto compression = [](Method method, int steps) {
     Scene scene = towerScene(18);
@@ -122,9 +123,9 @@ TEST(ReportFailure, SoftSpringsSquashAFullTower) {
 }
 
 // "All collisions are guaranteed to be solved within just a couple of iterations" (report 6.2.2 and its abstract). They are in
-// most steps, but not in all: where a tower of four rows is let go, a whole frame's steps take more than ten passes each. The
-// default method resolves no collisions one by one: contacts answer with forces, all of an island in one system of equations,
-// and here that is solved a couple of times in every step.
+// most steps, but not in all: when a tower of four rows is released, all steps of a frame take more than ten passes each. The
+// default method does not resolve collisions one by one: all contact forces of an island are in one system of equations, which is
+// solved a couple of times in every step here.
 TEST(ReportFailure, CollisionsTakeMoreThanACoupleOfIterations) {
   Scene scene = towerScene(4);
   scene.settings.sleep = Sleep::off;
@@ -150,7 +151,7 @@ TEST(ReportFailure, CollisionsTakeMoreThanACoupleOfIterations) {
   EXPECT_EQ(ours.counters.handedOver, 0U) << "a step that did not converge";
 }
 
-// How far the blocks of the top row move across, the farthest, m.
+// Largest horizontal displacement of the blocks of the top row, m.
 double topRowMoves(Simulation& simulation, std::size_t first, double seconds) {
   std::array<Vec3, 3> start;
   for (std::size_t i = 0; i < 3; ++i) start[i] = centre(simulation.state.position, first + i);
@@ -175,11 +176,12 @@ TEST(ReportFailure, TheTopRowMovesWhenALooseBlockIsDrawnOut) {
   EXPECT_GT((centre(ours.state.position, loose) - scene.blocks[loose].centre).norm(), 0.08) << "and the block is out";
 }
 
-// Step 12: a block dropped on the tower from 1 cm; "the top row slides a bit", with nothing to make it.
+// Step 12: a block dropped on the tower from 1 cm; "the top row slides a bit", without a cause.
 TEST(ReportFailure, TheTopRowSlidesUnderADroppedBlock) {
   Scene scene = towerScene(6);
   scene.settings.sleep = Sleep::off;
-  const BlockSpec& under = scene.blocks[scene.blocks.size() - 4];  // of the row below the top: as the dropped one will lie
+  const BlockSpec& under =
+      scene.blocks[scene.blocks.size() - 4];  // of the row below the top: the dropped block has the same orientation
   BlockSpec dropped = scene.blocks.back();
   dropped.orientation = under.orientation;
   dropped.centre = Vec3(under.centre.x(), under.centre.y(), dropped.centre.z() + dropped.dimensions.z() + 0.01);
@@ -219,10 +221,10 @@ TEST(ReportFailure, TheDisablingTestHoldsAnOverhangingBlock) {
   EXPECT_GT(drop(ours), 1e-3);
 }
 
-// Figure 6.22: of a tower at rest some blocks are not disabled, as "the particles are moving enough to categorise them as moving
-// blocks. The situation becomes worse with more blocks in the tower". The units of the report's distance are not known. Taken as
-// metres it disables every block of these towers; with a quarter of it a tower of two rows is disabled, and of six, which stands
-// as well, hardly a block.
+// Figure 6.22: in a tower at rest some blocks are not disabled, as "the particles are moving enough to categorise them as moving
+// blocks. The situation becomes worse with more blocks in the tower". The units of the report's distance are not known. In metres
+// it disables every block of these towers; with a quarter of it a tower of two rows is disabled, and hardly a block of six rows,
+// which stand as well.
 TEST(ReportFailure, TheDisablingTestKeepsARestingTowerAwake) {
   struct Rest {
     std::ptrdiff_t awake = 0;
@@ -251,19 +253,19 @@ TEST(ReportFailure, TheDisablingTestKeepsARestingTowerAwake) {
   EXPECT_TRUE(ours.stands);
 }
 
-// One block lies on the floor without friction, another comes along it.
+// One block lies on the floor without friction, another slides towards it.
 Scene comingBlock(double speed) {
   Scene scene = withSubsteps(asReported(oneBlockScene(true)), 200);
   scene.staticFriction = scene.kineticFriction = 0.0;
   scene.settings.reportFrictionDrag = 0.0;
   scene.settings.sleep = Sleep::report;
   scene.blocks.push_back(scene.blocks[0]);
-  scene.blocks[1].centre.x() = -kBlockLength_m - 0.15 * speed;  // they meet after 0.15 s
+  scene.blocks[1].centre.x() = -kBlockLength_m - 0.15 * speed;  // they collide after 0.15 s
   scene.blocks[1].velocity.x() = speed;
   return scene;
 }
 
-// Report 4.7: a disabled block is enabled by a big enough impulse, and takes part in that very collision.
+// Report 4.7: a disabled block is enabled by a sufficiently large impulse, and takes part in the same collision.
 TEST(ReportDisabling, ACollisionEnablesABlock) {
   Simulation simulation(comingBlock(1.0));
   stepFor(simulation, 0.1);
@@ -277,7 +279,7 @@ TEST(ReportDisabling, ACollisionEnablesABlock) {
   EXPECT_NEAR(momentum(simulation).linear.x(), before.x(), 1e-9 * before.x());
 }
 
-// The frame in which that happens is run again with the block enabled: as if it had been so from the frame's start.
+// The frame in which that happens is run again with the block enabled from the start of the frame.
 TEST(ReportDisabling, TheFrameIsAsIfTheBlockHadBeenEnabled) {
   Scene scene = comingBlock(1.0);
   scene.staticFriction = scene.kineticFriction = 0.1;  // so that contacts of the step before matter

@@ -4,7 +4,7 @@
 
 namespace springtower {
 
-/// A scene simulated as the 2003 report does, and with its inertia, awake.
+/// A scene simulated with the 2003 report's method and inertia, without sleep.
 inline Scene asReported(Scene scene, Inertia inertia = Inertia::lumped) {
   scene.settings.method = Method::report;
   scene.settings.inertia = inertia;
@@ -12,7 +12,7 @@ inline Scene asReported(Scene scene, Inertia inertia = Inertia::lumped) {
   return scene;
 }
 
-/// A scene at its tolerance with this many steps a frame.
+/// A scene with its tolerance and this many steps a frame.
 inline Scene withSubsteps(Scene scene, int substeps) {
   scene.settings.substeps = substeps;
   scene.settings.tolerance_m = toleranceOf(scene);

@@ -12,7 +12,7 @@
 namespace springtower {
 namespace {
 
-// What the 2003 report promises of its method. What it is known to get wrong stands in report_failures_test.cpp.
+// Properties that the 2003 report states for its method. Its known errors are in report_failures_test.cpp.
 
 // A block that falls flat from a height, one step a frame.
 Scene blockThatFalls(double height, double restitution) {
@@ -75,9 +75,9 @@ TEST_P(ReportRestitutionTest, EachCornerLeavesTheFloorWithItsShareOfSpeed) {
 
 INSTANTIATE_TEST_SUITE_P(Method, ReportRestitutionTest, ::testing::Values(0.0, 0.1, 0.5, 1.0));
 
-// What a whole block makes of it is another matter. Seen along the vertical it is two masses on a spring. With e = 0 the lower
-// mass stays on the floor until the upper one, turned round by the spring, takes it along: half the speed comes back, whatever e
-// says. With e = 1 all of it does. Both but for what the springs' dashpots and the block's sideways modes keep.
+// The rebound of a whole block is different. Along the vertical it is two masses on a spring. With e = 0 the lower mass stays on
+// the floor until the spring has reversed the upper one, which then lifts it: half the speed is returned, whatever the value of
+// e. With e = 1 all of it is. Both up to the dissipation of the springs' dashpots and the block's lateral modes.
 TEST(ReportMethod, ABlockReboundsThroughItsSpringsWhateverTheRestitution) {
   const auto rebound = [](double restitution) {
     Scene scene = blockThatFalls(0.02, restitution);
@@ -123,7 +123,7 @@ TEST_P(ReportInertiaTest, ACollisionKeepsMomentum) {
   EXPECT_GT(centre(simulation.state.velocity, 1).x(), centre(simulation.state.velocity, 0).x());
 }
 
-// With e = 1 and nothing else that takes energy, the impulses take none either, whatever their weights are.
+// With e = 1 and no other dissipation, the impulses conserve energy, for any weights.
 TEST_P(ReportInertiaTest, AnElasticCollisionKeepsEnergy) {
   Scene scene = twoThrownBlocks(GetParam());
   scene.settings.reportRestitution = 1.0;
@@ -144,7 +144,7 @@ TEST_P(ReportInertiaTest, AnElasticCollisionKeepsEnergy) {
   EXPECT_LT(kinetic, 0.95 * before) << "nothing went into the springs";
 }
 
-// Blocks that touch and draw apart are left alone: an impulse never pulls.
+// Blocks that touch and separate are not affected: an impulse never pulls.
 TEST_P(ReportInertiaTest, TouchingBlocksDrawApartFreely) {
   Scene scene = asReported(oneBlockScene(false), GetParam());
   scene.blocks[0].centre.setZero();
@@ -191,8 +191,8 @@ TEST(ReportMethod, DynamicFrictionSlowsASlidingBlock) {
   EXPECT_LT(centre(dragged.state.velocity, 0).x(), centre(simulation.state.velocity, 0).x());
 }
 
-// One pass answers each collision once; what it leaves stays embedded. More passes leave less. The counts of the report's Table
-// 5.2 shrink from stage to stage.
+// One pass resolves each collision once; the remaining ones stay embedded. More passes leave fewer. The counts of the report's
+// Table 5.2 decrease from stage to stage.
 TEST(ReportMethod, PassesAreCountedAndBounded) {
   const auto runTower = [](int passes) {
     Scene scene = asReported(towerScene(3));
@@ -214,7 +214,7 @@ TEST(ReportMethod, PassesAreCountedAndBounded) {
   EXPECT_EQ(three.contactsBorn, 0u) << "it knows no lasting contacts";
 }
 
-// Four towers and a block that falls on one of them: islands that part and join.
+// Four towers and a block that falls on one of them: islands that split and join.
 Scene scatteredScene() {
   const Scene tower = towerScene(2);
   Scene scene = asReported(tower);
@@ -266,7 +266,7 @@ TEST(ReportMethod, RepeatsItsFutureFromASnapshot) {
   EXPECT_EQ(stateHash(simulation), future);
 }
 
-// Far beyond the stability limit the springs burst, and that is caught in the step it happens.
+// Far beyond the stability limit the springs burst, which is detected in the same step.
 TEST(ReportMethod, DivergenceIsCaught) {
   Scene scene = withSubsteps(asReported(towerScene(2)), 4);
   scene.settings.tolerance_m = 1e-6;

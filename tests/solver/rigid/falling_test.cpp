@@ -22,10 +22,10 @@ bool anyFalls(const Simulation& simulation) {
 
 class FineCollapseTest : public ::testing::TestWithParam<double> {};
 
-// A tower goes over with tolerances that would have it take 1200 to 4000 explicit steps a frame: while it falls rigid steps carry
-// it. All the same nothing gets deeper than a block's twentieth, no energy comes in, and what has come to rest lies as if it had
-// been laid there.
-TEST_P(FineCollapseTest, TakesNoMoreStepsThanImpactsAskFor) {
+// A tower topples with tolerances that would require 1200 to 4000 explicit steps a frame: rigid steps are used while it falls.
+// Nevertheless no penetration exceeds a twentieth of a block, no energy is added, and blocks that have come to rest penetrate no
+// more than placed ones.
+TEST_P(FineCollapseTest, TakesNoMoreStepsThanImpactsRequire) {
   Scene scene = towerScene(18);
   scene.settings.sleep = Sleep::off;
   scene.settings.tolerance_m = GetParam();
@@ -43,7 +43,7 @@ TEST_P(FineCollapseTest, TakesNoMoreStepsThanImpactsAskFor) {
   EXPECT_EQ(lying.counters.contactsBornPenetrating, 0U);
   for (const RunResult& result : {falling, lying}) {
     ASSERT_TRUE(result.maxEnergyRise);
-    // Half way down, where the second run starts, the energy against the floor may be anything, even none.
+    // Half way down, where the second run starts, the energy relative to the floor may have any value, even zero.
     const double scale = std::abs(result.energyStart.total() / falling.energyStart.total());
     EXPECT_LE(scale * *result.maxEnergyRise, 1e-6) << "of the standing tower's energy";
   }
@@ -54,8 +54,8 @@ TEST_P(FineCollapseTest, TakesNoMoreStepsThanImpactsAskFor) {
 INSTANTIATE_TEST_SUITE_P(Tolerances, FineCollapseTest, ::testing::Values(1e-5, 1.3e-5, 2e-5, 3e-5),
                          [](const auto& tested) { return std::to_string(std::lround(1e6 * tested.param)) + "um"; });
 
-// Three rows land from 2 cm by rigid steps. What lies then is handed back to implicit steps and comes to rest, no deeper than the
-// blocks of an uneven tower or a heap.
+// Three rows land from 2 cm in rigid steps. Then implicit steps bring them to rest, with no more penetration than in an uneven
+// tower or a pile.
 TEST(Falling, WhatHasLandedIsHandedBackAndRests) {
   Scene scene = towerScene(3);
   for (BlockSpec& block : scene.blocks) block.centre.z() += 0.02;
@@ -74,8 +74,8 @@ TEST(Falling, WhatHasLandedIsHandedBackAndRests) {
   EXPECT_LT(rootMeanSquareCornerSpeed(simulation.state.velocity), 1e-6);
 }
 
-// Three blocks side by side are thrown and spin in the air, near each other but not touching yet: rigid steps carry them as free
-// bodies. A cuboid that turns about none of its axes tumbles, and keeps its angular momentum.
+// Three blocks side by side are thrown and spin in the air, near each other but not touching yet: rigid steps move them as free
+// bodies. A cuboid that rotates about none of its principal axes tumbles, and conserves its angular momentum.
 TEST(Falling, BlocksInTheAirFlyAndTumbleAsFreeBodies) {
   Scene scene = towerScene(1);
   for (BlockSpec& block : scene.blocks) {
@@ -102,7 +102,7 @@ TEST(Falling, BlocksInTheAirFlyAndTumbleAsFreeBodies) {
   EXPECT_LT((momentum(1) - before).norm(), 1e-6 * before.norm());
 }
 
-// Twenty blocks above one another, askew anyhow.
+// Twenty blocks above one another with random orientations.
 Scene blocksInTheAir(std::uint64_t seed, double spacing_m) {
   RandomStream random(seed, 0);
   const auto within = [&](double most) { return most * (random.uniform() - 0.5); };
@@ -118,9 +118,9 @@ Scene blocksInTheAir(std::uint64_t seed, double spacing_m) {
   return scene;
 }
 
-// They are no tower that might sway over, however little of one is above the next: at most their whole weight, three times over
-// for tops that differ, rests on a contact. Such heaps were given up to 380 MN/m and burst in their first step.
-TEST(Falling, BlocksInTheAirAreAsStiffAsTheirWeightAsks) {
+// They are no tower that might buckle, however small the gaps between them are: at most their whole weight, three times over for
+// tops of different height, rests on a contact. Such piles were given up to 380 MN/m and burst in their first step.
+TEST(Falling, BlocksInTheAirAreAsStiffAsTheirWeightRequires) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     for (const double spacing_m : {0.06, 0.09}) {
       const Scene scene = blocksInTheAir(seed, spacing_m);
@@ -134,7 +134,7 @@ TEST(Falling, BlocksInTheAirAreAsStiffAsTheirWeightAsks) {
   }
 }
 
-// What flies above a tower makes it no stiffer against swaying.
+// Blocks that fly above a tower do not make its contacts stiffer.
 TEST(Falling, ABlockHighAboveATowerLeavesItsStiffness) {
   Scene scene = towerScene(72);
   const double alone_n_m = Simulation(scene).contactStiffness_n_m;

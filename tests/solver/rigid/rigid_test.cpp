@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kFriction = 0.4;
 
-// Every rigid method keeps these.
+// Properties of every rigid method.
 struct RigidMethod : ::testing::TestWithParam<Method> {
   static Scene flying() {
     Scene scene = oneBlockScene(false);
@@ -35,7 +35,7 @@ struct RigidMethod : ::testing::TestWithParam<Method> {
     Scene scene = towerScene(rows);
     scene.settings.method = GetParam();
     scene.settings.sleep = Sleep::off;
-    if (GetParam() == Method::rigidLcp) scene.settings.substeps = 1;  // it is exact in each, and slow
+    if (GetParam() == Method::rigidLcp) scene.settings.substeps = 1;  // it is exact in each step, and slow
     return scene;
   }
 };
@@ -48,7 +48,7 @@ std::string nameOfTest(const ::testing::TestParamInfo<Method>& test) {
 
 INSTANTIATE_TEST_SUITE_P(Methods, RigidMethod, ::testing::Values(Method::rigidPgs, Method::rigidLcp, Method::xpbd), nameOfTest);
 
-// Speeds first, then places: after n steps a block has fallen g dt^2 n (n + 1) / 2, with rounding.
+// Velocities first, then positions: after n steps a block has fallen g dt^2 n (n + 1) / 2, within rounding.
 TEST_P(RigidMethod, FallsFreely) {
   Scene scene = flying();
   scene.settings.substeps = 10;
@@ -62,7 +62,8 @@ TEST_P(RigidMethod, FallsFreely) {
   EXPECT_NEAR(centre(simulation.state.velocity, 0).z(), -kStandardGravity_m_s2 * 0.5, 1e-12);
 }
 
-// Spun about the axis of middle moment it tumbles. Momentum is kept to rounding; the energy to second order in the step.
+// A block that spins about the axis of middle moment tumbles. Angular momentum is conserved to rounding; the energy to second
+// order in the step.
 TEST_P(RigidMethod, TumblesWithItsAngularMomentum) {
   Scene scene = flying();
   scene.gravity.magnitude = 0.0;
@@ -110,7 +111,7 @@ TEST_P(RigidMethod, SlidesAboveTheFrictionAngle) {
   EXPECT_NEAR((centre(simulation.state.velocity, 0).x() - then) / 0.5, expected, 0.02 * expected);
 }
 
-// A block that meets the floor stops at its surface: the step is taken again with the contacts it has found.
+// A block that reaches the floor stops at its surface: the step is repeated with the contacts found in it.
 TEST_P(RigidMethod, StopsAtTheFloor) {
   Scene scene = standing();
   scene.blocks[0].centre.z() += 0.02;
@@ -134,7 +135,7 @@ TEST_P(RigidMethod, ASmallTowerStands) {
   EXPECT_LT(result.jitter_m_s, 1e-3);
 }
 
-// The contact forces that a rigid method leaves carry the weight of what stands on them.
+// The contact forces that a rigid method stores balance the weight of the blocks on them.
 TEST_P(RigidMethod, FloorCarriesTheWeight) {
   Simulation simulation(tower(2));
   stepFor(simulation, 1.0);
@@ -168,7 +169,7 @@ std::uint64_t hashAfter(const Scene& scene, int threads) {
   });
 }
 
-// Four leaning stacks, islands of their own, sliding apart.
+// Four leaning stacks, separate islands, that slide apart.
 TEST_P(RigidMethod, IsTheSameOnAnyThreads) {
   Scene scene = tower(2);
   const std::vector<BlockSpec> one = scene.blocks;
@@ -198,7 +199,7 @@ Scene columnComingDown(Method method, int rows, int passes) {
   return scene;
 }
 
-// How fast any block of a column still goes into what is below it after the step in which it came down, the fastest, m/s.
+// Largest speed at which blocks of a column still approach one another after the step in which it landed, m/s.
 double approachLeft(Method method, int rows, int passes) {
   Simulation simulation(columnComingDown(method, rows, passes));
   stepFrame(simulation);
@@ -212,7 +213,7 @@ double approachLeft(Method method, int rows, int passes) {
   return fastest;
 }
 
-// How deep any blocks of a column are in each other in the 50 ms from then on, the deepest, m.
+// Largest penetration in a column over the following 50 ms, m.
 double deepestInColumn(Method method, int rows, int passes) {
   Simulation simulation(columnComingDown(method, rows, passes));
   PenetrationWorkspace workspace;
@@ -224,8 +225,8 @@ double deepestInColumn(Method method, int rows, int passes) {
   return deepest;
 }
 
-// A step in which blocks meet is taken again, from its start: what was measured at the end of the first attempt must not be taken
-// for the second's. Blocks that pass one another unseen would be found inside each other later.
+// A step in which blocks make contact is repeated from its start: clearances measured at the end of the first attempt must not be
+// used in the second. Blocks that pass one another undetected would be found inside each other later.
 TEST(RigidSteps, TakenAgainMissNoContact) {
   for (const Method method : {Method::rigidPgs, Method::xpbd}) {
     Scene scene = towerScene(12);
@@ -241,10 +242,10 @@ TEST(RigidSteps, TakenAgainMissNoContact) {
   }
 }
 
-// A block that comes down in the last of a frame's four steps has gone its way once, however often that step is taken, and its
-// manifold, begun where the first attempt took it, is that of where it came to.
+// A block that lands in the last of a frame's four steps has moved by that step once, however often it is repeated, and its
+// manifold, created at the end of the first attempt, is that of the final position.
 TEST(RigidSteps, TakenAgainAreGoneOnce) {
-  constexpr double kSpeed_m_s = 1e-3;  // too slow for a manifold to be renewed for the way
+  constexpr double kSpeed_m_s = 1e-3;  // too slow for a manifold to be refreshed by travel
   Scene scene;
   BlockSpec block;
   block.centre.z() = 0.5 * block.dimensions.z() + 0.9 * kSpeed_m_s * scene.settings.frame_s;
@@ -264,8 +265,8 @@ TEST(RigidSteps, TakenAgainAreGoneOnce) {
 }
 
 // Report Figure 3.3: "by resolving one pair, another pair of embedded objects can occur", and by resolving that the first again.
-// After a pass over a column each pair has been resolved once, and still some go into each other; how many passes it takes grows
-// with the column. Enough of them, or all pairs at once (`rigid-lcp`), leave nothing.
+// After a pass over a column each pair has been resolved once, and some still approach each other; the number of passes required
+// grows with the column. With enough of them, or with all pairs solved at once (`rigid-lcp`), none do.
 TEST(RigidFailure, ResolvingOnePairUndoesAnother) {
   EXPECT_GT(approachLeft(Method::rigidPgs, 8, 1), 0.4 * kColumnSpeed_m_s);
   EXPECT_GT(approachLeft(Method::rigidPgs, 8, 10), 0.1 * kColumnSpeed_m_s);
@@ -274,7 +275,7 @@ TEST(RigidFailure, ResolvingOnePairUndoesAnother) {
   EXPECT_LT(approachLeft(Method::rigidLcp, 8, 1), 1e-3 * kColumnSpeed_m_s);
 }
 
-// What a few passes leave over embeds the blocks. A method that answers with the forces of all contacts together has no passes.
+// Approach left by a few passes embeds the blocks. A method that solves for all contact forces together has no passes.
 TEST(RigidFailure, FewPassesLeaveBlocksEmbedded) {
   const double few = deepestInColumn(Method::rigidPgs, 24, 1);
   EXPECT_GT(few, 5e-4);

@@ -125,7 +125,7 @@ TEST(RunScene, AStartGapIsNoFall) {
   EXPECT_NEAR(result.topHeightError_m, 0.0, 5e-4) << "against the tower that stands, 16 mm below the start";
 }
 
-// Every figure again, from the states that the callback sees.
+// Every figure again, computed from the states at the callback.
 TEST(RunScene, MeasuresWhatItsCallbackSees) {
   for (const Sleep sleep : {Sleep::off, Sleep::on}) {
     Scene scene = towerScene(3);

@@ -18,8 +18,8 @@ Simulation settled(Scene scene, double seconds) {
   return simulation;
 }
 
-// Alone on the floor a block slips at mu m g, whatever the direction. (Friction is held below 0.6: beyond that contacts of the
-// default tolerance give way by more than the 0.05 mm of a slip before they slide.)
+// Alone on the floor a block slips at mu m g in any direction. (Friction is below 0.6: beyond that contacts of the default
+// tolerance deform by more than the 0.05 mm of a slip before they slide.)
 TEST(Pull, ABlockAloneSlipsAtFrictionTimesItsWeight) {
   for (const double friction : {0.2, 0.4, 0.5}) {
     for (const double angle : {0.0, 1.0}) {
@@ -43,8 +43,8 @@ struct PulledBlock {
 
 class PullTest : public ::testing::TestWithParam<PulledBlock> {};
 
-// At first slip all contacts slide: the force is mu times the sum of the normal forces just before, and no more than statics
-// allows.
+// At first slip all contacts slide: the force is mu times the sum of the normal forces just before, and at most the limit of
+// statics.
 TEST_P(PullTest, SlipsAtFrictionTimesItsNormalForces) {
   const Scene scene = sceneFromName(GetParam().scene);
   std::size_t block = 0;
@@ -65,12 +65,12 @@ INSTANTIATE_TEST_SUITE_P(Pull, PullTest,
                                            PulledBlock{"Loose", "(111)-(111)-(1L1)-(111)-(111)", 2, 2}),
                          [](const auto& block) { return block.param.name; });
 
-// Light blocks turn with the end of the one that is drawn from under them, so less than friction times the normal forces moves
-// it: what friction bears at these normal forces.
+// Light blocks rotate with the end of the block that is drawn from under them, so it slips at less than friction times the normal
+// forces: at the friction limit for these normal forces.
 TEST(Pull, LightBlocksTurnWithTheOneThatIsDrawn) {
   Scene scene = sceneFromName("tower:6");
   for (BlockSpec& above : scene.blocks) {
-    if (above.row == 5) above.dimensions.y() *= 0.5;  // the narrower they are, the less their other contacts keep them from it
+    if (above.row == 5) above.dimensions.y() *= 0.5;  // the narrower they are, the less their other contacts hold them
   }
   std::size_t block = 0;
   while (scene.blocks[block].row != 4 || scene.blocks[block].position != 1) ++block;
@@ -94,7 +94,7 @@ TEST(Tilt, AColumnGoesAtItsEdge) {
   EXPECT_NEAR(trial.tilt_deg, edge_deg, 0.3);
 }
 
-TEST(Tilt, WhatStandsIsNotSaidToFall) {
+TEST(Tilt, AStandingTowerDoesNotFall) {
   const TiltTrial trial = tiltUntilFall(bitCodeScene("(010)-(010)"), {0.0, 0.0, 2.0, 0.0, 5.0, 5.0});
   EXPECT_FALSE(trial.fell);
   EXPECT_NEAR(trial.tilt_deg, 5.0, 0.1);
@@ -102,9 +102,9 @@ TEST(Tilt, WhatStandsIsNotSaidToFall) {
 
 struct ScaleTest : ::testing::TestWithParam<std::pair<double, double>> {};
 
-// Nothing but the blocks and the frame changes: every length of the engine is a multiple of the block height, every time of
-// sqrt(h / g), every force of a weight. What is left is rounding, and the residual of implicit steps, 1e-5 of a weight.
-TEST_P(ScaleTest, ATowerGivesWayByTheSameShareOfItsHeight) {
+// Only the blocks and the frame change: every length of the engine is a multiple of the block height, every time of sqrt(h / g),
+// every force of a weight. The differences are rounding, and the residual of implicit steps, 1e-5 of a weight.
+TEST_P(ScaleTest, ATowerIsCompressedByTheSameShareOfItsHeight) {
   const auto [size, density] = GetParam();
   const auto compressed = [](const Scene& scene) {
     Simulation simulation(scene);
@@ -117,7 +117,7 @@ TEST_P(ScaleTest, ATowerGivesWayByTheSameShareOfItsHeight) {
   EXPECT_NEAR(compressed(scaled(towerScene(6), size, density)), own, 1e-3 * own);
 }
 
-// Blocks that overhang by 10 mm stay, by 14.4 mm of the 13.35 mm that statics allows they fall, in as many frames.
+// Blocks that overhang by 10 mm stay; with 14.4 mm, beyond the 13.35 mm of statics, they fall in the same number of frames.
 TEST_P(ScaleTest, WhatFallsFallsInAsManyFrames) {
   const auto [size, density] = GetParam();
   const auto framesUntilFall = [](const Scene& scene) {

@@ -20,7 +20,7 @@ void stepUntilAsleep(Simulation& simulation, double seconds) {
   while (!allAsleep(simulation) && simulation.time_s < seconds) stepFrame(simulation);
 }
 
-// The full tower settles in 3 s; 5 s are promised. A sleeping scene is skipped altogether: no steps, no pair tests, nothing
+// The full tower settles in 3 s; the requirement is 5 s. A sleeping scene is skipped completely: no steps, no pair tests, nothing
 // moves.
 TEST(Sleep, TheFullTowerSleepsWithinFiveSecondsAndThenCostsNothing) {
   Simulation simulation(towerScene(18));
@@ -41,8 +41,9 @@ TEST(Sleep, TheFullTowerSleepsWithinFiveSecondsAndThenCostsNothing) {
   EXPECT_EQ(stateHash(simulation), hash);
 }
 
-// A pull of a hundredth of the block's weight: far inside the friction cone, and half of what neighbours must feel to wake. It
-// wakes the block it acts on, no other, and moves nothing by more than its contacts' give. When it ends the block sleeps again.
+// A pull of a hundredth of the block's weight: far inside the friction cone, and half of the load change that would wake
+// neighbours. It wakes the block it acts on and no other, and displaces nothing by more than the compliance of its contacts. When
+// it ends the block sleeps again.
 TEST(Sleep, AWeakForceWakesItsBlockAlone) {
   Scene scene = towerScene(3);
   constexpr int kBlock = 7;
@@ -64,9 +65,9 @@ TEST(Sleep, AWeakForceWakesItsBlockAlone) {
   EXPECT_LT(largestCornerMove(still, simulation.state.position), 5e-6) << "a tenth of the tolerance";
 }
 
-// Friction holds the middle block of the second row of five, with three rows on it: each of its two faces bears at most the
-// weight of twelve blocks, so 0.4 x 2 x 12 weights or 1.9 N hold it at the very most. 4 N pull it out along its length, at more
-// than 80 m/s2, and its neighbours have to notice.
+// Friction holds the middle block of the second row of five, with three rows on it: each of its two faces carries at most the
+// weight of twelve blocks, so the friction limit is at most 0.4 x 2 x 12 weights or 1.9 N. 4 N pull it out along its length, at
+// more than 80 m/s2, and its neighbours have to wake.
 TEST(Sleep, AStrongPullMovesBlocks) {
   Scene scene = towerScene(5);
   constexpr int kBlock = 4;
@@ -85,8 +86,8 @@ TEST(Sleep, AStrongPullMovesBlocks) {
   EXPECT_LT(fewestAsleep, simulation.asleep.size() - 1) << "the blocks that it rubs on wake as well";
 }
 
-// Gravity that swings by half a degree in 20 s is still for a second around its turning points at 5 s and 15 s: long enough for
-// the tower to fall asleep. As it swings back all wake.
+// Gravity that oscillates by half a degree with a period of 20 s hardly changes for a second around its turning points at 5 s and
+// 15 s: long enough for the tower to fall asleep. As gravity turns back, all blocks wake.
 TEST(Sleep, SwayingGravityWakes) {
   Scene scene = towerScene(2);
   scene.gravity.sway_deg = 0.5;
@@ -103,7 +104,7 @@ TEST(Sleep, SwayingGravityWakes) {
   EXPECT_EQ(fewestAsleep, 0U);
 }
 
-// A block whose centre of mass is outside the edge that carries it must fall, however slowly it begins: 0.15 mm outside it starts
+// A block whose centre of mass is outside its supporting edge must fall, however slowly it begins: 0.15 mm outside, it starts
 // with a quarter of a hundredth of gravity.
 TEST(Sleep, WhatTipsDoesNotSleepBeforeItFalls) {
   for (const double over_m : {0.0135, 0.02}) {
@@ -127,7 +128,7 @@ RunResult play(Simulation& simulation) {
   return runScene(simulation, options);
 }
 
-// Falls with sleep as with nothing asleep, at a time within 5 %; where one block is first, the same.
+// Falls with sleep as without it, at a time within 5 %; with `sameBlock`, the same block first.
 void expectFallsAsAwake(Scene scene, bool sameBlock) {
   Simulation asleep(scene);
   const RunResult result = play(asleep);
@@ -142,9 +143,10 @@ void expectFallsAsAwake(Scene scene, bool sameBlock) {
   }
 }
 
-// Without block 5:1 the twelve rows above stand on two blocks. What friction asks of a hand that draws 13:1 outwards, 0.4 of the
-// four rows on it and of its own, both a third, is 0.69 N; eight rows above that storey it is 0.10 N m about its edge, and twelve
-// rows bear 0.09: the tower goes over. The hand touches sleepers that all bear what is done to them one by one.
+// Without block 5:1 the twelve rows above stand on two blocks. The friction on a block 13:1 that a hand draws outwards, 0.4 of a
+// third of the four rows on it and of its own row, is 0.69 N; at eight rows above row 5 it gives a torque of 0.10 N m about the
+// edge there, and twelve rows support 0.09: the tower topples. Each of the sleeping blocks that the hand's block touches could
+// support the load change by itself.
 TEST(Sleep, AHandDrawsATowerOverAsleepAsAwake) {
   Scene scene = towerScene(18);
   std::erase_if(scene.blocks, [](const BlockSpec& block) { return block.row == 5 && block.position == 1; });
@@ -152,9 +154,9 @@ TEST(Sleep, AHandDrawsATowerOverAsleepAsAwake) {
   expectFallsAsAwake(scene, true);
 }
 
-// Two columns of twelve blocks, side by side: one that is light but for its top, which is pulled away from the other by 4 weights
-// of a common block. Its foot is the edge over which 2.6 of them tip it, and the other column, which touches it and bears nothing
-// of it, must not be taken for its support.
+// Two columns of twelve blocks, side by side: one is light except for its top, which is pulled away from the other by 4 weights
+// of a standard block. 2.6 of them tip it over the edge of its foot, and the other column, which touches it without carrying it,
+// must not be taken for its support.
 TEST(Sleep, WhatOnlyStandsBesideAColumnDoesNotHoldIt) {
   Scene scene;
   constexpr int kStorey = 12;
@@ -168,10 +170,10 @@ TEST(Sleep, WhatOnlyStandsBesideAColumnDoesNotHoldIt) {
     }
   }
   scene.forces.push_back({kStorey - 1, -1, Vec3(-4.0 * kBlockMass_kg * 9.81, 0.0, 0.0), 4.0, 8.0});
-  expectFallsAsAwake(scene, false);  // its blocks lean all at once
+  expectFallsAsAwake(scene, false);  // its blocks tip all at once
 }
 
-// Blocks over loose ones are not falling on them: those they bear upon stay asleep, and so does most of the tower.
+// Blocks over loose ones are not falling on them: the blocks that carry them stay asleep, and so does most of the tower.
 TEST(Sleep, LooseBlocksBelowAreNotHitByWhatLiesOverThem) {
   TowerOptions options;
   options.loose = {{14, 2, 0.0003}, {9, 2, 0.0003}, {4, 2, 0.0003}};
@@ -188,9 +190,9 @@ TEST(Sleep, LooseBlocksBelowAreNotHitByWhatLiesOverThem) {
   EXPECT_LE(most, 27U) << "half of the tower";
 }
 
-// A block dropped from 2 cm, that hardly rebounds, shifts a tower of three rows by half a millimetre; sleepers that took the blow
-// like the floor moved by 0.004 mm. They differ by 0.1 %; 2 % are allowed,
-// as a slide amplifies what is left.
+// A block dropped from 2 cm, that hardly rebounds, shifts a tower of three rows by half a millimetre; when sleeping blocks took
+// the impact like the floor, they moved by 0.004 mm. With and without sleep the shifts differ by 0.1 %; 2 % are allowed, as
+// sliding amplifies the rest.
 TEST(Sleep, ABlockThatHitsSleepersMovesThemAsAwake) {
   Scene scene = towerScene(3);
   Move drop;

@@ -8,7 +8,7 @@ namespace springtower {
 namespace {
 
 constexpr double kSetWeight_n = 2.0;
-constexpr double kHalf_m = 0.0135;  // of the square on whose corners the body rests
+constexpr double kHalf_m = 0.0135;  // half the side of the square on whose corners the body rests
 constexpr double kHeight_m = 0.018;
 constexpr double kSetFriction = 0.4;
 
@@ -31,7 +31,7 @@ bool stays(const Vec3& force, const Vec3& torque, double friction) {
   return redistribute(square, force, torque, kHeight_m, 1.0);
 }
 
-// Pulled at a height, it tips when the torque about its edge is that of its weight.
+// Pulled at a height, it tips when the torque about its edge equals that of its weight.
 TEST(Support, TipsOverItsEdge) {
   constexpr double kPulledAt_m = 0.1;
   const double limit_n = kSetWeight_n * kHalf_m / kPulledAt_m;
@@ -42,8 +42,8 @@ TEST(Support, TipsOverItsEdge) {
   }
 }
 
-// Friction times weight holds it, and about the vertical friction times weight times the distance of its corners. Within 2 %, to
-// which points keep to Coulomb's cone.
+// The limit of a force is friction times weight; of a torque about the vertical, friction times weight times the distance of its
+// corners. Within 2 %, the tolerance of Coulomb's cone.
 TEST(Support, SlidesAndTurnsWhenFrictionIsUsedUp) {
   for (const double share : {0.97, 1.03}) {
     EXPECT_EQ(stays(share * kSetFriction * kSetWeight_n * Vec3::UnitY(), Vec3::Zero(), kSetFriction), share < 1.0) << share;
@@ -52,8 +52,8 @@ TEST(Support, SlidesAndTurnsWhenFrictionIsUsedUp) {
   }
 }
 
-// What the points take up balances the change, pushes and keeps to the cone, where some have lifted and others slide.
-TEST(Support, TakesUpAllOfTheChange) {
+// The forces at the points balance the change, push, and are in the cone, with some points open and others slipping.
+TEST(Support, BalancesAllOfTheChange) {
   const Vec3 force{0.45, 0.1, 0.3};
   const Vec3 torque = Vec3(0.0, 0.0, 0.01).cross(force) + Vec3(0.0, 0.012, 0.001);
   Square square = restingSquare(kSetFriction);
@@ -81,7 +81,7 @@ TEST(Support, HoldsNothingWithoutPoints) {
   EXPECT_FALSE(redistribute({}, Vec3::Zero(), Vec3::Zero(), kHeight_m, 1.0));
 }
 
-// Two points hold it up, but not against a turn about the line through them.
+// Two points support it, but not against a rotation about the line through them.
 TEST(Support, OnALineIsFreeToTurn) {
   Square square = restingSquare(10.0);
   EXPECT_FALSE(redistribute(std::span(square).first(2), Vec3::Zero(), 1e-4 * Vec3::UnitX(), kHeight_m, 1.0));

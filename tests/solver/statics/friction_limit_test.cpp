@@ -11,7 +11,7 @@
 namespace springtower {
 namespace {
 
-// A block that stands on two points beside its centre, `share` of its weight on one of them.
+// A block on two points beside its centre, with `share` of its weight on one of them.
 double limitOnTwoPoints(double share, const Vec3& direction) {
   const Simulation simulation(bitCodeScene("(010)"));
   const Vec3 middle = centre(simulation.state.position, 0);
@@ -35,13 +35,14 @@ TEST(FrictionLimit, OfEqualLoadsIsFrictionTimesTheirSum) {
   EXPECT_GE(askew, kPolygon - 1e-6);
 }
 
-// Pulled across the line of its points it turns about the one that bears more: both hold as much as the weaker one can.
+// Pulled perpendicular to the line of its points it rotates about the one with the larger load: the limit is twice that of the
+// weaker one.
 TEST(FrictionLimit, OfUnequalLoadsIsThatOfATurn) {
   EXPECT_NEAR(limitOnTwoPoints(0.75, Vec3::UnitX()), 0.5, 1e-6);
   EXPECT_NEAR(limitOnTwoPoints(0.9, -Vec3::UnitX()), 0.2, 1e-6);
 }
 
-// Along the line of its points it cannot turn.
+// Along the line of its points it cannot rotate.
 TEST(FrictionLimit, AlongTheLineOfItsPointsIsFrictionTimesTheirSum) {
   EXPECT_NEAR(limitOnTwoPoints(0.75, Vec3::UnitY()), 1.0, 1e-6);
 }

@@ -27,7 +27,7 @@ struct Row {
   double tilt_deg = 0.0;
 };
 
-// The lines of a set that are clear and have a tilt between falling over and sliding.
+// The lines of a set that are unambiguous and have a tilt between falling over and sliding.
 std::vector<Row> rowsWithTilt(const std::string& name) {
   std::ifstream file(std::string(SPRINGTOWER_TEST_DATA_DIR) + "/oracle/" + name);
   std::vector<Row> rows;
@@ -47,15 +47,15 @@ std::vector<Row> rowsWithTilt(const std::string& name) {
   return rows;
 }
 
-// The least tilt of a tower that stands towards sixteen directions asked one by one.
+// The least tilt of a standing tower over sixteen directions, computed one by one.
 double leastTilt_deg(const StaticScene& statics) {
   double least = 90.0;
   for (int i = 0; i < kDirections; ++i) least = std::min(least, tiltTowards(statics, 360.0 * i / kDirections).value_or(-90.0));
   return least;
 }
 
-// How far gravity has to turn for a tower that falls to stand, its slope measured by its largest component along sixteen
-// directions: in each sector between two corners of that norm's polygon one linear programme.
+// The rotation of gravity after which a falling tower would stand, with the slope measured by its largest component along sixteen
+// directions: one linear program in each sector between two corners of that norm's polygon.
 double turnToStand_deg(const StaticScene& statics) {
   const StaticsModel& model = statics.model;
   const double corner = 1.0 / std::cos(std::numbers::pi / kDirections);
@@ -72,9 +72,9 @@ double turnToStand_deg(const StaticScene& statics) {
 
 class StaticsTiltTest : public ::testing::TestWithParam<std::string> {};
 
-// The reference asked about sixteen directions only, so the worst of all directions, which we give, may differ from it: to one
-// side, by no more than the directions between two of sixteen can make out. Where that is more than rounding we ask what it
-// asked, and answer within 0.05 degrees, whether a tower stands or falls.
+// The reference used sixteen directions only, so the minimum over all directions, which the engine gives, may differ from it: to
+// one side, by at most the effect of the angle between two of sixteen. Where that exceeds rounding, the same sixteen directions
+// must give the same tilt within 0.05 degrees, whether a tower stands or falls.
 TEST_P(StaticsTiltTest, SixteenDirectionsGiveTheReferencesTilt) {
   const std::vector<Row> rows = rowsWithTilt(GetParam());
   ASSERT_GE(rows.size(), 33U);

@@ -16,7 +16,7 @@ namespace {
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 constexpr double kHalfWidth_m = 0.5 * kBlockWidth_m;
 constexpr double kWeight_n = kBlockMass_kg * kStandardGravity_m_s2;
-// The margin's own tolerance, and the pyramid that stands for the cone.
+// The margin's own tolerance, and the difference between the pyramid and the cone.
 constexpr double kTilt_deg = 0.012;
 
 Scene withFriction(Scene scene, double friction) {
@@ -31,7 +31,7 @@ Scene tilted(Scene scene, double tilt_deg, double direction_deg) {
   return scene;
 }
 
-// Blocks on one another, all along x, each set off along y from the one below.
+// Blocks on one another, all along x, each displaced along y from the one below.
 Scene stack(const std::vector<double>& offsets_m) {
   Scene scene;
   Vec3 centre(0.0, 0.0, 0.5 * kBlockHeight_m);
@@ -73,7 +73,7 @@ TEST(Statics, ABlockTipsOverItsNarrowSideWhenItCannotSlide) {
               kTilt_deg);
 }
 
-TEST(Statics, WithoutFrictionOnlyGravityStraightDownIsBorne) {
+TEST(Statics, WithoutFrictionOnlyGravityStraightDownIsBalanced) {
   EXPECT_EQ(restOf(loneBlock(0.0)), Rest::stands);
   EXPECT_NEAR(margin_deg(loneBlock(0.0)), 0.0, kTilt_deg);
   EXPECT_EQ(restOf(tilted(loneBlock(0.0), 1.0, 0.0)), Rest::falls);
@@ -84,7 +84,7 @@ TEST(Statics, TheMarginIsCountedFromTheScenesGravity) {
   ASSERT_TRUE(leaning);
   EXPECT_NEAR(leaning->tilt_deg, kDegrees * std::atan(0.4) - 10.0, kTilt_deg);
   EXPECT_NEAR(leaning->direction_deg, 0.0, 0.5);
-  // A block that slides stands again when gravity turns back by what is too much.
+  // A block that slides stands again when gravity is rotated back by the excess.
   const std::optional<StabilityMargin> sliding = tiltMargin(staticScene(tilted(loneBlock(0.4), 25.0, 90.0)));
   ASSERT_TRUE(sliding);
   EXPECT_NEAR(sliding->tilt_deg, kDegrees * std::atan(0.4) - 25.0, kTilt_deg);
@@ -123,7 +123,7 @@ TEST(Statics, ATowerThatFallsHasANegativeMargin) {
   const std::optional<StabilityMargin> margin = tiltMargin(staticScene(bitCodeScene("(001)-(010)-(001)")));
   ASSERT_TRUE(margin);
   EXPECT_NEAR(margin->tilt_deg, -0.71, 0.01);
-  // Nothing under a block helps it: it falls however gravity turns.
+  // A block with nothing under it falls under any gravity.
   Scene floating = stack({0.0});
   floating.blocks[0].centre.z() += 0.1;
   EXPECT_EQ(restOf(floating), Rest::falls);
@@ -144,7 +144,7 @@ TEST(Statics, SizeAndDensityChangeNothing) {
   }
 }
 
-// Every direction asked one by one never gives less than the margin found, and the worst of them hardly more.
+// No direction, computed one by one, gives less than the margin found, and the worst of them hardly more.
 TEST(Statics, NoDirectionIsWorseThanTheWorst) {
   const Scene scene = bitCodeScene(
       "(110)-(011)-(111)-(101)-(010)",
@@ -162,7 +162,7 @@ TEST(Statics, NoDirectionIsWorseThanTheWorst) {
   EXPECT_NEAR(tiltTowards(statics, margin->direction_deg).value_or(-90.0), margin->tilt_deg, 0.05);
 }
 
-// The limits in closed form are necessary: no programme gets beyond one.
+// The limits in closed form are necessary: no linear program exceeds one.
 TEST(Statics, NoEquilibriumPassesALimit) {
   for (const char* code : {"(111)-(111)-(111)", "(011)-(110)-(010)-(111)", "(101)-(010)-(010)-(110)-(101)"}) {
     const StaticScene statics = staticScene(bitCodeScene(code));
@@ -180,7 +180,7 @@ TEST(Statics, NoEquilibriumPassesALimit) {
   }
 }
 
-// What the contacts carry balances each block and stays in the cones, for unequal masses under tilted gravity.
+// The contact forces balance each block and are inside the cones, for unequal masses under tilted gravity.
 TEST(Statics, ForcesBalanceEveryBlock) {
   const Scene scene = tilted(towerScene(6, {.massSigma_kg = 0.00185, .seed = 5}), 7.0, 40.0);
   const StaticScene statics = staticScene(scene);
@@ -222,7 +222,7 @@ TEST(Statics, ThreeSupportsShareALoadEquallyOrInManyWays) {
     EXPECT_TRUE(blocks[b].covered);
     EXPECT_FALSE(blocks[b].loose);
   }
-  // The middle one may carry it all; an outer one half of it, at its inner edge against the far edge of the middle one.
+  // The middle one may carry all of it; an outer one half of it, at its inner edge with the far edge of the middle one.
   EXPECT_NEAR(blocks[1].greatestAbove_n.value_or(0.0), kWeight_n, 1e-6);
   const double near_m = 0.5 * kBlockLength_m - kBlockWidth_m;
   EXPECT_NEAR(blocks[0].greatestAbove_n.value_or(0.0), kWeight_n * 0.5 * kBlockLength_m / (0.5 * kBlockLength_m + near_m), 1e-6);
@@ -242,7 +242,7 @@ TEST(Statics, ALooseBlockCarriesNothingUntilTheBlockOverItLeans) {
   EXPECT_NEAR(blocks[0].above_n, kWeight_n, 1e-6);
   EXPECT_EQ(removalOf(scene, blockId(1)).rest, Rest::stands);
 
-  // Without the outer block the two above turn about the inner edge of the other one, until the far edge of the loose one stops
+  // Without the outer block the two above rotate about the inner edge of the other one, until the far edge of the loose one stops
   // them.
   Scene leaning = scene;
   leaning.blocks.erase(leaning.blocks.begin());
@@ -256,7 +256,7 @@ TEST(Statics, ALooseBlockCarriesNothingUntilTheBlockOverItLeans) {
   EXPECT_EQ(after[0].gap_m, 0.0);
 }
 
-// With heights that vary every block rests on three points and the loads are unique; what is not touched has a gap.
+// With varying heights every block rests on three points and the loads are unique; a block without contact has a gap.
 TEST(Statics, VaryingHeightsLeaveBlocksLoose) {
   const StaticScene statics = staticScene(towerScene(6, {.heightsSigma_m = 0.0002, .seed = 3}));
   ASSERT_EQ(statics.rest, Rest::leans);
@@ -318,7 +318,7 @@ TEST(Statics, APulledBlockHoldsByItsFriction) {
   EXPECT_NEAR(pullLimit(alone, blockId(0), Vec3::UnitX()).value_or(0.0), 0.4 * kWeight_n, 1e-4 * kWeight_n);
   EXPECT_NEAR(pullLimit(alone, blockId(0), Vec3::UnitZ()).value_or(0.0), kWeight_n, 1e-6 * kWeight_n);
   EXPECT_TRUE(std::isinf(pullLimit(alone, blockId(0), -Vec3::UnitZ()).value_or(0.0)));
-  // Those above a block hold it only by what holds them: here nothing.
+  // The blocks above are held only by their own contacts: here there are none.
   const StaticScene three = staticScene(bitCodeScene("(010)-(010)-(010)"));
   EXPECT_NEAR(pullLimit(three, blockId(0), Vec3::UnitX()).value_or(0.0), 0.4 * 3.0 * kWeight_n, 1e-3 * kWeight_n);
   EXPECT_FALSE(pullLimit(staticScene(bitCodeScene("(001)-(100)")), blockId(0), Vec3::UnitX()));
@@ -332,7 +332,7 @@ TEST(Statics, FacesThatTouchAreFound) {
     EXPECT_EQ(facing.normal, Vec3(Vec3::UnitZ()));
     for (const FacingPoint& point : facing.points) EXPECT_EQ(point.gap_m, 0.0);
   }
-  // Squares turned by 45 degrees overlap in an octagon.
+  // Squares rotated by 45 degrees overlap in an octagon.
   Scene turned = stack({0.0, 0.0});
   for (BlockSpec& block : turned.blocks) block.dimensions = Vec3(0.03, 0.03, kBlockHeight_m);
   turned.blocks[1].orientation = Eigen::AngleAxisd(std::numbers::pi / 4.0, Vec3::UnitZ());

@@ -1,4 +1,4 @@
-// What pairs of blocks cost in memory, touching or not.
+// Memory of pairs of blocks, touching or not.
 #include "solver/world/memory_use.h"
 
 #include "solver/runner/run.h"
@@ -11,7 +11,7 @@
 namespace springtower {
 namespace {
 
-// Blocks side by side with gaps that their swept boxes bridge: near, and apart.
+// Blocks side by side with gaps smaller than the margins of their swept boxes: near, but separated.
 Scene blocksNearEachOther(int rows) {
   Scene scene;
   scene.name = "near blocks";
@@ -25,8 +25,8 @@ Scene blocksNearEachOther(int rows) {
   return scene;
 }
 
-// Bytes: a key of 8, five numbers of 8, a phase and the place of its contact in the table; beside it positions in lists of 4
-// each (its island's, those watched, what is saved), and the two lists and the column that the next sweep is merged through.
+// Bytes: a key of 8, five numbers of 8, a phase and the index of its contact in the table; in addition indices in lists of 4 each
+// (of its island, of active pairs, of saved pairs), and the two lists and the column for merging with the next sweep.
 TEST(MemoryUse, ANearPairCostsAtMost96Bytes) {
   Simulation simulation(blocksNearEachOther(8));
   stepFor(simulation, 0.1);

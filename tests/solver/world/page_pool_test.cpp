@@ -1,4 +1,4 @@
-// Rows in pages: each is of one owner until it is given back, whoever takes it, and a copy holds what the original held.
+// Rows in pages: each has one owner until it is returned, and a copy has the contents of the original.
 #include "solver/world/page_pool.h"
 
 #include <cstdint>
@@ -25,7 +25,7 @@ TEST(PagePool, GivesEachRowToOneOwner) {
   NumberPool pool;
   pool.reserve(10, 1000, false);
   std::set<std::int32_t> taken;
-  for (int i = 0; i < 300; ++i) EXPECT_TRUE(taken.insert(pool.take()).second);  // more than were reserved free: pages are made
+  for (int i = 0; i < 300; ++i) EXPECT_TRUE(taken.insert(pool.take()).second);  // more than were reserved: pages are allocated
   EXPECT_EQ(pool.rowsInUse(), 300U);
   for (const std::int32_t row : taken) pool.giveBack(row);
   EXPECT_EQ(pool.rowsInUse(), 0U);
@@ -56,7 +56,8 @@ TEST(PagePool, TakesRowsAgainThatWereGivenBack) {
   EXPECT_EQ(std::set<std::int32_t>(rows.begin(), rows.end()).size(), 100U);
 }
 
-// A snapshot is assigned to a pool that has grown since: what it held comes back, and the larger pool's pages stay, free.
+// A snapshot is assigned to a pool that has grown since: its contents are restored, and the additional pages of the pool stay,
+// free.
 TEST(PagePool, KeepsItsPagesWhenACopyIsAssigned) {
   NumberPool pool;
   pool.reserve(1, 1000, false);
@@ -74,7 +75,7 @@ TEST(PagePool, KeepsItsPagesWhenACopyIsAssigned) {
   EXPECT_EQ(pool.pageCount(), pages);
 }
 
-// Of a pool that has grown while narrow, all pages are prepared once a wide one has been assigned to it.
+// In a pool that has grown while narrow, all pages are prepared after a wide one has been assigned to it.
 TEST(PagePool, PreparesAllPagesOnceAWideCopyIsAssigned) {
   NumberPool wide;
   wide.reserve(1, 1000, true);

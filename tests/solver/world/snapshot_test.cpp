@@ -1,5 +1,5 @@
-// A snapshot holds all that the next frames depend on: a scene that has never been stepped goes on from it as the one it was
-// taken of.
+// A snapshot holds everything that the next frames depend on: a scene that has never been stepped continues from it like the one
+// it was taken from.
 #include "solver/world/simulation.h"
 #include "tests/support/block_scenes.h"
 
@@ -43,7 +43,7 @@ TEST(Snapshot, OfATowerAsleepGoesOnInAnotherScene) {
   expectTheSameFuture(scene, 70, 40);
 }
 
-// What the outside changes between frames is part of it.
+// Inputs that are changed between frames are part of it.
 TEST(Snapshot, BringsInputsBack) {
   Simulation simulation(towerScene(2));
   stepFrame(simulation);
