@@ -54,23 +54,23 @@ struct Settings {
   /// m; no resting penetration and no row compression above it. Where none is given it is in proportion to the blocks
   /// (core/scene/scene.h, toleranceOf); with substeps alone the largest stable stiffness is taken.
   std::optional<double> tolerance_m;
-  int substeps = 0;              ///< steps a frame; 0 takes them from the tolerance
-  bool forceUnstable = false;    ///< allow a tolerance and substeps that do not fit together
-  double stepMargin = 0.95;      ///< fraction of the stability limit that is used
-  double springRatio = 1.0;      ///< stiffness of an upright edge spring over that of a contact
-  double tangentialRatio = 0.8;  ///< tangential over normal contact stiffness; wood's Mindlin ratio is 2(1-nu)/(2-nu), about 0.8
-  double viscoelasticRatio = 0.3;   ///< stiffness of the contact's relaxing branch over its lasting one; damps a tower's sway
-  double viscoelasticTime = 1.161;  ///< in sqrt(h / g); relaxation time of that branch, 50 ms for the game's blocks
+  int substeps = 0;               ///< steps a frame; 0 takes them from the tolerance
+  bool allowUnstable = false;     ///< allow a tolerance and substeps that do not fit together
+  double stabilitySafety = 0.95;  ///< fraction of the stability limit that is used
+  double springRatio = 1.0;       ///< stiffness of an upright edge spring over that of a contact
+  double tangentialRatio = 0.8;   ///< tangential over normal contact stiffness; wood's Mindlin ratio is 2(1-nu)/(2-nu), about 0.8
+  double maxwellRatio = 0.3;      ///< stiffness of the contact's relaxing branch over its lasting one; damps a tower's sway
+  double maxwellTime = 1.161;     ///< in sqrt(h / g); relaxation time of that branch, 50 ms for the game's blocks
   /// In sqrt(h / g); dashpot over stiffness, of springs and contacts: sets the rebound and damps ringing. 30 us for the game's
   /// blocks.
-  double dampingTime = 6.965e-4;
-  double impactPenetration = 8.0;  ///< largest penetration aimed at in an impact, in tolerances, default ones at least
+  double stiffnessDamping = 6.965e-4;
+  double impactDepth = 8.0;  ///< largest penetration aimed at in an impact, in tolerances, default ones at least
   bool continuousTests =
       true;  ///< find collisions by the cubic tests; without them none is found but where blocks touch at the start
-  double restSpeed =
-      2.5e-4;              ///< in sqrt(g h); a block slower than this (corner speed of its rigid motion) is a candidate for sleep
-  double restTime = 12.0;  ///< in sqrt(h / g); how long it must have been at rest
-  double restImbalance = 2e-5;      ///< in block weights; largest mean force (or torque over h) that does not start a motion
+  double sleepSpeed =
+      2.5e-4;  ///< in sqrt(g h); a block slower than this (corner speed of its rigid motion) is a candidate for sleep
+  double sleepTime = 12.0;          ///< in sqrt(h / g); how long it must have been at rest
+  double sleepImbalance = 2e-5;     ///< in block weights; largest mean force (or torque over h) that does not start a motion
   double reportRestitution = 0.1;   ///< e of the report's impulses (Eq. 2.11)
   double reportFrictionDrag = 5.0;  ///< 1/s; the report's drag on contact points, per unit of particle mass (report 5.7.2)
   double reportDisableDistance_m = 2e-4;  ///< m; the report's threshold on the summed travel of a block's particles (its

@@ -84,7 +84,7 @@ void addPhysicsOptions(CLI::App& app, PhysicsOptions& options) {
   addWholeNumber(app, "--iterations", options.iterations, settingRange("iterations"),
                  "rigid methods: passes over the contacts in a step (default 1)");
   app.add_flag("--no-sleep", options.noSleep, "simulate blocks at rest like all others");
-  app.add_flag("--force-unstable", options.forceUnstable, "allow a tolerance and substeps that do not fit together");
+  app.add_flag("--force-unstable", options.allowUnstable, "allow a tolerance and substeps that do not fit together");
   addWholeNumber(app, "--threads", options.threads, kThreadsRange,
                  "threads to use (default: one for each processor); the results are the same for any number");
 }
@@ -110,7 +110,7 @@ void applyPhysicsOptions(const PhysicsOptions& options, Settings& settings) {
   if (options.substeps) settings.substeps = static_cast<int>(*options.substeps);
   if (options.iterations) settings.iterations = static_cast<int>(*options.iterations);
   if (options.noSleep) settings.sleep = Sleep::off;
-  if (options.forceUnstable) settings.forceUnstable = true;
+  if (options.allowUnstable) settings.allowUnstable = true;
 }
 
 int threadCount(const PhysicsOptions& options) {

@@ -26,7 +26,7 @@ struct PhysicsOptions {
   std::optional<std::int64_t> substeps;
   std::optional<std::int64_t> iterations;
   bool noSleep = false;
-  bool forceUnstable = false;
+  bool allowUnstable = false;
   std::optional<std::int64_t> threads;
 };
 

@@ -46,8 +46,8 @@ double fastestRigidCorner(const Simulation& simulation, std::size_t b) {
 void judge(Simulation& simulation, std::size_t b) {
   const Settings& settings = simulation.scene.settings;
   SleepWindow& window = simulation.engine->sleep.windows[b];
-  const double slow = settings.restSpeed * speedScale(simulation);
-  const bool ends = window.age_s + settings.frame_s >= settings.restTime * timeScale(simulation);
+  const double slow = settings.sleepSpeed * speedScale(simulation);
+  const bool ends = window.age_s + settings.frame_s >= settings.sleepTime * timeScale(simulation);
   if (!ends && fastestRigidCorner(simulation, b) < slow) {  // the usual case, without the rigid motion itself
     simulation.restTime_s[b] += settings.frame_s;
     window.age_s += settings.frame_s;
@@ -63,9 +63,9 @@ void judge(Simulation& simulation, std::size_t b) {
   }
   simulation.restTime_s[b] += settings.frame_s;
   window.age_s += settings.frame_s;
-  if (window.age_s < settings.restTime * timeScale(simulation)) return;
+  if (window.age_s < settings.sleepTime * timeScale(simulation)) return;
   const double change = (motion.velocity - window.velocity).norm() + arm * (motion.spin - window.spin).norm();
-  if (change > settings.restImbalance * simulation.scene.gravity.magnitude * window.age_s) simulation.restTime_s[b] = 0.0;
+  if (change > settings.sleepImbalance * simulation.scene.gravity.magnitude * window.age_s) simulation.restTime_s[b] = 0.0;
   begin();
 }
 
@@ -104,7 +104,7 @@ bool isStruck(const Simulation& simulation, std::size_t at, std::int32_t awake, 
 
 double restNeeded(const Simulation& simulation) {
   return simulation.scene.settings.sleep == Sleep::report ? simulation.scene.settings.frame_s
-                                                          : simulation.scene.settings.restTime * timeScale(simulation);
+                                                          : simulation.scene.settings.sleepTime * timeScale(simulation);
 }
 
 void fallAsleep(Simulation& simulation, std::size_t b) {

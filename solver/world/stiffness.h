@@ -42,7 +42,7 @@ Stiffness stiffnessForTolerance(const LoadEstimate& loads, double tolerance_m);
 double stableStep(Method method, double spectralRadius, double dampingTime_s, double margin);
 double stableSpectralRadius(Method method, double step_s, double dampingTime_s, double margin);
 
-/// The depth aimed at in an impact, m, with a tolerance in force: settings.impactPenetration tolerances. Tolerances are of what
+/// The depth aimed at in an impact, m, with a tolerance in force: settings.impactDepth tolerances. Tolerances are of what
 /// stands; one below the default asks for no harder impacts, which would cost steps in proportion.
 double impactDepth_m(const Settings& settings, double tolerance_m, double blockHeight_m);
 

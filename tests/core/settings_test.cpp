@@ -55,7 +55,7 @@ TEST(Settings, EachNumberIsHeldToBothEndsOfItsRange) {
 
 TEST(Settings, ComplaintNamesSourceKeyFoundAndAllowed) {
   Settings settings;
-  settings.stepMargin = 1.5;
+  settings.stabilitySafety = 1.5;
   EXPECT_THAT([&] { checkSettings(settings, "command line"); },
               ThrowsMessage<InputError>("command line: step_margin: found 1.5, allowed 0.05 to 1"));
   settings = {};

@@ -46,7 +46,7 @@ TEST(SceneFile, SetsEverythingASceneHas) {
   EXPECT_EQ(scene.settings.substeps, 120);
   EXPECT_FALSE(scene.settings.continuousTests);
   EXPECT_FALSE(scene.settings.tolerance_m);
-  EXPECT_EQ(scene.settings.stepMargin, Settings{}.stepMargin);
+  EXPECT_EQ(scene.settings.stabilitySafety, Settings{}.stabilitySafety);
 
   const BlockSpec& block = scene.blocks[6];
   EXPECT_EQ(block.row, -1);
