@@ -31,7 +31,7 @@ constexpr bool isImplicit(Method method) {
   return method == Method::implicit || method == Method::implicitEuler || method == Method::implicitEigen;
 }
 
-/// Whether a method takes blocks as rigid: it has no stiffness, and its knobs are substeps and iterations.
+/// Whether a method takes blocks as rigid: it has no stiffness, and its parameters are substeps and iterations.
 constexpr bool isRigid(Method method) {
   return method == Method::rigidPgs || method == Method::rigidLcp || method == Method::xpbd;
 }
@@ -59,10 +59,10 @@ struct Settings {
   double stabilitySafety = 0.95;  ///< fraction of the stability limit that is used
   double springRatio = 1.0;       ///< stiffness of an upright edge spring over that of a contact
   double tangentialRatio = 0.8;   ///< tangential over normal contact stiffness; wood's Mindlin ratio is 2(1-nu)/(2-nu), about 0.8
-  double maxwellRatio = 0.3;      ///< stiffness of the contact's relaxing branch over its lasting one; damps a tower's sway
+  double maxwellRatio = 0.3;      ///< stiffness of the contact's Maxwell branch over its lasting one; damps a tower's sway
   double maxwellTime = 1.161;     ///< in sqrt(h / g); relaxation time of that branch, 50 ms for the game's blocks
-  /// In sqrt(h / g); dashpot over stiffness, of springs and contacts: sets the rebound and damps ringing. 30 us for the game's
-  /// blocks.
+  /// In sqrt(h / g); dashpot over stiffness, of springs and contacts (beta of Rayleigh damping): sets the rebound and damps
+  /// vibration. 30 us for the game's blocks.
   double stiffnessDamping = 6.965e-4;
   double impactDepth = 8.0;  ///< largest penetration aimed at in an impact, in tolerances, default ones at least
   bool continuousTests =
@@ -92,17 +92,33 @@ struct SettingRow {
 /// All settings that are numbers or on/off, in the order of `Settings`; the enumerations are read by the functions below.
 std::span<const SettingRow> settingTable();
 
+/// A key that a setting had in earlier versions and the one that it has now; scene files may use either, not both.
+struct SettingAlias {
+  std::string_view formerKey;
+  std::string_view key;
+};
+
+/// Former keys of settings, at most one for each.
+std::span<const SettingAlias> settingAliases();
+
+/// The former key of a setting, empty where its key was never another.
+std::string_view formerKeyOf(std::string_view key);
+
 /// The value of a row as a number (0 and 1 for off and on); none where it is left to the scene.
 std::optional<double> numberOf(const Settings& settings, const SettingRow& row);
 
 /// Checks every setting against its row. Throws InputError naming the key, what was found and what is allowed.
 void checkSettings(const Settings& settings, std::string_view source);
 
-/// Names as the command line and scene files spell them. Each throws InputError naming `source`, what was found and what is
-/// allowed.
+/// Names as the command line and scene files spell them; of a method also the name that it has elsewhere: `bdf2`, `bdf2-eigen`
+/// and `legacy-2003` for what is written as `implicit`, `implicit-eigen` and `report`. Each throws InputError naming `source`,
+/// what was found and what is allowed.
 Method methodFromName(std::string_view name, std::string_view source);
 Inertia inertiaFromName(std::string_view name, std::string_view source);
 Sleep sleepFromName(std::string_view name, std::string_view source);
+/// Whether methodFromName reads `name` as this method.
+bool isNameOf(std::string_view name, Method method);
+/// The name that is written, whatever name was read.
 std::string_view nameOf(Method method);
 std::string_view nameOf(Inertia inertia);
 std::string_view nameOf(Sleep sleep);

@@ -77,7 +77,7 @@ void chooseStiffness(Simulation& simulation) {
     } else if (needed > allowed && !settings.allowUnstable) {
       throw InputError(fmt::format(
           "settings: found tolerance_m = {:g} with substeps = {}, allowed: at least {} substeps for this tolerance, or "
-          "force_unstable",
+          "allow_unstable",
           *settings.tolerance_m, settings.substeps,
           static_cast<int>(std::ceil(settings.frame_s /
                                      stableStep(settings.method, needed, simulation.dampingTime_s, settings.stabilitySafety)))));
