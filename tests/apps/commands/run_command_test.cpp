@@ -246,6 +246,9 @@ TEST(RunCommand, PrintsATable) {
   EXPECT_EQ(result.error, "") << "no progress where there is no terminal";
   EXPECT_THAT(result.output, StartsWith("tower:1, 3 blocks\n"));
   for (const char* name : {"stands", "penetration", "creep", "frame"}) EXPECT_THAT(result.output, HasSubstr(name));
+  for (const char* name : {"height error against rigid stack  ", "max energy gain in a frame  "}) {
+    EXPECT_THAT(result.output, HasSubstr(std::string("  ") + name)) << "a name and its figure are apart";
+  }
 }
 
 TEST(RunCommand, WritesPosesInOrder) {
