@@ -81,7 +81,7 @@ double imbalanceFromMomentum(const Simulation& simulation, const ParticleArray& 
   return largest / (simulation.scene.settings.frame_s * simulation.scene.gravity.magnitude);
 }
 
-// A case on its way: its simulation, what is known of its accuracy so far, and its times.
+// A case on its way: its simulation, its accuracy so far, and its times.
 class ChartRun {
  public:
   ChartRun(const ChartCase& what, const ChartLimits& limits)
