@@ -49,7 +49,7 @@ struct StageTimes {
   }
 };
 
-/// Adds the time it lives to a stage.
+/// Adds the time of its scope to a stage.
 class StageTimer {
  public:
   StageTimer(StageTimes& times, Stage stage) : times_(times), stage_(stage), start_(std::chrono::steady_clock::now()) {}

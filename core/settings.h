@@ -29,23 +29,23 @@ struct Settings {
   /// m; no resting penetration and no row compression above it. Where none is given it is in proportion to the blocks
   /// (core/scene/scene.h, toleranceOf); with substeps alone the largest stable stiffness is taken.
   std::optional<double> tolerance_m;
-  int substeps = 0;              ///< steps a frame; 0 takes them from the tolerance
-  bool forceUnstable = false;    ///< allow a tolerance and substeps that do not fit together
-  double stepMargin = 0.95;      ///< fraction of the stability limit that is used
-  double springRatio = 1.0;      ///< stiffness of an upright edge spring over that of a contact
-  double tangentialRatio = 0.8;  ///< tangential over normal contact stiffness; wood's Mindlin ratio is 2(1-nu)/(2-nu), about 0.8
-  double viscoelasticRatio = 0.3;   ///< stiffness of the contact's relaxing branch over its lasting one; damps a tower's sway
-  double viscoelasticTime = 1.161;  ///< in sqrt(h / g); relaxation time of that branch, 50 ms for the game's blocks
-  /// In sqrt(h / g); dashpot over stiffness, of springs and contacts: sets the rebound and damps ringing. 30 us for the game's
-  /// blocks.
-  double dampingTime = 6.965e-4;
-  double impactPenetration = 8.0;  ///< largest penetration aimed at in an impact, in tolerances, default ones at least
+  int substeps = 0;               ///< steps a frame; 0 takes them from the tolerance
+  bool allowUnstable = false;     ///< allow a tolerance and substeps that do not fit together
+  double stabilitySafety = 0.95;  ///< fraction of the stability limit that is used
+  double springRatio = 1.0;       ///< stiffness of an upright edge spring over that of a contact
+  double tangentialRatio = 0.8;   ///< tangential over normal contact stiffness; wood's Mindlin ratio is 2(1-nu)/(2-nu), about 0.8
+  double maxwellRatio = 0.3;      ///< stiffness of the contact's Maxwell branch over its lasting one; damps a tower's sway
+  double maxwellTime = 1.161;     ///< in sqrt(h / g); relaxation time of that branch, 50 ms for the game's blocks
+  /// In sqrt(h / g); dashpot over stiffness, of springs and contacts (beta of Rayleigh damping): sets the rebound and damps
+  /// vibration. 30 us for the game's blocks.
+  double stiffnessDamping = 6.965e-4;
+  double impactDepth = 8.0;  ///< largest penetration aimed at in an impact, in tolerances, default ones at least
   bool continuousTests =
       true;  ///< find collisions by the cubic tests; without them none is found but where blocks touch at the start
-  double restSpeed =
-      2.5e-4;              ///< in sqrt(g h); a block slower than this (corner speed of its rigid motion) is a candidate for sleep
-  double restTime = 12.0;  ///< in sqrt(h / g); how long it must have been at rest
-  double restImbalance = 2e-5;      ///< in block weights; largest mean force (or torque over h) that does not start a motion
+  double sleepSpeed =
+      2.5e-4;  ///< in sqrt(g h); a block slower than this (corner speed of its rigid motion) is a candidate for sleep
+  double sleepTime = 12.0;          ///< in sqrt(h / g); how long it must have been at rest
+  double sleepImbalance = 2e-5;     ///< in block weights; largest mean force (or torque over h) that does not start a motion
   double reportRestitution = 0.1;   ///< e of the report's impulses (Eq. 2.11)
   double reportFrictionDrag = 5.0;  ///< 1/s; the report's drag on contact points, per unit of particle mass (report 5.7.2)
   double reportDisableDistance_m = 2e-4;  ///< m; the report's threshold on the summed travel of a block's particles (its
@@ -67,17 +67,33 @@ struct SettingRow {
 /// All settings that are numbers or on/off, in the order of `Settings`; the enumerations are read by the functions below.
 std::span<const SettingRow> settingTable();
 
+/// A key that a setting had in earlier versions and the one that it has now; scene files may use either, not both.
+struct SettingAlias {
+  std::string_view formerKey;
+  std::string_view key;
+};
+
+/// Former keys of settings, at most one for each.
+std::span<const SettingAlias> settingAliases();
+
+/// The former key of a setting, empty where its key was never another.
+std::string_view formerKeyOf(std::string_view key);
+
 /// The value of a row as a number (0 and 1 for off and on); none where it is left to the scene.
 std::optional<double> numberOf(const Settings& settings, const SettingRow& row);
 
 /// Checks every setting against its row. Throws InputError naming the key, what was found and what is allowed.
 void checkSettings(const Settings& settings, std::string_view source);
 
-/// Names as the command line and scene files spell them. Each throws InputError naming `source`, what was found and what is
-/// allowed.
+/// Names as the command line and scene files spell them; of a method also the name that it has elsewhere: `bdf2`, `bdf2-eigen`
+/// and `legacy-2003` for what is written as `implicit`, `implicit-eigen` and `report`. Each throws InputError naming `source`,
+/// what was found and what is allowed.
 Method methodFromName(std::string_view name, std::string_view source);
 Inertia inertiaFromName(std::string_view name, std::string_view source);
 Sleep sleepFromName(std::string_view name, std::string_view source);
+/// Whether methodFromName reads `name` as this method.
+bool isNameOf(std::string_view name, Method method);
+/// The name that is written, whatever name was read.
 std::string_view nameOf(Method method);
 std::string_view nameOf(Inertia inertia);
 std::string_view nameOf(Sleep sleep);

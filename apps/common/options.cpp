@@ -65,11 +65,19 @@ CLI::Option* addWholeNumber(CLI::App& app, const std::string& name, std::optiona
       ->check(wholeNumberIn(range));
 }
 
+void addFormerFlag(CLI::App& app, const std::string& former, CLI::Option* flag, bool& target) {
+  CLI::Option* alias = app.add_flag(former, target)->group("");
+  for (CLI::Option* other : flag->get_excludes()) alias->excludes(other);
+  alias->excludes(flag);
+  flag->description(fmt::format("{}; formerly {}", flag->get_description(), former));
+}
+
 void addPhysicsOptions(CLI::App& app, PhysicsOptions& options) {
   app.add_option("--method", options.method,
-                 "how a frame is stepped: implicit (default), implicit-euler, implicit-eigen (with Eigen's sparse "
-                 "factors, for comparison), semi-implicit-euler, midpoint, runge-kutta-4, "
-                 "report (the impulses of the 2003 report, for comparison), or rigid blocks: rigid-pgs (sequential impulses), "
+                 "how a frame is stepped: implicit (default; also: bdf2), implicit-euler, implicit-eigen (also: bdf2-eigen; with "
+                 "Eigen's sparse factors, for comparison), semi-implicit-euler, midpoint, runge-kutta-4, "
+                 "report (also: legacy-2003; the impulses of the 2003 report, for comparison), or rigid blocks: rigid-pgs "
+                 "(sequential impulses), "
                  "rigid-lcp (pivoting), xpbd (position-based); or auto, which takes the one that suits the scene")
       ->type_name("NAME");
   app.add_option("--inertia", options.inertia,
@@ -84,7 +92,9 @@ void addPhysicsOptions(CLI::App& app, PhysicsOptions& options) {
   addWholeNumber(app, "--iterations", options.iterations, settingRange("iterations"),
                  "rigid methods: passes over the contacts in a step (default 1)");
   app.add_flag("--no-sleep", options.noSleep, "simulate blocks at rest like all others");
-  app.add_flag("--force-unstable", options.forceUnstable, "allow a tolerance and substeps that do not fit together");
+  CLI::Option* allowUnstable =
+      app.add_flag("--allow-unstable", options.allowUnstable, "allow a tolerance and substeps that do not fit together");
+  addFormerFlag(app, "--force-unstable", allowUnstable, options.allowUnstable);
   addWholeNumber(app, "--threads", options.threads, kThreadsRange,
                  "threads to use (default: one for each processor); the results are the same for any number");
 }
@@ -110,7 +120,7 @@ void applyPhysicsOptions(const PhysicsOptions& options, Settings& settings) {
   if (options.substeps) settings.substeps = static_cast<int>(*options.substeps);
   if (options.iterations) settings.iterations = static_cast<int>(*options.iterations);
   if (options.noSleep) settings.sleep = Sleep::off;
-  if (options.forceUnstable) settings.forceUnstable = true;
+  if (options.allowUnstable) settings.allowUnstable = true;
 }
 
 int threadCount(const PhysicsOptions& options) {

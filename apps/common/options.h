@@ -26,7 +26,7 @@ struct PhysicsOptions {
   std::optional<std::int64_t> substeps;
   std::optional<std::int64_t> iterations;
   bool noSleep = false;
-  bool forceUnstable = false;
+  bool allowUnstable = false;
   std::optional<std::int64_t> threads;
 };
 
@@ -37,6 +37,10 @@ CLI::Option* addNumber(CLI::App& app, const std::string& name, std::optional<dou
 /// The same for whole numbers; the range's unit is not used.
 CLI::Option* addWholeNumber(CLI::App& app, const std::string& name, std::optional<std::int64_t>& target, const Range& range,
                             const std::string& description);
+
+/// Lets a flag be given by a former name as well: by either, not by both. The help shows the former name in the description of
+/// the flag alone. Call it once the flag has all that it excludes.
+void addFormerFlag(CLI::App& app, const std::string& former, CLI::Option* flag, bool& target);
 
 /// Adds the options of `PhysicsOptions` to a command.
 void addPhysicsOptions(CLI::App& app, PhysicsOptions& options);

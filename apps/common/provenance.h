@@ -12,7 +12,7 @@ struct Provenance {
   std::string compiler;
   std::string flags;
   std::string buildType;
-  std::string processor;    ///< the processor's own name, "unknown" where the system does not tell
+  std::string processor;    ///< the processor's own name, "unknown" where the system does not name it
   unsigned processors = 0;  ///< that this program may run on
   std::string date;         ///< UTC, as 2003-05-01T12:00:00Z
 };

@@ -18,7 +18,7 @@ inline constexpr Ink kGrey = {0.42, 0.42, 0.42};
 inline constexpr Ink kFaint = {0.9, 0.9, 0.9};
 inline constexpr Ink kWhite = {1.0, 1.0, 1.0};
 
-/// The colour of a style; colours that people with any colour vision can tell apart come first.
+/// The colour of a style; colours that differ for any colour vision come first.
 const Ink& inkOf(std::size_t style);
 
 inline constexpr double kMarkerRadius = 3.2;  ///< points

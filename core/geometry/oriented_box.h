@@ -33,7 +33,7 @@ inline OrientedBox orientedBox(const Vec3& centre, const Eigen::Quaterniond& ori
 /// directions along which two boxes that do not overlap are separated (separating axis theorem). `axisOfA` and `axisOfB` give the
 /// axes by number, `axis` is unit. Nearly parallel axes, with a sine of `leastSine` or less, are left out: faces decide there.
 /// Stops where visit returns false. Contacts of deformed blocks have their own search (narrowphase/separation), whose face
-/// normals are not the axes of edges, and which knows which edges cross.
+/// normals are not the axes of edges, and which names the edges that cross.
 template <class AxisOfA, class AxisOfB, class Visit>
 void forEachEdgeProduct(const AxisOfA& axisOfA, const AxisOfB& axisOfB, double leastSine, const Visit& visit) {
   for (int i = 0; i < 3; ++i) {

@@ -143,7 +143,7 @@ Scene sceneFromName(const std::string& name, const TowerOptions& options = {});
 /// it is that of the lowest, the block that a fault of one size matters most to. Precondition: there is a block.
 double blockHeightOf(const Scene& scene);
 
-/// The tolerance that a scene asks for, m: as its settings give it, else kBlockTolerance_m in proportion to blockHeightOf.
+/// The tolerance of a scene, m: as its settings give it, else kBlockTolerance_m in proportion to blockHeightOf.
 /// Precondition: there is a block, or the settings give one.
 double toleranceOf(const Scene& scene);
 

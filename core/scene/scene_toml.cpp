@@ -101,19 +101,29 @@ void readNamed(const Table& table, std::string_view key, T& target, T (*fromName
   target = fromName(name, table.where(key));
 }
 
+// The key by which a table gives a setting, if it does: the one that it has now, or its former one.
+std::string_view keyIn(const Table& table, const SettingRow& row) {
+  const std::string_view former = formerKeyOf(row.key);
+  if (former.empty() || !table.has(former)) return row.key;
+  if (!table.has(row.key)) return former;
+  throw InputError(
+      fmt::format("{}: found {} and its former name {}, allowed is one of them", table.where(row.key), row.key, former));
+}
+
 void readSettings(const Table& table, Settings& settings) {
   readNamed(table, "method", settings.method, methodFromName);
   readNamed(table, "inertia", settings.inertia, inertiaFromName);
   readNamed(table, "sleep", settings.sleep, sleepFromName);
   for (const SettingRow& row : settingTable()) {
+    const std::string_view key = keyIn(table, row);
     if (const auto* number = std::get_if<double Settings::*>(&row.member)) {
-      table.read(row.key, settings.**number, {row.least, row.most, row.unit});
+      table.read(key, settings.**number, {row.least, row.most, row.unit});
     } else if (const auto* optional = std::get_if<std::optional<double> Settings::*>(&row.member)) {
-      table.read(row.key, settings.**optional, {row.least, row.most, row.unit});
+      table.read(key, settings.**optional, {row.least, row.most, row.unit});
     } else if (const auto* whole = std::get_if<int Settings::*>(&row.member)) {
-      table.readWhole(row.key, settings.**whole, static_cast<std::int64_t>(row.least), static_cast<std::int64_t>(row.most));
+      table.readWhole(key, settings.**whole, static_cast<std::int64_t>(row.least), static_cast<std::int64_t>(row.most));
     } else {
-      table.read(row.key, settings.*std::get<bool Settings::*>(row.member));
+      table.read(key, settings.*std::get<bool Settings::*>(row.member));
     }
   }
 }
@@ -121,6 +131,12 @@ void readSettings(const Table& table, Settings& settings) {
 std::vector<std::string_view> settingKeys() {
   std::vector<std::string_view> keys = {"method", "inertia", "sleep"};
   for (const SettingRow& row : settingTable()) keys.push_back(row.key);
+  return keys;
+}
+
+std::vector<std::string_view> formerSettingKeys() {
+  std::vector<std::string_view> keys;
+  for (const SettingAlias& alias : settingAliases()) keys.push_back(alias.formerKey);
   return keys;
 }
 
@@ -192,7 +208,8 @@ Scene readScene(const Table& top, const TowerOptions& given, const std::string& 
   top.readTable("friction", {"coefficient", "static", "kinetic"}, [&](const Table& table) { readFriction(table, scene); });
   top.readTable("gravity", {"magnitude_m_s2", "tilt_deg", "direction_deg", "sway_deg", "sway_hz"},
                 [&](const Table& table) { readGravity(table, scene.gravity); });
-  top.readTable("settings", settingKeys(), [&](const Table& table) { readSettings(table, scene.settings); });
+  top.readTable(
+      "settings", settingKeys(), [&](const Table& table) { readSettings(table, scene.settings); }, formerSettingKeys());
   return scene;
 }
 

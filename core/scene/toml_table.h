@@ -31,11 +31,13 @@ inline std::string found(const toml::node& node) {
 /// it throws InputError.
 class Table {
  public:
-  // Throws on any key that is not allowed.
-  Table(const toml::table& table, std::string path, const std::string& file, const std::vector<std::string_view>& allowed)
+  // Throws on any key that is neither allowed nor the former name of one that is.
+  Table(const toml::table& table, std::string path, const std::string& file, const std::vector<std::string_view>& allowed,
+        const std::vector<std::string_view>& former = {})
       : table_(table), path_(std::move(path)), file_(file) {
     for (const auto& [key, value] : table) {
       if (std::find(allowed.begin(), allowed.end(), key.str()) != allowed.end()) continue;
+      if (std::find(former.begin(), former.end(), key.str()) != former.end()) continue;
       throw InputError(fmt::format("{}: unknown key {}{}, allowed {}", placed(key.source().begin, ""), inQuotes(key.str()),
                                    path_.empty() ? "" : " in " + path_, fmt::join(allowed, ", ")));
     }
@@ -88,23 +90,24 @@ class Table {
 
   // Calls `use(subtable)` when the key is present.
   template <class Use>
-  void readTable(std::string_view key, const std::vector<std::string_view>& allowed, Use use) const {
+  void readTable(std::string_view key, const std::vector<std::string_view>& allowed, Use use,
+                 const std::vector<std::string_view>& former = {}) const {
     const toml::node* node = table_.get(key);
     if (node == nullptr) return;
     if (!node->is_table()) fail(*node, named(key), fmt::format("a table, [{}]", named(key)));
-    use(Table(*node->as_table(), named(key), file_, allowed));
+    use(Table(*node->as_table(), named(key), file_, allowed, former));
   }
   // Calls `use(subtable)` for each of an array of tables, in their order.
   template <class Use>
   void readTables(std::string_view key, const std::vector<std::string_view>& allowed, Use use) const {
     const toml::node* node = table_.get(key);
     if (node == nullptr) return;
-    const std::string wanted = fmt::format("up to {} tables, each [[{}]]", kMaxBlocks, named(key));
-    if (!node->is_array() || node->as_array()->size() > kMaxBlocks) fail(*node, named(key), wanted);
+    const std::string expected = fmt::format("up to {} tables, each [[{}]]", kMaxBlocks, named(key));
+    if (!node->is_array() || node->as_array()->size() > kMaxBlocks) fail(*node, named(key), expected);
     const toml::array& array = *node->as_array();
     for (std::size_t i = 0; i < array.size(); ++i) {
       const std::string name = fmt::format("{}[{}]", named(key), i);
-      if (!array[i].is_table()) fail(array[i], name, wanted);
+      if (!array[i].is_table()) fail(array[i], name, expected);
       use(Table(*array[i].as_table(), name, file_, allowed));
     }
   }

@@ -85,8 +85,8 @@ ContactLaw contactLaw(const Simulation& simulation) {
   ContactLaw law;
   law.stiffness_n_m = simulation.contactStiffness_n_m;
   law.floorStiffness_n_m = simulation.floorStiffness_n_m;
-  law.maxwellRatio = settings.viscoelasticRatio;
-  law.maxwellTime_s = settings.viscoelasticTime * simulation.lengths.fallTime_s;
+  law.maxwellRatio = settings.maxwellRatio;
+  law.maxwellTime_s = settings.maxwellTime * simulation.lengths.fallTime_s;
   law.dampingTime_s = simulation.dampingTime_s;
   law.stiffeningTime_s = tuning::kImpactStiffeningTime * simulation.lengths.fallTime_s;
   law.tangentialRatio = settings.tangentialRatio;

@@ -36,7 +36,7 @@ void addManifold(Simulation& simulation, const ContactView& m) {
   const bool moveLower = m.lower >= 0 && simulation.asleep[lower] == 0;
   const double share = moveUpper && moveLower ? 1.0 : 0.5;  // the factor of two does not apply against what cannot move
   const double stiffness = (m.lower < 0 ? simulation.floorStiffness_n_m : simulation.contactStiffness_n_m) *
-                           std::max(1.0 + settings.viscoelasticRatio, settings.tangentialRatio) * share;
+                           std::max(1.0 + settings.maxwellRatio, settings.tangentialRatio) * share;
   const auto add = [&](std::size_t block, const std::array<double, 3>& place, double k) {
     const Eigen::Vector4d w = affineWeights(place, settings.inertia, simulation.model.mass[block]);
     engine.scratch.contactMetric[block] += k * w * w.transpose();

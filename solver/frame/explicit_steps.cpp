@@ -54,7 +54,7 @@ int chooseSubsteps(IslandStep& step) {
     record.contactSignature = signature;
   }
   const double standing = record.spectralRadius;
-  const double stiffness = simulation.contactStiffness_n_m * (1.0 + settings.viscoelasticRatio);
+  const double stiffness = simulation.contactStiffness_n_m * (1.0 + settings.maxwellRatio);
   const ApproachEstimate approach =
       isReport ? ApproachEstimate{} : estimateApproach(step);  // contacts of method `report` have no stiffness
   const double depth = impactDepth_m(settings, simulation.tolerance_m, simulation.lengths.blockHeight_m);
@@ -68,19 +68,21 @@ int chooseSubsteps(IslandStep& step) {
   double allowed = 0.0;  // largest stable eigenvalue of the chosen step
   int substeps = simulation.fixedSubsteps;
   if (substeps > 0) {
-    allowed = stableSpectralRadius(settings.method, settings.frame_s / substeps, simulation.dampingTime_s, settings.stepMargin);
+    allowed =
+        stableSpectralRadius(settings.method, settings.frame_s / substeps, simulation.dampingTime_s, settings.stabilitySafety);
   } else {
     const TetherRates held = tetherRates(step);
     const double begun = standing + (approach.meeting || wanted > 1.0 ? together * born : 0.0);
     const double needed = std::max(begun, standing + (wanted > 1.0 ? wanted * born : 0.0));
-    const double margin = settings.stepMargin * (isReport ? tuning::kReportStepMargin : 1.0);
+    const double margin = settings.stabilitySafety * (isReport ? tuning::kReportStepMargin : 1.0);
     const auto stepsFor = [&](double radius) {
       const double dt = stableStep(settings.method, radius + held.stiffness, simulation.dampingTime_s, margin) *
                         shortening(radius + held.stiffness, simulation.dampingTime_s, held.damping);
       return std::clamp(std::ceil(settings.frame_s / dt), 1.0, static_cast<double>(tuning::kMaxExplicitSubsteps));
     };
     substeps = static_cast<int>(std::min(stepsFor(needed), std::max<double>(tuning::kMaxImpactSubsteps, stepsFor(begun))));
-    allowed = stableSpectralRadius(settings.method, settings.frame_s / substeps, simulation.dampingTime_s, settings.stepMargin);
+    allowed =
+        stableSpectralRadius(settings.method, settings.frame_s / substeps, simulation.dampingTime_s, settings.stabilitySafety);
     if (held.stiffness > 0.0) allowed = std::min(allowed, needed);
   }
   step.maxStiffening = born > 0.0 ? std::clamp((allowed - standing) / (together * born), 1.0, std::max(1.0, wanted)) : 1.0;

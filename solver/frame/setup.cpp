@@ -53,7 +53,7 @@ double foreseenSpectralRadius(const Simulation& simulation, const Stiffness& sti
       inverseMass(settings.inertia).own / 2.0;  // 1/m times this, for the mode that presses a block flat
   const double contact =
       std::max(2.0 * tuning::kPointsPerSide * stiffness.contact_n_m, 4.0 * stiffness.floor_n_m) / 4.0 * 2.0 * compressionMass;
-  return springs + (1.0 + settings.viscoelasticRatio) * contact / lightest;
+  return springs + (1.0 + settings.maxwellRatio) * contact / lightest;
 }
 
 // From tolerance to stiffness to substeps, or from substeps to tolerance. Stiffness is inversely proportional to the tolerance,
@@ -67,20 +67,20 @@ void chooseStiffness(Simulation& simulation) {
   Stiffness stiffness = stiffnessForTolerance(loads, simulation.tolerance_m);
   if (simulation.fixedSubsteps > 0) {
     const double allowed = stableSpectralRadius(settings.method, settings.frame_s / settings.substeps, simulation.dampingTime_s,
-                                                settings.stepMargin);
+                                                settings.stabilitySafety);
     const double needed = foreseenSpectralRadius(simulation, stiffness);
     if (!settings.tolerance_m) {
       loads.swayStiffness_n_m = 0.0;
       const double unit = foreseenSpectralRadius(simulation, stiffnessForTolerance(loads, 1.0));
       simulation.tolerance_m = unit / allowed;
       stiffness = stiffnessForTolerance(loads, simulation.tolerance_m);
-    } else if (needed > allowed && !settings.forceUnstable) {
+    } else if (needed > allowed && !settings.allowUnstable) {
       throw InputError(fmt::format(
           "settings: found tolerance_m = {:g} with substeps = {}, allowed: at least {} substeps for this tolerance, or "
-          "force_unstable",
+          "allow_unstable",
           *settings.tolerance_m, settings.substeps,
-          static_cast<int>(
-              std::ceil(settings.frame_s / stableStep(settings.method, needed, simulation.dampingTime_s, settings.stepMargin)))));
+          static_cast<int>(std::ceil(settings.frame_s /
+                                     stableStep(settings.method, needed, simulation.dampingTime_s, settings.stabilitySafety)))));
     }
   }
   simulation.contactStiffness_n_m = stiffness.contact_n_m;
@@ -139,7 +139,7 @@ Simulation::Simulation(const Scene& given) : scene(given), engine(std::make_uniq
   lengths.blockHeight_m = blockHeightOf(scene);
   lengths.fallTime_s =
       std::sqrt(lengths.blockHeight_m / (scene.gravity.magnitude > 0.0 ? scene.gravity.magnitude : kStandardGravity_m_s2));
-  dampingTime_s = scene.settings.dampingTime * lengths.fallTime_s;
+  dampingTime_s = scene.settings.stiffnessDamping * lengths.fallTime_s;
   lengths.contactError_m = tuning::kFirstContactError * lengths.blockHeight_m;
   lengths.partingGap_m = tuning::kPartingGap * lengths.blockHeight_m;
   chooseStiffness(*this);

@@ -61,7 +61,7 @@ StaticScene rigidTower(MoveRun& run, const Simulation& simulation) {
 
 // Whether all but the held block are at rest, and have been since the phase began.
 bool othersRest(const MoveRun& run, const Simulation& simulation) {
-  const double needed_s = simulation.scene.settings.restTime * restTimeScale_s(simulation);
+  const double needed_s = simulation.scene.settings.sleepTime * restTimeScale_s(simulation);
   if (run.phase_s < needed_s) return false;
   for (std::size_t b = 0; b < simulation.restTime_s.size(); ++b) {
     if (blockId(b) != run.draw.hand.block && simulation.restTime_s[b] < needed_s) return false;

@@ -36,8 +36,8 @@ double fastestRigidCorner(const Simulation& simulation, std::size_t b) {
 void updateSleepTimer(Simulation& simulation, std::size_t b) {
   const Settings& settings = simulation.scene.settings;
   SleepWindow& window = simulation.engine->sleep.windows[b];
-  const double slow = settings.restSpeed * speedScale_m_s(simulation);
-  const bool ends = window.age_s + settings.frame_s >= settings.restTime * restTimeScale_s(simulation);
+  const double slow = settings.sleepSpeed * speedScale_m_s(simulation);
+  const bool ends = window.age_s + settings.frame_s >= settings.sleepTime * restTimeScale_s(simulation);
   if (!ends && fastestRigidCorner(simulation, b) < slow) {  // the common case, without computing the rigid motion
     simulation.restTime_s[b] += settings.frame_s;
     window.age_s += settings.frame_s;
@@ -53,9 +53,9 @@ void updateSleepTimer(Simulation& simulation, std::size_t b) {
   }
   simulation.restTime_s[b] += settings.frame_s;
   window.age_s += settings.frame_s;
-  if (window.age_s < settings.restTime * restTimeScale_s(simulation)) return;
+  if (window.age_s < settings.sleepTime * restTimeScale_s(simulation)) return;
   const double change = (motion.velocity - window.velocity).norm() + arm * (motion.spin - window.spin).norm();
-  if (change > settings.restImbalance * simulation.scene.gravity.magnitude * window.age_s) simulation.restTime_s[b] = 0.0;
+  if (change > settings.sleepImbalance * simulation.scene.gravity.magnitude * window.age_s) simulation.restTime_s[b] = 0.0;
   begin();
 }
 
@@ -94,7 +94,7 @@ bool mayBeHit(const Simulation& simulation, std::size_t at, std::int32_t awake, 
 
 double restNeeded(const Simulation& simulation) {
   return simulation.scene.settings.sleep == Sleep::report ? simulation.scene.settings.frame_s
-                                                          : simulation.scene.settings.restTime * restTimeScale_s(simulation);
+                                                          : simulation.scene.settings.sleepTime * restTimeScale_s(simulation);
 }
 
 void fallAsleep(Simulation& simulation, std::size_t b) {

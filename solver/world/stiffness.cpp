@@ -254,7 +254,7 @@ double stableSpectralRadius(Method method, double step_s, double dampingTime_s, 
 
 double impactDepth_m(const Settings& settings, double tolerance_m, double blockHeight_m) {
   const double usual_m = kBlockTolerance_m * (blockHeight_m / kBlockHeight_m);
-  return settings.impactPenetration * std::max(tolerance_m, usual_m);
+  return settings.impactDepth * std::max(tolerance_m, usual_m);
 }
 
 }  // namespace springtower

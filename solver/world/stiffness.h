@@ -42,7 +42,7 @@ Stiffness stiffnessForTolerance(const LoadEstimate& loads, double tolerance_m);
 double stableStep(Method method, double spectralRadius, double dampingTime_s, double margin);
 double stableSpectralRadius(Method method, double step_s, double dampingTime_s, double margin);
 
-/// Target depth of an impact, m, for a tolerance in force: settings.impactPenetration tolerances. Tolerances refer to resting
+/// Target depth of an impact, m, for a tolerance in force: settings.impactDepth tolerances. Tolerances refer to resting
 /// contacts; one below the default does not stiffen impacts, as that would cost steps in proportion.
 double impactDepth_m(const Settings& settings, double tolerance_m, double blockHeight_m);
 

@@ -55,9 +55,9 @@ TEST(Settings, EachNumberIsHeldToBothEndsOfItsRange) {
 
 TEST(Settings, ComplaintNamesSourceKeyFoundAndAllowed) {
   Settings settings;
-  settings.stepMargin = 1.5;
+  settings.stabilitySafety = 1.5;
   EXPECT_THAT([&] { checkSettings(settings, "command line"); },
-              ThrowsMessage<InputError>("command line: step_margin: found 1.5, allowed 0.05 to 1"));
+              ThrowsMessage<InputError>("command line: stability_safety: found 1.5, allowed 0.05 to 1"));
   settings = {};
   settings.tolerance_m = -1e-5;
   EXPECT_THAT([&] { checkSettings(settings, "command line"); },
@@ -66,6 +66,41 @@ TEST(Settings, ComplaintNamesSourceKeyFoundAndAllowed) {
   settings.substeps = -1;
   EXPECT_THAT([&] { checkSettings(settings, "command line"); },
               ThrowsMessage<InputError>("command line: substeps: found -1, allowed 0 to 100000"));
+}
+
+TEST(Settings, EachFormerKeyStandsForOneKeyOfTheTable) {
+  std::set<std::string_view> keys;
+  for (const SettingRow& row : settingTable()) keys.insert(row.key);
+  std::set<std::string_view> renamed;
+  std::set<std::string_view> former;
+  for (const SettingAlias& alias : settingAliases()) {
+    EXPECT_TRUE(keys.contains(alias.key)) << alias.key;
+    EXPECT_FALSE(keys.contains(alias.formerKey)) << alias.formerKey;
+    EXPECT_TRUE(renamed.insert(alias.key).second) << alias.key;
+    EXPECT_TRUE(former.insert(alias.formerKey).second) << alias.formerKey;
+    EXPECT_EQ(formerKeyOf(alias.key), alias.formerKey);
+  }
+  EXPECT_EQ(renamed.size(), 9U) << "an alias that is dropped breaks the scene files of users";
+  EXPECT_EQ(formerKeyOf("maxwell_ratio"), "viscoelastic_ratio");
+  EXPECT_EQ(formerKeyOf("substeps"), "");
+}
+
+// Files have one name for a method in all versions; the name of the field is read as well.
+TEST(Settings, MethodsAreReadByTwoNamesAndWrittenByOne) {
+  const std::pair<Method, std::pair<std::string_view, std::string_view>> cases[] = {
+      {Method::implicit, {"implicit", "bdf2"}},
+      {Method::implicitEigen, {"implicit-eigen", "bdf2-eigen"}},
+      {Method::report, {"report", "legacy-2003"}}};
+  for (const auto& [method, names] : cases) {
+    const auto& [written, alias] = names;
+    EXPECT_EQ(nameOf(method), written);
+    EXPECT_EQ(methodFromName(written, "test"), method);
+    EXPECT_EQ(methodFromName(alias, "test"), method);
+    EXPECT_TRUE(isNameOf(written, method));
+    EXPECT_TRUE(isNameOf(alias, method));
+    EXPECT_FALSE(isNameOf(alias, Method::xpbd));
+  }
+  EXPECT_FALSE(isNameOf("", Method::xpbd));
 }
 
 TEST(Settings, NamesReadBackAsTheyAreWritten) {
@@ -83,8 +118,9 @@ TEST(Settings, NamesReadBackAsTheyAreWritten) {
 TEST(Settings, UnknownNamesListWhatIsAllowed) {
   EXPECT_THAT(
       [] { methodFromName("euler", "--method"); },
-      ThrowsMessage<InputError>("--method: found 'euler', allowed implicit, implicit-euler, implicit-eigen, semi-implicit-euler, "
-                                "midpoint, runge-kutta-4, report, rigid-pgs, rigid-lcp, xpbd or auto"));
+      ThrowsMessage<InputError>("--method: found 'euler', allowed implicit (also: bdf2), implicit-euler, implicit-eigen (also: "
+                                "bdf2-eigen), semi-implicit-euler, midpoint, runge-kutta-4, report (also: legacy-2003), "
+                                "rigid-pgs, rigid-lcp, xpbd or auto"));
   EXPECT_THAT([] { inertiaFromName("", "--inertia"); },
               ThrowsMessage<InputError>("--inertia: found '', allowed cuboid or lumped"));
   EXPECT_THAT([] { sleepFromName("o\nn", "s.toml"); },

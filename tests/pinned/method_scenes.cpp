@@ -54,7 +54,7 @@ std::vector<PinnedScene> pinnedMethods() {
   add("FixedSubsteps", [](Settings s) { return s.substeps = 200, s.method = Method::semiImplicitEuler, s; });
   add("WithoutContinuousTests", [](Settings s) { return s.continuousTests = false, s; });
   add("FineTolerance", [](Settings s) { return s.tolerance_m = 1e-5, s; });
-  add("SoftAndUndamped", [](Settings s) { return s.tolerance_m = 2e-4, s.dampingTime = 0.0, s.viscoelasticRatio = 0.0, s; });
+  add("SoftAndUndamped", [](Settings s) { return s.tolerance_m = 2e-4, s.stiffnessDamping = 0.0, s.maxwellRatio = 0.0, s; });
   add("LongFrames", [](Settings s) { return s.frame_s = 1.0 / 30.0, s; });
   return scenes;
 }

@@ -14,7 +14,7 @@ Simulation ringingBlock(Inertia inertia, Method method, double step_s, int steps
   Scene scene = oneBlockScene(false);
   scene.gravity.magnitude = 0.0;
   scene.settings.inertia = inertia;
-  scene.settings.dampingTime = 0.0;
+  scene.settings.stiffnessDamping = 0.0;
   setSteps(scene.settings, method, step_s, steps);
   Simulation simulation(scene);
   setSprings(simulation.model, 0, 1.0, kBlockHeight_m, 0.0);

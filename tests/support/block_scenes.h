@@ -15,7 +15,7 @@ inline void setSteps(Settings& settings, Method method, double step_s, int steps
   settings.frame_s = step_s * steps;
   settings.substeps = steps;
   settings.tolerance_m = kBlockTolerance_m;
-  settings.forceUnstable = true;
+  settings.allowUnstable = true;
 }
 
 /// One block without gravity, floor or dashpots, whose stiffest mode has the angular frequency `omega` (rad/s).

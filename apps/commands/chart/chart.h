@@ -42,7 +42,7 @@ constexpr std::string_view nameOf(ChartScene scene) {
   return kChartSceneNames[static_cast<std::size_t>(scene)];
 }
 
-/// What is asked of a method's result; a small value is a good one.
+/// What is measured of a method's result; a small value is a good one.
 enum class ChartMeasure { penetration, compression, strain, creep, jitter, imbalance, energy, error };
 inline constexpr std::size_t kChartMeasures = 8;
 
@@ -69,10 +69,10 @@ constexpr std::string_view nameOf(Peer peer) {
   return kPeerNames[static_cast<std::size_t>(peer)];
 }
 
-/// The knob by which a method trades speed for accuracy.
+/// The parameter by which a method trades speed for accuracy.
 enum class Knob { tolerance, substeps };
 
-/// One point of a chart: a method at one setting of its knob.
+/// One point of a chart: a method at one value of its parameter.
 struct ChartCase {
   ChartScene scene = ChartScene::uniform;
   Method method = Method::semiImplicitEuler;
@@ -148,7 +148,7 @@ constexpr bool isInMotion(ChartScene scene) {
          scene == ChartScene::slide || scene == ChartScene::heap || scene == ChartScene::thrown;
 }
 
-/// Whether a scene is one of the kind that comes to rest, so that a resting tolerance can be asked of it.
+/// Whether a scene is one of the kind that comes to rest, so that it can be held to a tolerance at rest.
 constexpr bool comesToRest(ChartScene scene) {
   return scene != ChartScene::pull && scene != ChartScene::collapse && scene != ChartScene::spin;
 }

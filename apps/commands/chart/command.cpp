@@ -34,9 +34,9 @@ constexpr std::string_view kChartExamples =
 (it leans more than it can stand), spin (one block in flight), heavy-light (every other row ten times as heavy); not charted:
 holes (blocks missing), lean (9 degrees), tall (36 rows), slide (over the floor), heap (eight fall askew), thrown (two meet)
 
-Each method turns its own knob: a tolerance, or steps of a frame. Accuracy is measured first, cases side by side; then the
-speed, each case alone and by turns. A method that falls, diverges or times out is a result and is named on the chart. A run
-that was broken off goes on where it was.
+Each method is swept over its own parameter: a tolerance, or steps of a frame. Accuracy is measured first, cases side by side;
+then the speed, each case alone and by turns. A method that falls, diverges or times out is a result and is named on the chart.
+A run that was broken off resumes where it was.
 
 examples:
   springtower chart --quick --out quick              a look in less than a minute
@@ -68,7 +68,9 @@ std::vector<ChartScene> scenesOf(const ChartCommand& command) {
 std::vector<Method> methodsOf(const ChartCommand& command) {
   std::vector<Method> methods;
   for (const std::string& name : command.methods) {
-    if (name != nameOf(Peer::bullet) && name != nameOf(Peer::ode)) methods.push_back(methodFromName(name, "--methods"));
+    if (name == nameOf(Peer::bullet) || name == nameOf(Peer::ode)) continue;
+    const Method method = methodFromName(name, "--methods");
+    if (std::find(methods.begin(), methods.end(), method) == methods.end()) methods.push_back(method);
   }
   if (!command.methods.empty()) return methods;
   if (command.automatic) {
@@ -80,7 +82,7 @@ std::vector<Method> methodsOf(const ChartCommand& command) {
           Method::rungeKutta4, Method::report,        Method::rigidPgs,      Method::rigidLcp,          Method::xpbd};
 }
 
-// Those that are asked for must be there; those that are not there are else left out.
+// Those that are named must be there; without names, those that are not there are left out.
 std::vector<Peer> peersOf(const ChartCommand& command) {
   std::vector<Peer> peers;
   for (const Peer peer : {Peer::bullet, Peer::ode}) {
@@ -154,7 +156,7 @@ void printScene(const Chart& chart, ChartScene scene) {
 
 Method mappedMethod(const std::string& name) {
   const std::vector<Method> mapped = mappedMethods();
-  const auto found = std::find_if(mapped.begin(), mapped.end(), [&](Method method) { return nameOf(method) == name; });
+  const auto found = std::find_if(mapped.begin(), mapped.end(), [&](Method method) { return isNameOf(name, method); });
   if (found != mapped.end()) return *found;
   std::vector<std::string_view> names;
   names.reserve(mapped.size());
@@ -202,16 +204,20 @@ CLI::App* defineChart(CLI::App& program, ChartCommand& command) {
       ->type_name("FILE.csv");
   chart->add_option("--out", command.out, "writes into this folder (default chart)")->type_name("DIR");
   chart->add_flag("--quick", command.quick, "small towers, few cases and short samples: less than a minute");
-  chart->add_flag("--long", command.unlimited, "no case is broken off and every sample has all its frames: hours")
-      ->excludes("--quick", "--case-limit");
+  CLI::Option* unlimited =
+      chart->add_flag("--no-time-limit", command.unlimited, "no case is broken off and every sample has all its frames: hours")
+          ->excludes("--quick", "--case-limit");
   chart->add_flag("--auto", command.automatic,
                   "instead: what method auto takes in six scenes that are not charted, and its cost beside the best's");
-  chart->add_flag("--fresh", command.fresh, "measures everything again, also what an earlier run has left in the folder");
+  CLI::Option* noResume =
+      chart->add_flag("--no-resume", command.fresh, "measures everything again, also what an earlier run has left in the folder");
   chart
       ->add_flag("--maps", command.maps,
                  "instead: where each method is stable, over step and stiffness and over step and rows; every method but "
                  "implicit-eigen, or --methods; --seconds (default 1) and --case-limit (default 5) as above")
-      ->excludes("--auto", "--long", "--fresh", "--scenes", "--rows", "--samples", "--peers");
+      ->excludes("--auto", "--no-time-limit", "--no-resume", "--scenes", "--rows", "--samples", "--peers");
+  addFormerFlag(*chart, "--long", unlimited, command.unlimited);
+  addFormerFlag(*chart, "--fresh", noResume, command.fresh);
   wrapDescriptions(*chart);
   chart->footer(std::string(kChartExamples));
   return chart;
@@ -236,7 +242,7 @@ int executeChart(const ChartCommand& command) {
   }
   makeOutputFolder(command.out);
   const std::string resume = (std::filesystem::path(command.out) / "chart.json").string();
-  // What an earlier run has measured stays, and so do scenes that this one is not asked for.
+  // What an earlier run has measured stays, and so do scenes that this one does not measure.
   if (!command.fresh) chart.results = readChartJson(resume, chart);
 
   // A scene is taken over from an earlier run only as a whole, as its cases were timed by turns.

@@ -11,7 +11,7 @@ class App;
 
 namespace springtower {
 
-/// What the command line of `springtower chart` asks for.
+/// Options of `springtower chart`.
 struct ChartCommand {
   std::vector<std::string> scenes;
   std::vector<std::string> methods;
@@ -33,7 +33,7 @@ CLI::App* defineChart(CLI::App& program, ChartCommand& command);
 
 /// Measures every case, scene by scene, and writes chart.json, chart.csv, the charts and index.md into the folder of `--out`.
 /// What an earlier run with the same build and limits has left there is not measured again, what another has left is refused
-/// unless `--fresh`. With `--maps` stability maps instead: maps.csv, the maps and maps.md. Returns the exit code 0. Throws
+/// unless `--no-resume`. With `--maps` stability maps instead: maps.csv, the maps and maps.md. Returns the exit code 0. Throws
 /// InputError.
 int executeChart(const ChartCommand& command);
 

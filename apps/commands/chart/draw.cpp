@@ -104,7 +104,7 @@ double railOf(const Chart& chart, ChartScene scene, ChartMeasure measure) {
   return 3.0 * most;
 }
 
-// More passes over the contacts are a second knob, and points of their own.
+// More passes over the contacts are a second parameter, and points of their own.
 std::string lineOf(const ChartCase& what) {
   const bool second = what.peer == Peer::none && what.iterations > 0;
   return std::string(methodOf(what)) + (second ? ", more passes" : "");
@@ -121,7 +121,7 @@ void addResults(const Chart& chart, ChartScene scene, ChartMeasure measure, Plot
       if (plot.lines.empty() || plot.lines.back().name != name) {
         plot.lines.push_back({name, {}, Marker::filled});
         plot.lines.back().style = styleOf(result.what);
-        plot.lines.back().joined = result.what.peer == Peer::none && result.what.iterations == 0;  // two knobs make no line
+        plot.lines.back().joined = result.what.peer == Peer::none && result.what.iterations == 0;  // two parameters make no line
       }
       PlotLine& line = plot.lines.back();
       if (drawn(result, measure)) {
@@ -275,7 +275,7 @@ std::vector<std::pair<std::string, Plot>> chartPlots(const Chart& chart) {
 
 void writeChartIndex(std::ostream& stream, const Chart& chart, const std::vector<std::string>& names) {
   stream
-      << "# Speed against accuracy\n\nEvery method on the same scenes, each with its own knob. All figures are in "
+      << "# Speed against accuracy\n\nEvery method on the same scenes, each with its own parameter. All figures are in "
          "[chart.csv](chart.csv).\n\n"
       << footnote(chart.provenance) << "\n\n## The fastest method within a tolerance\n\n"
       << "No penetration, no compression of a row and no creep above it, and the right verdict; ms of processor time a frame.\n\n"

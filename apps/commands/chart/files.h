@@ -8,7 +8,7 @@
 
 namespace springtower {
 
-/// Everything measured so far, for a later run to go on from and for other programs to read.
+/// Everything measured so far, for a later run to resume from and for other programs to read.
 void writeChartJson(std::ostream& stream, const Chart& chart);
 
 /// The results that a file of an earlier run holds; empty where there is no such file. Throws InputError for a file that is not a

@@ -33,8 +33,8 @@ Scene sceneOf(Method method, int rows, double tolerance_m, int steps) {
   scene.settings.sleep = Sleep::off;
   scene.settings.tolerance_m = tolerance_m;
   scene.settings.substeps = steps;
-  scene.settings.forceUnstable = true;
-  scene.settings.dampingTime = 0.0;
+  scene.settings.allowUnstable = true;
+  scene.settings.stiffnessDamping = 0.0;
   return scene;
 }
 

@@ -65,7 +65,7 @@ ParticleArray convergedEnd(const ChartCase& what, const ChartLimits& limits) {
     finest.method = Method::rungeKutta4;
   }
   Scene scene = sceneOf(finest, limits);
-  if (what.knob == Knob::tolerance) scene.settings.stepMargin /= kFinerSteps;
+  if (what.knob == Knob::tolerance) scene.settings.stabilitySafety /= kFinerSteps;
   Simulation simulation(scene);
   const double end_s = timesOf(what.scene, limits).end_s - 0.5 * scene.settings.frame_s;
   while (simulation.time_s < end_s) stepFrame(simulation);
@@ -81,7 +81,7 @@ double imbalanceFromMomentum(const Simulation& simulation, const ParticleArray& 
   return largest / (simulation.scene.settings.frame_s * simulation.scene.gravity.magnitude);
 }
 
-// A case on its way: its simulation, what is known of its accuracy so far, and its times.
+// A case on its way: its simulation, its accuracy so far, and its times.
 class ChartRun {
  public:
   ChartRun(const ChartCase& what, const ChartLimits& limits)

@@ -15,7 +15,7 @@ std::vector<Peer> peersHere();
 /// Another engine at work on a scene, in a process of its own.
 class PeerProcess {
  public:
-  /// Starts it with a scene and a setting of its knobs. Throws InputError when the program cannot be started.
+  /// Starts it with a scene and values of its parameters. Throws InputError when the program cannot be started.
   PeerProcess(const ChartCase& what, const Scene& scene);
   PeerProcess(const PeerProcess&) = delete;
   PeerProcess& operator=(const PeerProcess&) = delete;

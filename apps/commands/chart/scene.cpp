@@ -74,7 +74,7 @@ const std::vector<Sweep>& sweeps() {
   return all;
 }
 
-// Other engines: as they come, then their own knobs. Our own iterating methods have the second knob too.
+// Other engines: with their defaults, then their own parameters. Our own iterating methods have the second parameter too.
 struct StepsAndIterations {
   double substeps;
   int iterations;

@@ -35,7 +35,7 @@ std::optional<bool> expectedToStand(ChartScene scene);
 int pulledBlock(ChartScene scene, const Scene& blocks);
 
 /// A hand that pulls one block, as far as a force that holds for a frame can, at a steady speed (proportional and integral
-/// control); engines that know no hand of ours (solver/hand/grip) know a force.
+/// control); engines without our hand (solver/hand/grip) take a force.
 struct SteadyPull {
   int block = -1;  ///< -1: nobody pulls
   Vec3 direction = Vec3::UnitX();

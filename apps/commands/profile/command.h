@@ -11,7 +11,7 @@ class App;
 
 namespace springtower {
 
-/// What `springtower profile` was asked for. Empty lists stand for the defaults, which the help names.
+/// Options of `springtower profile`. Empty lists stand for the defaults, which the help names.
 struct ProfileCommand {
   std::vector<std::string> rows;
   std::vector<std::string> scenes;

@@ -9,7 +9,7 @@
 
 namespace springtower {
 
-/// Everything a profile knows, as JSON; numbers are written in full.
+/// All figures of a profile, as JSON; numbers are written in full.
 void writeProfileJson(std::ostream& stream, const Profile& profile);
 
 /// Reads such a file. Throws InputError naming the file and what is wrong with it.

@@ -13,7 +13,7 @@ class App;
 
 namespace springtower {
 
-/// What `springtower run` was asked for. Empty options leave what the scene says.
+/// Options of `springtower run`. Empty options leave what the scene says.
 struct RunCommand {
   std::string scene;
   std::optional<double> seconds;
@@ -38,8 +38,8 @@ CLI::App* defineRun(CLI::App& program, RunCommand& command);
 /// The scene with what the command line says put over it. Throws InputError.
 Scene sceneOf(const RunCommand& command);
 
-/// Simulates, writes the files asked for and prints a table. Returns the exit code. Throws InputError for what is wrong with the
-/// input or the names of the files, before anything is simulated, and DivergenceError; poses up to then are kept.
+/// Simulates, writes the files that are named and prints a table. Returns the exit code. Throws InputError for what is wrong with
+/// the input or the names of the files, before anything is simulated, and DivergenceError; poses up to then are kept.
 int executeRun(const RunCommand& command);
 
 }  // namespace springtower

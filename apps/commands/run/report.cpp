@@ -78,7 +78,7 @@ std::string millimetres(const std::optional<double>& metres, std::string_view ot
 }
 
 void row(std::string_view name, std::string_view value) {
-  fmt::print("  {:<26}{}\n", name, value);
+  fmt::print("  {:<34}{}\n", name, value);
 }
 
 }  // namespace
@@ -165,8 +165,8 @@ void printResult(const Simulation& simulation, const RunResult& result, int thre
   row("bottom row compressed", millimetres(result.bottomRowCompression_m, ""));
   row("creep", millimetres(result.creep_m, "not settled"));
   row("jitter, last second", fmt::format("{:.3g} mm/s", kMillimetres * result.jitter_m_s));
-  row("top against rigid blocks", fmt::format("{:+.3g} mm", kMillimetres * result.topHeightError_m));
-  row("largest rise of energy",
+  row("height error against rigid stack", fmt::format("{:+.3g} mm", kMillimetres * result.topHeightError_m));
+  row("max energy gain in a frame",
       result.maxEnergyRise ? fmt::format("{:.2g} of the energy at the start", *result.maxEnergyRise) : "unknown");
   row("simulated",
       fmt::format("{:.4g} s in {:.3g} s, {} thread{}", result.simulated_s, result.wall_s, threads, threads == 1 ? "" : "s"));

@@ -14,9 +14,10 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::string_view kSettingsHelp =
-    R"help(A scene file sets these in its [settings]; README says what a scene file looks like. With --all follow the numbers that no
-scene sets: thresholds, caps and safety factors of the engine, each with what it is for and what it rests on. Lengths are in h, the
-height of the scene's lowest block, speeds in sqrt(g h), times in sqrt(h / g).
+    R"help(A scene file sets these in its [settings]; README says what a scene file looks like. A key that was called otherwise formerly
+may be given by that name. With --all follow the numbers that no scene sets: thresholds, caps and safety factors of the engine,
+each with what it is for and what it rests on. Lengths are in h, the height of the scene's lowest block, speeds in sqrt(g h),
+times in sqrt(h / g).
 
 examples:
   springtower settings
@@ -32,12 +33,14 @@ Json settingsJson() {
   Json rows = Json::array();
   for (const SettingRow& row : settingTable()) {
     const std::optional<double> value = numberOf(Settings{}, row);
+    const std::string_view former = formerKeyOf(row.key);
     rows.push_back({{"key", row.key},
                     {"unit", row.unit},
                     {"default", value ? Json(*value) : Json(nullptr)},
                     {"least", row.least},
                     {"most", row.most},
-                    {"what", row.reason}});
+                    {"what", row.reason},
+                    {"formerly", former.empty() ? Json(nullptr) : Json(former)}});
   }
   return rows;
 }
@@ -59,8 +62,9 @@ Json tuningJson() {
 void printSettings() {
   fmt::print("{:<26} {:>10}  {:<24} {:<14} {}\n", "key", "default", "allowed", "unit", "what");
   for (const SettingRow& row : settingTable()) {
-    fmt::print("{:<26} {:>10}  {:<24} {:<14} {}\n", row.key, defaultOf(row), fmt::format("{:g} to {:g}", row.least, row.most),
-               row.unit, row.reason);
+    const std::string_view former = formerKeyOf(row.key);
+    fmt::print("{:<26} {:>10}  {:<24} {:<14} {}{}\n", row.key, defaultOf(row), fmt::format("{:g} to {:g}", row.least, row.most),
+               row.unit, row.reason, former.empty() ? "" : fmt::format("; formerly {}", former));
   }
 }
 

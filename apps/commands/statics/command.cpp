@@ -21,20 +21,21 @@
 namespace springtower {
 namespace {
 
-// A programme's time grows with the cube of this.
+// The time of a linear program grows with the cube of this.
 constexpr std::size_t kMaxStaticBlocks = 1000;
 
 constexpr std::string_view kHelp =
     R"help(Blocks are taken as rigid, with Coulomb friction where faces touch: no motion is simulated. The scene stands if some
 forces in the contacts balance every block. Its margin is the angle by which gravity may turn towards the worst side before
-none do; a negative one tells how far gravity had to turn for a scene that falls to stand. The statics of rigid blocks is an
+none do; a negative one is how far gravity has to turn for a scene that falls to stand. The statics of rigid blocks is an
 upper bound where friction is at its limit. Where a block can lean a little until it touches another it is taken to do so.
 
 columns of the table:
-  carries     what lies on the block presses with; of all forces that balance, those with the least sum of squares
-  least, greatest   of any forces that balance: three supports may share a load in many ways
-  from above  nothing: no block lies over it; loose: the one over it does not touch it, and the gap between them; loaded
-  if taken out   what the others do then, and their margin
+  load        normal force from what lies on the block; of all forces that balance, those with the least sum of squares
+  min, max    least and greatest load of any forces that balance: three supports may share a load in many ways
+  above       nothing: no block lies over it; loose: the one over it does not touch it, and the gap between them; loaded
+  if removed  what the others do then, and their margin
+--contacts prints for each contact the normal force, friction, where they act, and the share of the friction limit in use.
 examples:
   springtower statics tower:18
   springtower statics "(111)-(1L1)-(010)" --contacts      loose blocks carry nothing

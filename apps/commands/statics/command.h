@@ -14,7 +14,7 @@ class App;
 
 namespace springtower {
 
-/// What `springtower statics` was asked for. Empty options leave what the scene says.
+/// Options of `springtower statics`. Empty options leave what the scene says.
 struct StaticsCommand {
   std::string scene;  ///< as for `run`; or a .jsonl file or - for a list of towers
   std::optional<double> friction;

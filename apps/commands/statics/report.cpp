@@ -53,8 +53,8 @@ void printBlocks(const Scene& scene, const StaticsAnswer& answer) {
   const bool removals = !answer.removals.empty();
   if (!loads && !removals) return;
   fmt::print("\n{:>9}", "block");
-  if (loads) fmt::print("{:>10}{:>10}{:>10}{:>10}   {:<14}", "weight N", "carries N", "least", "greatest", "from above");
-  if (removals) fmt::print("   {:<22}{:>9}{:>9}", "if taken out", "tilt deg", "towards");
+  if (loads) fmt::print("{:>10}{:>10}{:>10}{:>10}   {:<14}", "weight N", "load N", "min", "max", "above");
+  if (removals) fmt::print("   {:<22}{:>9}{:>9}", "if removed", "tilt deg", "towards");
   fmt::print("\n");
   for (std::size_t b = 0; b < scene.blocks.size(); ++b) {
     fmt::print("{:>9}", placeOf(scene, blockId(b)));
@@ -76,7 +76,7 @@ void printBlocks(const Scene& scene, const StaticsAnswer& answer) {
 }
 
 void printContacts(const Scene& scene, const StaticsAnswer& answer) {
-  fmt::print("\n{:>9}{:>9}{:>12}{:>12}{:>10}{:>10}{:>10}{:>15}\n", "upper", "lower", "presses N", "pushes N", "x mm", "y mm",
+  fmt::print("\n{:>9}{:>9}{:>12}{:>12}{:>10}{:>10}{:>10}{:>15}\n", "upper", "lower", "normal N", "friction N", "x mm", "y mm",
              "z mm", "friction used");
   for (const ContactLoad& contact : answer.loads.contacts) {
     const double sideways = std::sqrt(std::max(0.0, contact.force.squaredNorm() - contact.normal_n * contact.normal_n));
@@ -181,10 +181,10 @@ void printStatics(const Scene& scene, const StaticsAnswer& answer, bool contacts
     line("forces", answer.loads.anyOfMany ? "any that balance" : "of those that balance, the ones of least squares");
   }
   for (const PullAnswer& pull : answer.pulls) {
-    const std::string limit = !pull.limit_n               ? "no force: the scene falls"
-                              : std::isinf(*pull.limit_n) ? "any force"
-                                                          : fmt::format("{:.4f} N", *pull.limit_n);
-    line("pull", fmt::format("block {} along {} bears up to {}", placeOf(scene, pull.block), pull.axis, limit));
+    const std::string limit = !pull.limit_n               ? "none, the scene falls"
+                              : std::isinf(*pull.limit_n) ? "unlimited"
+                                                          : fmt::format("at most {:.4f} N", *pull.limit_n);
+    line("pull", fmt::format("block {} along {}: {}", placeOf(scene, pull.block), pull.axis, limit));
   }
   printBlocks(scene, answer);
   if (contacts && !answer.loads.contacts.empty()) printContacts(scene, answer);

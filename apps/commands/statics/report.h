@@ -17,7 +17,7 @@ struct PullAnswer {
   std::optional<double> limit_n;
 };
 
-/// All that statics says of a scene; what was not asked for or has no meaning for a scene that falls is empty.
+/// All that statics says of a scene; what was not computed or has no meaning for a scene that falls is empty.
 struct StaticsAnswer {
   StaticScene statics;
   std::optional<StabilityMargin> margin;
@@ -37,7 +37,7 @@ nlohmann::ordered_json restJson(Rest rest, const std::optional<StabilityMargin>&
 /// All figures under the names that the README explains.
 nlohmann::ordered_json staticsJson(const Scene& scene, const StaticsAnswer& answer);
 
-/// Prints the verdict and a table of the blocks on standard output, and one of the contacts when asked for.
+/// Prints the verdict and a table of the blocks on standard output, and with `contacts` one of the contacts.
 void printStatics(const Scene& scene, const StaticsAnswer& answer, bool contacts);
 
 }  // namespace springtower

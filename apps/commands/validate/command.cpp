@@ -21,7 +21,7 @@ constexpr Range kValidateThreads{1.0, 1024.0, ""};
 
 constexpr std::string_view kValidateExamples = R"help(examples:
   springtower validate --out validation                 the short form, in less than two minutes
-  springtower validate --out validation --long          every tower of every set
+  springtower validate --out validation --full          every tower of every set
   springtower validate --out validation --only pull,tilt --check
 parts: verdicts, forces, pull, tilt, loose, scale, sleep, moves. A claim that fails is reported and is no error of the program; with
 --check the exit code is then 1.)help";
@@ -67,7 +67,8 @@ CLI::App* defineValidate(CLI::App& program, ValidateCommand& command) {
   validate->add_option("--out", command.out, "writes validation.md, validation.json and the figures into this folder")
       ->type_name("DIR")
       ->required();
-  validate->add_flag("--long", command.longForm, "every tower of every set, more seeds: many minutes");
+  CLI::Option* full = validate->add_flag("--full", command.longForm, "every tower of every set, more seeds: many minutes");
+  addFormerFlag(*validate, "--long", full, command.longForm);
   validate->add_option("--only", command.only, "some parts only (see below)")->delimiter(',')->type_name("NAME,...");
   validate->add_option("--oracle", command.oracle, "folder of the reference sets (default tests/data/oracle)")->type_name("DIR");
   validate->add_option("--scenes", command.scenes, "folder of the scene files (default scenes)")->type_name("DIR");

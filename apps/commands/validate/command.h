@@ -11,7 +11,7 @@ class App;
 
 namespace springtower {
 
-/// What `springtower validate` was asked for.
+/// Options of `springtower validate`.
 struct ValidateCommand {
   std::string out;
   std::vector<std::string> only;

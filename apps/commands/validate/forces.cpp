@@ -175,8 +175,8 @@ ValidationSection validateForces(const ValidationPlan& plan) {
 ValidationSection validatePulls(const ValidationPlan& plan) {
   ValidationSection section{
       "Pulling",
-      "A block is pulled at its centre along its length, an outer one sideways as well, by a force that grows by 1 % of what "
-      "friction bears a second. At first slip (0.05 mm against all that it touches) the force is friction times the sum of the "
+      "A block is pulled at its centre along its length, an outer one sideways as well, by a force that grows by 1 % of the "
+      "friction limit a second. At first slip (0.05 mm against all that it touches) the force is friction times the sum of the "
       "normal forces on it just before, and no more than statics allows. Friction times the normal forces is an upper bound: "
       "where light blocks turn with the one that is pulled less will do, and limit analysis at these normal forces says how "
       "much. Rows count from 1 at the bottom."};
@@ -201,10 +201,10 @@ ValidationSection validatePulls(const ValidationPlan& plan) {
     const double ratio = bears_n > 0.0 ? trial.force_n / bears_n : 0.0;
     section.claims.push_back(
         {pulled[i].name + (pulled[i].alone ? ": force over mu m g" : ": force over mu times normal forces"), "1 within 1 %",
-         trial.slipped ? fmt::format("{:.4f} ({:.4f} N; friction bears {:.4f})", ratio, trial.force_n, trial.limit_n / bears_n)
+         trial.slipped ? fmt::format("{:.4f} ({:.4f} N; friction limit {:.4f})", ratio, trial.force_n, trial.limit_n / bears_n)
                        : fmt::format("no slip at {:.3f} N", trial.force_n),
          trial.slipped && std::abs(ratio - 1.0) <= kSlipTolerance});
-    section.claims.push_back({pulled[i].name + ": force over what friction bears at these normal forces", "1 within 1 %",
+    section.claims.push_back({pulled[i].name + ": force over the friction limit at these normal forces", "1 within 1 %",
                               fmt::format("{:.4f}", trial.force_n / trial.limit_n),
                               trial.slipped && std::abs(trial.force_n / trial.limit_n - 1.0) <= kSlipTolerance});
     section.claims.push_back({pulled[i].name + ": force over what statics allows", "at most 1 (and 1 % of measuring)",

@@ -77,14 +77,14 @@ LooseCounts countLoose(const std::vector<UnevenTower>& towers, std::vector<std::
         counts.looseRight += block.simulated <= kNoLoad ? 1 : 0;
         if (block.simulated > kNoLoad) {
           notes.push_back(
-              fmt::format("seed {}: a block under a rigid gap of {:.4f} mm bears {:.3g} weights (penetration {:.4f} mm)",
+              fmt::format("seed {}: a block under a rigid gap of {:.4f} mm carries {:.3g} weights (penetration {:.4f} mm)",
                           tower.seed, 1e3 * block.gap_m, block.simulated, 1e3 * tower.penetration_m));
         }
       } else if (block.least > kJudgedLoad) {
         ++counts.loaded;
         counts.loadedRight += block.simulated > kNoLoad ? 1 : 0;
         if (block.simulated <= kNoLoad) {
-          notes.push_back(fmt::format("seed {}: a block that bears at least {:.3g} weights in statics bears nothing", tower.seed,
+          notes.push_back(fmt::format("seed {}: a block with a load of at least {:.3g} weights in statics has none", tower.seed,
                                       block.least));
         }
       } else {
@@ -96,7 +96,7 @@ LooseCounts countLoose(const std::vector<UnevenTower>& towers, std::vector<std::
   return counts;
 }
 
-// Largest gap of a rigid block that bears load all the same: what the tolerance does not resolve.
+// Largest gap of a rigid block that is loaded all the same: what the tolerance does not resolve.
 double largestClosedGap_m(const std::vector<UnevenTower>& towers) {
   double gap = 0.0;
   for (const UnevenTower& tower : towers) {
@@ -135,9 +135,9 @@ ValidationSection validateLoose(const ValidationPlan& plan) {
     const auto rested = std::count_if(towers.begin(), towers.end(), [](const UnevenTower& tower) { return tower.rested; });
     section.claims.push_back({name + "towers at rest within 20 s", fmt::format("all {}", towers.size()),
                               fmt::format("{}", rested), rested == std::ssize(towers)});
-    section.claims.push_back({name + "blocks under a clear gap bear nothing", "all",
+    section.claims.push_back({name + "blocks under a clear gap have no load", "all",
                               fmt::format("{} of {}", counts.looseRight, counts.loose), counts.looseRight == counts.loose});
-    section.claims.push_back({name + "blocks that must bear a load do", "all",
+    section.claims.push_back({name + "blocks that must have a load do", "all",
                               fmt::format("{} of {}", counts.loadedRight, counts.loaded), counts.loadedRight == counts.loaded});
     section.claims.push_back({name + "the rest, not judged", "reported",
                               fmt::format("{} blocks, {} of them without load", counts.rest, counts.restLoose)});

@@ -51,7 +51,7 @@ void writeValidationPage(std::ostream& stream, std::span<const ValidationSection
   const ClaimCounts counts = countClaims(sections);
   stream << "# Validation of Springtower\n\n";
   fmt::print(stream, "{} form: {} claims hold, {} fail; {} figures are reported without a limit.\n\n{}\n\n",
-             plan.longForm ? "Long" : "Short", counts.passed, counts.failed, counts.reported, footnote(provenance));
+             plan.longForm ? "Full" : "Short", counts.passed, counts.failed, counts.reported, footnote(provenance));
   if (counts.failed > 0) {
     stream << "## What fails\n\n| part | claim | tolerance | measured |\n|---|---|---|---|\n";
     for (const ValidationSection& section : sections) {

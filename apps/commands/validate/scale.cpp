@@ -23,7 +23,7 @@ struct Variant {
   double density;
 };
 
-// What a variant gives: verdicts of some towers, and how far the tower gives way, over block heights.
+// Results of a variant: verdicts of some towers, and by how much the tower yields, over block heights.
 struct Outcome {
   std::vector<std::string> verdicts;
   double penetration = 0.0;

@@ -30,7 +30,7 @@ struct Tilted {
   Scene scene;
   double margin_deg;
   double direction_deg;
-  bool frictionActive;       // with much friction it would bear more
+  bool frictionActive;       // with much friction the margin would be larger
   TiltTrial trial = {};      // with kFineTolerance_m
   TiltTrial softTrial = {};  // with the default tolerance
 };
@@ -110,9 +110,9 @@ ValidationSection validateTilts(const ValidationPlan& plan) {
       "Turning gravity",
       "Gravity turns by 0.1 degree a second towards the worst side that statics gives; the tower goes when "
       "a block has fallen (half a "
-      "height lower, half a width aside or turned by 5 degrees). Friction is active where the tower would "
-      "bear more if it had more; "
-      "statics is an upper bound there. Blocks that give way let a tower lean, so it goes earlier by an angle that shrinks "
+      "height lower, half a width aside or turned by 5 degrees). Friction is active where the margin would "
+      "be larger with more of it; "
+      "statics is an upper bound there. Elastic blocks let a tower lean, so it goes earlier by an angle that shrinks "
       "with the tolerance: what is judged is 0.01 mm, beside it stands the default."};
   std::vector<Tilted> towers = tiltedScenes(plan, plan.longForm ? 20 : 8);
   towers.push_back(tiltedScene("18 rows", towerScene(18)));

@@ -33,7 +33,7 @@ struct ValidationSection {
   double wall_s = 0.0;
 };
 
-/// What all sections are told.
+/// Options of all sections.
 struct ValidationPlan {
   bool longForm = false;  ///< every scene of every set; else a part that takes seconds
   std::string oracle;     ///< folder with the sets of towers and what statics says of them
@@ -57,7 +57,7 @@ ValidationSection validateMoves(const ValidationPlan& plan);
 /// How many blocks wake, and that what must fall falls.
 ValidationSection validateSleep(const ValidationPlan& plan);
 
-/// A section and the name by which the command line asks for it.
+/// A section and its name on the command line.
 struct ValidationPart {
   std::string_view name;
   ValidationSection (*run)(const ValidationPlan&);

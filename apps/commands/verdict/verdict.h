@@ -15,7 +15,7 @@ class App;
 
 namespace springtower {
 
-/// What `springtower verdict` was asked for.
+/// Options of `springtower verdict`.
 struct VerdictCommand {
   std::string file;  ///< - for standard input
   std::optional<double> seconds;
@@ -23,7 +23,7 @@ struct VerdictCommand {
   bool check = false;
 };
 
-/// One line of the input: a tower whose fate is asked for.
+/// One line of the input: a tower to be simulated.
 struct VerdictLine {
   std::size_t number = 0;  ///< of the line, from 1
   std::string id;

@@ -32,8 +32,8 @@ constexpr std::string_view kFooter = R"help(examples:
   springtower-viewer --headless --frames 60 --png out --overlay load
 mouse: left drag moves a block in the plane of the screen, right drag along the view; beside the blocks it goes round.
        Wheel and Q E W S A D turn the held block; shift looks round while the hand keeps it.
-keys:  space pause, n one frame, r reset, t slow motion, backspace undo, [ ] back and forth, o colours, f contact forces,
-       tab panels, p screenshot, v film, i writes what is seen and all poses, escape ends)help";
+keys:  space pause, n one frame, r reset, t slow motion, backspace undo, [ ] back and forth, o colour by, f contact forces,
+       tab panels, p screenshot, v record video, i writes what is seen and all poses, escape ends)help";
 
 struct Command {
   std::string scene = "tower:18";
@@ -90,7 +90,7 @@ void define(CLI::App& app, Command& c) {
   addWholeNumber(app, "--frames", c.frames, {1, 1e7, ""}, "frames to step without a window (default 60, or the whole replay)");
   addWholeNumber(app, "--png-every", c.every, {1, 1e7, ""}, "writes every Nth frame, and the last (default 1)");
   app.add_option("--png", c.png, "folder for pictures frame-00001.png ...")->type_name("DIR");
-  app.add_option("--video", c.files.film, "films into a file .mp4 or .gif (needs ffmpeg)")->type_name("FILE");
+  app.add_option("--video", c.files.film, "records a video, a file .mp4 or .gif (needs ffmpeg)")->type_name("FILE");
   app.add_option("--record", c.files.record, "writes the input of all frames at the end")->type_name("FILE");
   app.add_option("--replay", c.replay, "plays a recording, and says in which frame its states differ")->type_name("FILE");
   app.add_option("--report", c.files.report, "writes at the end what happened, as JSON; measures penetration")->type_name("FILE");

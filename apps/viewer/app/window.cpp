@@ -66,7 +66,7 @@ void onCursor(GLFWwindow* window, double x, double y) {
   pointerMoved(desk.viewer.controls, desk.viewer.session, at.x(), at.y());
 }
 
-// A pull along the view wants more room than the screen has below a block: while it lasts the pointer is hidden and has no
+// A pull along the view needs more room than the screen has below a block: while it lasts the pointer is hidden and has no
 // bounds. It comes back where it was.
 void boundPointer(Desk& desk) {
   Controls& controls = desk.viewer.controls;
@@ -220,17 +220,17 @@ void toggleFilm(Desk& desk) {
   if (desk.film) {
     desk.film->finish();
     desk.film.reset();
-    desk.viewer.message = "the film is written";
+    desk.viewer.message = "the video is written";
     return;
   }
   const std::string path = desk.files.film && desk.films == 0 ? *desk.files.film : numbered(desk, "film", desk.films + 1, ".mp4");
   desk.film = std::make_unique<Film>(path, desk.viewer.controls.viewport,
                                      static_cast<int>(std::lround(1.0 / desk.viewer.session.scene.settings.frame_s)));
   ++desk.films;
-  desk.viewer.message = "filming: " + path;
+  desk.viewer.message = "recording video: " + path;
 }
 
-// Files that cannot be written are told, not fatal: the game goes on.
+// Files that cannot be written are reported, not fatal: the game goes on.
 template <class Action>
 void tell(Desk& desk, const Action& action) {
   try {

@@ -10,9 +10,9 @@
 
 namespace springtower {
 
-/// Where the viewer writes, and what it was asked to write at the end.
+/// Where the viewer writes, and what it writes at the end.
 struct ViewerFiles {
-  std::string folder = "out";  ///< screenshots, films, recordings
+  std::string folder = "out";  ///< screenshots, videos, recordings
   std::optional<std::string> film;
   std::optional<std::string> record;
   std::optional<std::string> report;

@@ -26,8 +26,8 @@ struct Controls {
   bool right = false;
   bool middle = false;
   bool look = false;          ///< the look key is held
-  Hand hand;                  ///< what the hand holds and where it wants it
-  std::optional<Pick> hover;  ///< what the mouse is over while the hand is empty
+  Hand hand;                  ///< what the hand holds and where it moves it
+  std::optional<Pick> hover;  ///< what the mouse is over while nothing is held
 };
 
 /// The mouse has moved to a place, in pixels of the viewport.

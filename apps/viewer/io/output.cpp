@@ -84,7 +84,7 @@ Film::Film(const std::string& path, const Viewport& viewport, int framesPerSecon
   { OutputFile(path, "--video"); }  // a name that cannot be written is known now
   const std::string size = fmt::format("{}x{}", viewport.width, viewport.height);
   const std::string rate = std::to_string(framesPerSecond);
-  // A GIF takes at most 50 pictures a second and needs a palette of its own; most players of MP4 want even sizes.
+  // A GIF takes at most 50 pictures a second and needs a palette of its own; most players of MP4 need even sizes.
   const std::string filter = path.ends_with(".gif") ? "fps=25,split[a][b];[a]palettegen[p];[b][p]paletteuse"
                                                     : "scale=trunc(iw/2)*2:trunc(ih/2)*2,format=yuv420p";
   std::vector<std::string> words = {"ffmpeg", "-loglevel", "error", "-y", "-f", "rawvideo", "-pix_fmt", "rgb24", "-s",
@@ -104,7 +104,7 @@ Film::Film(const std::string& path, const Viewport& viewport, int framesPerSecon
   }
   close(ends[0]);
   pipe_ = fdopen(ends[1], "wb");
-  std::signal(SIGPIPE, SIG_IGN);  // an ffmpeg that ended shows when the film is finished
+  std::signal(SIGPIPE, SIG_IGN);  // an ffmpeg that ended shows when the video is finished
 }
 
 Film::~Film() {

@@ -19,7 +19,7 @@ void writeBlocksSeen(const std::string& path, const std::string& option, std::sp
 /// Whether the program ffmpeg is installed.
 bool ffmpegInstalled();
 
-/// A film that ffmpeg makes of images of one size: MP4 or GIF, by the name's ending.
+/// A video that ffmpeg makes of images of one size: MP4 or GIF, by the name's ending.
 class Film {
  public:
   /// Starts ffmpeg. Throws InputError when it is not installed or the name has another ending.
@@ -29,7 +29,7 @@ class Film {
   ~Film();
   /// Adds an image; one of another size is left out.
   void add(const Image& image);
-  /// Waits until the film is complete. Throws InputError when ffmpeg failed.
+  /// Waits until the video is complete. Throws InputError when ffmpeg failed.
   void finish();
 
  private:

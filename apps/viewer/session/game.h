@@ -36,7 +36,7 @@ struct Game {
   BlockId fallen = kFloor;            ///< over: a block that touches the floor
 };
 
-/// The row a block lies in, counted from the floor, or -1 when it does not lie flat on the height of a row. Rows are told by the
+/// The row a block lies in, counted from the floor, or -1 when it does not lie flat on the height of a row. Rows are found by the
 /// height of the block's centre, to within a third of its height.
 int rowOf(const Simulation& simulation, std::size_t block);
 
@@ -65,7 +65,7 @@ struct Hint {
 /// Hints for all blocks, [blocks].
 std::vector<Hint> hints(const Simulation& simulation, std::span<const ContactForce> contacts);
 
-/// What statics is asked about the tower without a block: the other blocks as they lie and what they touch now.
+/// The tower without a block, for statics: the other blocks as they lie and what they touch now.
 struct WithoutBlock {
   StaticsModel model;
   Vec3 gravity = -Vec3::UnitZ();  ///< unit

@@ -87,18 +87,18 @@ std::optional<std::uint64_t> undoFrame(const Session& session);
 void between(const Session& session, double share, ParticleArray& position);
 
 /// Turns passing time into frames of fixed length. The physics never waits for a picture: a slow picture is followed by several
-/// frames. When the machine cannot keep up, time is dropped and `speed` tells by how much.
+/// frames. When the machine cannot keep up, time is dropped, `kept` of it is left.
 struct Pacer {
-  double rate = 1.0;       ///< simulated over real time that is asked for: 1, or less for slow motion
+  double rate = 1.0;       ///< simulated over real time: 1, or less for slow motion
   double waiting_s = 0.0;  ///< simulated time that is due and not stepped yet, less than a frame after `due`
-  double wanted_s = 0.0;   ///< simulated time asked for, of late
+  double wanted_s = 0.0;   ///< simulated time that was due, of late
   double done_s = 0.0;     ///< and stepped, of late; both fade over a second
-  bool slow = false;       ///< whether the machine does not keep up: less than 95 % of what was asked for
+  bool slow = false;       ///< whether the machine does not keep up: less than 95 % of what was due
 
   /// How many frames are due after `elapsed_s` more real seconds, at most what takes `frame_ms` each for the time a picture may
   /// take (a tenth of a second in all, but at least one).
   int due(double elapsed_s, double frame_s, double frame_ms);
-  /// Simulated time over what was asked for, of late, 0..1.
+  /// Simulated time over what was due, of late, 0..1.
   [[nodiscard]] double kept() const { return wanted_s > 0.0 ? std::min(1.0, done_s / wanted_s) : 1.0; }
   /// Where between the last two frames the picture is, 0..1.
   [[nodiscard]] double share(double frame_s) const { return waiting_s / frame_s; }

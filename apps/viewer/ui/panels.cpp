@@ -25,7 +25,7 @@ ImU32 packed(const Colour& colour) {
 }
 
 void runPanel(Viewer& viewer) {
-  if (ImGui::Button(viewer.paused ? "go on" : "pause")) viewer.paused = !viewer.paused;
+  if (ImGui::Button(viewer.paused ? "resume" : "pause")) viewer.paused = !viewer.paused;
   ImGui::SameLine();
   if (ImGui::Button("step")) viewer.paused = viewer.once = true;
   ImGui::SameLine();
@@ -94,7 +94,7 @@ void handPanel(Viewer& viewer) {
   if (ImGui::SliderFloat("strength, N", &limit, 0.5F, 20.0F, "%.1f")) viewer.limit_n = static_cast<double>(limit);
   const Session& session = viewer.session;
   if (session.hold == Hold::none) {
-    text("the hand is empty");
+    text("nothing held");
     return;
   }
   constexpr std::array<const char*, 4> kHolds = {"", "free", "sticks", "slips"};
@@ -103,7 +103,7 @@ void handPanel(Viewer& viewer) {
 }
 
 void showPanel(Viewer& viewer) {
-  if (ImGui::BeginCombo("colours", std::string(kOverlayNames[static_cast<std::size_t>(viewer.overlay)]).c_str())) {
+  if (ImGui::BeginCombo("colour by", std::string(kOverlayNames[static_cast<std::size_t>(viewer.overlay)]).c_str())) {
     for (std::size_t i = 0; i < kOverlays; ++i) {
       const auto overlay = static_cast<Overlay>(i);
       if (ImGui::Selectable(std::string(kOverlayNames[i]).c_str(), overlay == viewer.overlay)) viewer.overlay = overlay;
@@ -181,8 +181,8 @@ void helpPanel() {
       "shift: look round while the hand keeps its block\n"
       "space pause, N one frame, R reset, T slow motion\n"
       "backspace takes the last move back, [ ] one frame back, forth\n"
-      "O colours, F contact forces, tab panels, P screenshot, V film\n"
-      "I writes what is seen and all poses, escape ends");
+      "O colour by, F contact forces, tab panels, P screenshot\n"
+      "V record video, I writes what is seen and all poses, escape ends");
 }
 
 void drawNotices(const Viewer& viewer) {
@@ -220,7 +220,7 @@ void drawHandForce(const Viewer& viewer) {
   drawBeside(viewer, index(held), fmt::format("{:.2f} N", session.gripForce.force.norm()), packed(holdColour(session.hold)));
 }
 
-// Asks about the block under the mouse, again once a second as the tower changes.
+// Computes the statics without the block under the mouse, again once a second as the tower changes.
 void askStatics(const Viewer& viewer, BlockId block, StaticsHint& statics) {
   constexpr std::uint64_t kAgain = 60;
   const Session& session = viewer.session;
@@ -249,8 +249,8 @@ void drawHint(const Viewer& viewer, StaticsHint& statics) {
   }
   const Hint hint = hints(viewer.session.simulation, viewer.session.contacts)[index(block)];
   drawBeside(viewer, index(block),
-             fmt::format("block {}: carries {:.2f} N, friction holds it with up to {:.2f} N{}\n{}", index(block), hint.load_n,
-                         hint.drag_n, hint.loose ? ", loose" : "", rest),
+             fmt::format("block {}: load {:.2f} N, friction at most {:.2f} N{}\n{}", index(block), hint.load_n, hint.drag_n,
+                         hint.loose ? ", loose" : "", rest),
              IM_COL32(255, 255, 255, 255));
 }
 
@@ -292,7 +292,7 @@ PanelWishes drawPanels(Viewer& viewer, PanelDraft& draft, bool filming) {
   if (section("files", false)) {
     wishes.screenshot = ImGui::Button("screenshot");
     ImGui::SameLine();
-    wishes.film = ImGui::Button(filming ? "end the film" : "film");
+    wishes.film = ImGui::Button(filming ? "end video" : "record video");
     ImGui::SameLine();
     wishes.recording = ImGui::Button("recording");
   }

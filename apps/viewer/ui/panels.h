@@ -6,17 +6,17 @@
 
 namespace springtower {
 
-/// What the user asked for in the panels that needs the window: done by whoever owns it.
+/// What the user chose in the panels that needs the window: done by its owner.
 struct PanelWishes {
   bool screenshot = false;
-  bool film = false;       ///< starts a film, or ends the one that runs
+  bool film = false;       ///< starts a video, or ends the one that is being recorded
   bool recording = false;  ///< writes what was played so far
 };
 
 /// What statics says of the tower without the block under the mouse; found beside the drawing, which does not wait for it.
 struct StaticsHint {
   BlockId block = kFloor;
-  std::uint64_t frame = 0;  ///< when it was asked
+  std::uint64_t frame = 0;  ///< when it was started
   std::future<double> coming;
   std::optional<double> tilt_deg;  ///< see tiltBorne
 };
@@ -34,7 +34,7 @@ struct PanelDraft {
 };
 
 /// Draws panels, notices and the hand's force with Dear ImGui, and carries out what the user changes in them. Call between
-/// ImGui::NewFrame and ImGui::Render. `filming`: whether a film runs.
+/// ImGui::NewFrame and ImGui::Render. `filming`: whether a video is being recorded.
 PanelWishes drawPanels(Viewer& viewer, PanelDraft& draft, bool filming);
 
 /// The next slower rate of simulated time, or real time after the slowest.

@@ -62,7 +62,7 @@ void addContactArrows(const Session& session, const Camera& camera, std::vector<
 /// The colour that shows how the hand's block touches others.
 Colour holdColour(Hold hold);
 
-/// Adds the hand: an arrow from the block to where the hand wants it, in the colour of its hold.
+/// Adds the hand: an arrow from the block to where the hand moves it, in the colour of its hold.
 void addHand(const Session& session, const Hand& hand, const ParticleArray& position, const Camera& camera,
              std::vector<Vertex>& mesh);
 

@@ -49,7 +49,7 @@ void stepOnce(Viewer& viewer) {
   const StageTimes before = session.simulation.stageTimes;
   try {
     step(session, input);
-  } catch (const InputError& error) {  // a tuning that the scene does not bear
+  } catch (const InputError& error) {  // a tuning that does not fit the scene
     viewer.message = error.what();
     viewer.tuning = session.tuning;
     viewer.paused = true;
@@ -146,10 +146,10 @@ Picture pictureOf(Viewer& viewer) {
 std::vector<std::string> notices(const Viewer& viewer) {
   std::vector<std::string> lines;
   if (viewer.session.game.players > 0) lines.push_back(describe(viewer.session.game));
-  if (viewer.paused) lines.emplace_back("paused (space goes on, n steps a frame)");
+  if (viewer.paused) lines.emplace_back("paused (space resumes, n steps a frame)");
   if (!viewer.paused && viewer.pacer.slow) {
     lines.push_back(
-        fmt::format("slow motion: this machine reaches {:.0f} % of the speed asked for", 100.0 * viewer.pacer.kept()));
+        fmt::format("slow motion: this machine reaches {:.0f} % of the speed that is set", 100.0 * viewer.pacer.kept()));
   }
   if (!viewer.paused && viewer.pacer.rate < 1.0) lines.push_back(fmt::format("slow motion: 1/{:.0f}", 1.0 / viewer.pacer.rate));
   if (viewer.replay) {

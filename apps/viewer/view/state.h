@@ -32,12 +32,12 @@ struct Watch {
   int failures = 0;             ///< divergences
 };
 
-/// A viewer: a session, the user's hand and eyes on it, and what is shown. Knows neither windows nor OpenGL.
+/// A viewer: a session, the user's hand and view, and what is shown. Independent of windows and OpenGL.
 struct Viewer {
   Viewer(SceneChoice choice, const Tuning& tuning);
 
   SceneChoice choice;
-  Tuning tuning;  ///< as the user wants it from the next frame on
+  Tuning tuning;  ///< as the user has set it, from the next frame on
   Session session;
   ParticleArray start;  ///< m, positions at the scene's start
   Controls controls;
@@ -49,7 +49,7 @@ struct Viewer {
   bool panels = true;
   double limit_n = tuning::kGripForce_n;
   std::optional<Replay> replay;
-  std::string message;  ///< what the user should know, until something else is
+  std::string message;  ///< what the user is shown, until something else is
   std::array<FrameBar, kBars> bars{};
   std::size_t bar = 0;      ///< the oldest one
   float picture_ms = 0.0F;  ///< what drawing the last picture took
@@ -73,7 +73,7 @@ void undo(Viewer& viewer);
 /// What is to be drawn now.
 Picture pictureOf(Viewer& viewer);
 
-/// What the viewer's user is to know at once: slow motion, the game, a replay that differs; one line each.
+/// What the viewer's user is shown at once: slow motion, the game, a replay that differs; one line each.
 std::vector<std::string> notices(const Viewer& viewer);
 
 /// Writes the report: frames, pictures, penetration, moves, game, hand and camera, as JSON.

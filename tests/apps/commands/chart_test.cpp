@@ -36,7 +36,22 @@ TEST(Chart, RefusesWhatItDoesNotKnow) {
   expectRefusal({"--rows", "1"}, "2 to 200");
   expectRefusal({"--out", "/dev/null"}, "--out");
   expectRefusal({"--out", "/proc"}, "--out: cannot write '/proc/");
+  expectRefusal({"--no-time-limit", "--quick"}, "--quick");
+}
+
+// Former names of options are refused beside the same options as those of today, and beside these.
+TEST(Chart, TakesTheFormerNamesOfOptions) {
   expectRefusal({"--long", "--quick"}, "--quick");
+  expectRefusal({"--long", "--maps"}, "--maps");
+  expectRefusal({"--fresh", "--maps"}, "--maps");
+  expectRefusal({"--long", "--no-time-limit"}, "--no-time-limit");
+  expectRefusal({"--fresh", "--no-resume"}, "--no-resume");
+  expectRefusal({"--long", "--scenes", "flood"}, "'flood'");
+}
+
+TEST(Chart, MapsTakeMethodsByEitherName) {
+  expectRefusal({"--maps", "--methods", "bdf2-eigen"}, "'bdf2-eigen'");
+  expectRefusal({"--maps", "--methods", "bdf2,magic"}, "'magic'");
 }
 
 TEST(Chart, RefusesPeersWithoutTheirColumns) {
@@ -62,8 +77,8 @@ class ChartFiles : public ::testing::Test {
             "--scenes",
             "uniform,spin",
             "--methods",
-            "implicit,rigid-pgs",
-            "--case-limit",  // a slow machine, or a sanitizer, shall see the same cases
+            "bdf2,implicit,rigid-pgs",  // two names of one method: its cases are measured once
+            "--case-limit",             // a slow machine, or a sanitizer, shall see the same cases
             "30",
             "--peers",
             std::string(SPRINGTOWER_SOURCE_DIR) + "/bench/data/peers/records.csv",
@@ -182,7 +197,7 @@ TEST_F(ChartFiles, AreNotOverwrittenByARunWithOtherLimits) {
   const std::string before = contentOf(path("out/chart.json"));
   const ProgramResult refused = chart(other);
   EXPECT_EQ(refused.exitCode, 2);
-  EXPECT_THAT(refused.error, HasSubstr("--fresh"));
+  EXPECT_THAT(refused.error, HasSubstr("--no-resume"));
   EXPECT_EQ(contentOf(path("out/chart.json")), before);
   other.emplace_back("--fresh");
   EXPECT_EQ(chart(other).exitCode, 0);

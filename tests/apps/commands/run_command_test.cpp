@@ -121,7 +121,7 @@ TEST(Program, HelpTeachesWithExamples) {
   const std::string help = run({"--help"}).output;
   for (const char* option : {"--seconds", "--method", "--tolerance", "--substeps", "--inertia", "--threads", "--heights-sigma",
                              "--mass-sigma", "--seed", "--start-gap", "--gravity-tilt", "--gravity-direction", "--gravity-sway",
-                             "--no-sleep", "--report", "--poses", "--poses-every", "--picture", "--force-unstable"}) {
+                             "--no-sleep", "--report", "--poses", "--poses-every", "--picture", "--allow-unstable"}) {
     EXPECT_THAT(help, HasSubstr(std::string("  ") + option + " "));
   }
 }
@@ -206,6 +206,32 @@ TEST(RunCommand, OptionsReachTheSimulation) {
   EXPECT_EQ(coarse.at("substeps"), 50);
 }
 
+// An option that was called otherwise is in the help as what it is called now; it works by either name, not by both.
+TEST(RunCommand, TakesTheFormerNameOfAnOption) {
+  const std::vector<std::string> misfit = {"tower:3",     "--seconds", "0.02",       "--method", "semi-implicit-euler",
+                                           "--tolerance", "1e-6",      "--substeps", "2"};
+  const auto with = [&](std::initializer_list<std::string> flags) {
+    std::vector<std::string> arguments = misfit;
+    arguments.insert(arguments.end(), flags);
+    return run(arguments);
+  };
+  EXPECT_THAT(with({}).error, HasSubstr("or allow_unstable"));
+  EXPECT_EQ(with({"--allow-unstable"}).exitCode, 0);
+  EXPECT_EQ(with({"--force-unstable"}).exitCode, 0);
+  const ProgramResult both = with({"--allow-unstable", "--force-unstable"});
+  EXPECT_EQ(both.exitCode, 2);
+  EXPECT_THAT(both.error, ::testing::AllOf(HasSubstr("--allow-unstable"), HasSubstr("--force-unstable")));
+  const std::string help = run({"--help"}).output;
+  EXPECT_THAT(help, HasSubstr("formerly"));
+  EXPECT_THAT(help, ::testing::Not(HasSubstr("  --force-unstable ")));
+}
+
+TEST(RunCommand, WritesOneNameOfAMethodWhateverNameIsGiven) {
+  EXPECT_EQ(reportOf({"(010)", "--seconds", "0.02", "--method", "bdf2"}).at("method"), "implicit");
+  EXPECT_EQ(reportOf({"(010)", "--seconds", "0.02", "--method", "bdf2-eigen"}).at("method"), "implicit-eigen");
+  EXPECT_EQ(reportOf({"(010)", "--seconds", "0.02", "--method", "legacy-2003"}).at("method"), "report");
+}
+
 TEST(RunCommand, TiltedGravitySlidesABlockAway) {
   const Json report = reportOf({"(010)", "--seconds", "1", "--gravity-tilt", "30", "--gravity-direction", "90"});
   EXPECT_FALSE(report.at("stands"));
@@ -220,6 +246,9 @@ TEST(RunCommand, PrintsATable) {
   EXPECT_EQ(result.error, "") << "no progress where there is no terminal";
   EXPECT_THAT(result.output, StartsWith("tower:1, 3 blocks\n"));
   for (const char* name : {"stands", "penetration", "creep", "frame"}) EXPECT_THAT(result.output, HasSubstr(name));
+  for (const char* name : {"height error against rigid stack  ", "max energy gain in a frame  "}) {
+    EXPECT_THAT(result.output, HasSubstr(std::string("  ") + name)) << "a name and its figure are apart";
+  }
 }
 
 TEST(RunCommand, WritesPosesInOrder) {
@@ -310,7 +339,7 @@ TEST(RunCommand, DivergenceHasItsOwnExitCodeAndKeepsThePoses) {
   const ScratchFolder scratch;
   const ProgramResult result =
       run({"tower:6", "--seconds", "10", "--method", "semi-implicit-euler", "--tolerance", "1e-6", "--substeps", "2",
-           "--force-unstable", "--poses", scratch.file("poses.csv"), "--report", scratch.file("report.json")});
+           "--allow-unstable", "--poses", scratch.file("poses.csv"), "--report", scratch.file("report.json")});
   EXPECT_EQ(result.exitCode, 3) << result.error;
   EXPECT_THAT(result.error, ::testing::MatchesRegex("springtower: .*block [0-9]+.* [0-9.e-]+ s.*\n"));
   EXPECT_THAT(linesOf(contentOf(scratch.file("poses.csv"))), SizeIs(::testing::Ge(19U)));

@@ -33,7 +33,9 @@ TEST(StaticsCommand, PrintsVerdictMarginAndATableOfTheBlocks) {
   EXPECT_THAT(result.output, HasSubstr("verdict     stands\n"));
   EXPECT_THAT(result.output, HasSubstr("margin      21.80 deg"));
   EXPECT_THAT(result.output, HasSubstr("loose 0.300 mm"));
-  EXPECT_THAT(result.output, HasSubstr("block 1:2 along +x bears up to 0.0769 N"));
+  EXPECT_THAT(result.output, HasSubstr("block 1:2 along +x: at most 0.0769 N"));
+  EXPECT_THAT(result.output, HasSubstr("    block  weight N    load N       min       max   above            if removed "));
+  EXPECT_THAT(result.output, HasSubstr("    upper    lower    normal N  friction N"));
   // 7 blocks and 15 contacts, below the head lines and two empty ones.
   EXPECT_THAT(linesOf(result.output), SizeIs(5 + 2 + 7 + 2 + 15));
 }
@@ -61,7 +63,7 @@ TEST(StaticsCommand, ReportsAllFiguresAsJson) {
 }
 
 TEST(StaticsCommand, SaysWhenASceneFallsOrLeans) {
-  // Two blocks meet at a corner: no gravity that friction bears brings the upper one's weight there.
+  // Two blocks meet at a corner: no gravity within the friction limit brings the upper one's weight there.
   const Json falls = staticsOf({"(001)-(100)"});
   EXPECT_EQ(falls.at("stands"), false);
   EXPECT_TRUE(falls.at("tilt_deg").is_null());
@@ -178,7 +180,7 @@ TEST(StaticsList, NamesTheLineThatIsBroken) {
       HasSubstr("line 2: in 'remove': found nesting deeper than 32 levels"));
 }
 
-// The oracle was made by a programme of its own. All its clear verdicts, and its tilts: of towers that stand within 0.1 degrees.
+// The oracle was made by a program of its own. All its clear verdicts, and its tilts: of towers that stand within 0.1 degrees.
 class StaticsOracleTest : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(StaticsOracleTest, AgreesOnEveryClearLine) {

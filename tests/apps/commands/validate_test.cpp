@@ -111,6 +111,12 @@ TEST(Validate, RefusesWhatItDoesNotKnow) {
   EXPECT_EQ(folder.exitCode, 2);
   EXPECT_THAT(folder.error, HasSubstr("--oracle"));
   EXPECT_EQ(validate({}).exitCode, 2) << "--out is needed";
+  for (const char* full : {"--full", "--long"}) {
+    EXPECT_THAT(validate({"--out", scratch.file("page"), full, "--only", "magic"}).error, HasSubstr("'magic'")) << full;
+  }
+  const ProgramResult twice = validate({"--out", scratch.file("page"), "--full", "--long"});
+  EXPECT_EQ(twice.exitCode, 2);
+  EXPECT_THAT(twice.error, ::testing::AllOf(HasSubstr("--full"), HasSubstr("--long")));
   EXPECT_FALSE(fs::exists(scratch.file("page")));
 }
 

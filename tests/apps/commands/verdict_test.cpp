@@ -116,7 +116,7 @@ TEST(Verdict, CheckComparesWithWhatIsExpected) {
 TEST(Verdict, OfATowerThatDivergesHasEveryKeyAndSaysWhen) {
   const std::string tower = "{\"id\":\"a\",\"config\":\"(111)-(111)-(111)\",\"expect\":{\"stands\":true}}";
   const ProgramResult result =
-      verdict(tower, {"--method", "semi-implicit-euler", "--tolerance", "1e-6", "--substeps", "2", "--force-unstable"});
+      verdict(tower, {"--method", "semi-implicit-euler", "--tolerance", "1e-6", "--substeps", "2", "--allow-unstable"});
   EXPECT_EQ(result.exitCode, 3);
   EXPECT_THAT(linesOf(result.error), SizeIs(1));
   const std::vector<Json> lines = objectsOf(result);

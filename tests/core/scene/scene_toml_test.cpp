@@ -1,6 +1,7 @@
 #include "core/error.h"
 #include "core/scene/scene.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <fmt/format.h>
 #include <fstream>
@@ -46,7 +47,7 @@ TEST(SceneFile, SetsEverythingASceneHas) {
   EXPECT_EQ(scene.settings.substeps, 120);
   EXPECT_FALSE(scene.settings.continuousTests);
   EXPECT_FALSE(scene.settings.tolerance_m);
-  EXPECT_EQ(scene.settings.stepMargin, Settings{}.stepMargin);
+  EXPECT_EQ(scene.settings.stabilitySafety, Settings{}.stabilitySafety);
 
   const BlockSpec& block = scene.blocks[6];
   EXPECT_EQ(block.row, -1);
@@ -117,6 +118,28 @@ TEST(SceneFile, ReadsEverySettingOfTheTable) {
   EXPECT_FALSE(fromText("[tower]\nrows = 1\n[settings]\ncontinuous_tests = false\n").settings.continuousTests);
 }
 
+const SettingRow& rowOf(std::string_view key) {
+  const auto rows = settingTable();
+  return *std::find_if(rows.begin(), rows.end(), [&](const SettingRow& row) { return row.key == key; });
+}
+
+std::string asToml(const SettingRow& row, double value) {
+  return std::holds_alternative<bool Settings::*>(row.member) ? (value == 0.0 ? "false" : "true") : fmt::format("{}", value);
+}
+
+TEST(SceneFile, ReadsEveryFormerKeyAsTheKeyOfToday) {
+  for (const SettingAlias& alias : settingAliases()) {
+    const SettingRow& row = rowOf(alias.key);
+    ASSERT_NE(numberOf(Settings{}, row), row.most) << row.key << " would read as its default";
+    const std::string text = fmt::format("[tower]\nrows = 1\n[settings]\n{} = {}\n", alias.formerKey, asToml(row, row.most));
+    EXPECT_EQ(numberOf(fromText(text).settings, row), row.most) << alias.formerKey;
+  }
+}
+
+TEST(SceneFile, ReadsMethodsByTheNamesOfTheField) {
+  EXPECT_EQ(fromText("[tower]\nrows = 1\n[settings]\nmethod = \"legacy-2003\"\n").settings.method, Method::report);
+}
+
 TEST(SceneFile, GivesWayToOptionsOfTheCommandLine) {
   TowerOptions options;
   options.seed = 8;
@@ -179,10 +202,9 @@ TEST(BadSceneFile, IsNamedInOneLine) {
       {"inside_each_other", ": block 0 and block 1 start 1 mm inside each other, allowed is touching"},
       {"inside_the_floor", ": block 0 starts 1 mm inside the floor z = 0, allowed is touching it"},
       {"unknown_method",
-       ":5:10: settings.method: found 'euler', allowed implicit, implicit-euler, implicit-eigen, semi-implicit-euler, midpoint, "
-       "runge-kutta-4, "
-       "report, rigid-pgs, rigid-lcp, xpbd or auto"},
-      {"setting_out_of_range", ":5:15: settings.step_margin: found 1.5, allowed 0.05 to 1"},
+       ":5:10: settings.method: found 'euler', allowed implicit (also: bdf2), implicit-euler, implicit-eigen (also: bdf2-eigen), "
+       "semi-implicit-euler, midpoint, runge-kutta-4, report (also: legacy-2003), rigid-pgs, rigid-lcp, xpbd or auto"},
+      {"setting_out_of_range", ":5:20: settings.stability_safety: found 1.5, allowed 0.05 to 1"},
       {"force_on_no_block", ":5:9: force[0].block: found 1, allowed a whole number from 0 to 0"},
       {"force_ends_first", ":8:9: force[0].end_s: found 1, allowed 2 to 10000000 s"},
       {"friction_twice", ":4:1: friction: found both or neither of coefficient and static with kinetic, allowed either"},
@@ -200,6 +222,23 @@ TEST(BadSceneFile, UnknownSettingListsTheKnownOnes) {
   for (const SettingRow& row : settingTable()) known += fmt::format(", {}", row.key);
   EXPECT_THAT([&] { sceneFromToml(path); },
               ThrowsMessage<InputError>(path + ":5:1: unknown key 'sub_steps' in settings, allowed " + known));
+}
+
+TEST(BadSceneFile, BothNamesOfOneSettingAreRefused) {
+  for (const SettingAlias& alias : settingAliases()) {
+    const std::string value = asToml(rowOf(alias.key), rowOf(alias.key).most);
+    const std::string text =
+        fmt::format("[tower]\nrows = 1\n[settings]\n{0} = {2}\n{1} = {2}\n", alias.formerKey, alias.key, value);
+    const std::string message = fmt::format(":5:{0}: settings.{1}: found {1} and its former name {2}, allowed is one of them",
+                                            alias.key.size() + 4, alias.key, alias.formerKey);
+    EXPECT_THAT([&] { fromText(text); }, testing::ThrowsMessage<InputError>(testing::EndsWith(message)));
+  }
+}
+
+TEST(BadSceneFile, AFormerKeyIsNamedAsItIsGiven) {
+  EXPECT_THAT(
+      [] { fromText("[tower]\nrows = 1\n[settings]\nrest_speed = -1.0\n"); },
+      testing::ThrowsMessage<InputError>(testing::EndsWith(":4:14: settings.rest_speed: found -1, allowed 0 to 1 sqrt(g h)")));
 }
 
 TEST(BadSceneFile, BrokenTomlIsNamedByLineAndColumn) {

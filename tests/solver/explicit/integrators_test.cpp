@@ -134,7 +134,7 @@ TEST(ExplicitSteps, AreAsManyAsStiffnessAndDashpotsRequire) {
   Scene scene = towerScene(6);
   scene.settings.method = Method::semiImplicitEuler;
   scene.settings.tolerance_m = 1e-6;
-  scene.settings.dampingTime = 0.01;
+  scene.settings.stiffnessDamping = 0.01;
   Simulation simulation(scene);
   for (int frame = 0; frame < 3; ++frame) stepFrame(simulation);
   EXPECT_GT(simulation.substeps, 6000);

@@ -245,7 +245,7 @@ TEST(Divergence, IsCaughtInItsStepWithBlockAndTime) {
   scene.settings.method = Method::semiImplicitEuler;
   scene.settings.substeps = 60;
   scene.settings.tolerance_m = kBlockTolerance_m;
-  scene.settings.forceUnstable = true;
+  scene.settings.allowUnstable = true;
   Simulation simulation(scene);
   int block = -1;
   double time_s = -1.0;

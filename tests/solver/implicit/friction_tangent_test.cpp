@@ -283,7 +283,7 @@ TEST(CoupledSolve, ADrawnBlockTakesHardlyMoreThanAnIterationAStep) {
   scene.settings.method = Method::implicit;
   scene.settings.tolerance_m = 1e-5;
   scene.settings.substeps = 4;
-  scene.settings.forceUnstable = true;
+  scene.settings.allowUnstable = true;
   const Vec3 way = scene.blocks[kBlock].orientation * Vec3::UnitX();
   Simulation simulation(scene);
   stepFor(simulation, 1.0);

@@ -130,7 +130,7 @@ TEST(Implicit, ATowerWithStrongDashpotsBeginsAtRest) {
     Scene scene = bitCodeScene("(L11)-(11L)-(11L)-(1L1)-(L1L)-(LLL)", options);
     scene.settings.sleep = Sleep::off;
     scene.settings.tolerance_m = 1e-5;
-    scene.settings.dampingTime = 0.01;
+    scene.settings.stiffnessDamping = 0.01;
     Simulation simulation(scene);
     stepFrame(simulation);
     EXPECT_LE(simulation.substeps, 8) << "seed " << seed;
@@ -234,7 +234,7 @@ TEST_P(SwayTest, ATowerThatSwaysSlowlyTakesOneStepAFrame) {
     scene.settings.sleep = Sleep::off;
     scene.settings.tolerance_m = tolerance;
     scene.settings.substeps = substeps;
-    scene.settings.forceUnstable = true;
+    scene.settings.allowUnstable = true;
     scene.gravity.sway_deg = 0.1;
     scene.gravity.sway_hz = 1.0;
     Simulation simulation(scene);

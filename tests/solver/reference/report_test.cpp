@@ -128,7 +128,7 @@ TEST_P(ReportInertiaTest, AnElasticCollisionKeepsEnergy) {
   Scene scene = twoThrownBlocks(GetParam());
   scene.settings.reportRestitution = 1.0;
   scene.settings.reportFrictionDrag = 0.0;
-  scene.settings.dampingTime = 0.0;
+  scene.settings.stiffnessDamping = 0.0;
   scene.kineticFriction = scene.staticFriction = 0.0;
   Simulation simulation(withSubsteps(scene, 1000));
   simulation.scene.gravity.magnitude = 0.0;
@@ -270,7 +270,7 @@ TEST(ReportMethod, RepeatsItsFutureFromASnapshot) {
 TEST(ReportMethod, DivergenceIsCaught) {
   Scene scene = withSubsteps(asReported(towerScene(2)), 4);
   scene.settings.tolerance_m = 1e-6;
-  scene.settings.forceUnstable = true;
+  scene.settings.allowUnstable = true;
   Simulation simulation(scene);
   EXPECT_THROW(stepFor(simulation, 1.0), DivergenceError);
 }

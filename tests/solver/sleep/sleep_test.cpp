@@ -202,7 +202,7 @@ TEST(Sleep, ABlockThatHitsSleepersMovesThemAsAwake) {
   drop.drop_m = 0.02;
   scene.moves = {take(2, 3, Vec3::UnitX()), drop};
   scene.settings.tolerance_m = 1e-5;
-  scene.settings.dampingTime = 0.01;
+  scene.settings.stiffnessDamping = 0.01;
   Simulation asleep(scene);
   const RunResult result = play(asleep);
   scene.settings.sleep = Sleep::off;
