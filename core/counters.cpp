@@ -7,21 +7,21 @@ Counters& Counters::operator+=(const Counters& other) {
   steps += other.steps;
   replayedFrames += other.replayedFrames;
   blockPairs += other.blockPairs;
-  marginsSpent += other.marginsSpent;
+  clearanceChecks += other.clearanceChecks;
   candidateTests += other.candidateTests;
   boxOverlaps += other.boxOverlaps;
   planeCrossings += other.planeCrossings;
   cubicTests += other.cubicTests;
   cubicHits += other.cubicHits;
-  contactsBorn += other.contactsBorn;
-  contactsBornPenetrating += other.contactsBornPenetrating;
+  contactsCreated += other.contactsCreated;
+  contactsCreatedPenetrating += other.contactsCreatedPenetrating;
   manifoldRefreshes += other.manifoldRefreshes;
   contactEvaluations += other.contactEvaluations;
   springEvaluations += other.springEvaluations;
   implicitSteps += other.implicitSteps;
   implicitIterations += other.implicitIterations;
   factorisations += other.factorisations;
-  handedOver += other.handedOver;
+  newtonFailures += other.newtonFailures;
   responseIterations += other.responseIterations;
   return *this;
 }

@@ -187,7 +187,7 @@ void buildFloorManifold(const CornerView& upper, const ManifoldLimits& limits, M
   manifold.count = static_cast<std::int32_t>(kept);
 }
 
-void carryMemory(const ContactView& old, const CornerView& oldUpper, Manifold& fresh, const CornerView& freshUpper,
+void carryPoints(const ContactView& old, const CornerView& oldUpper, Manifold& fresh, const CornerView& freshUpper,
                  double radius) {
   if (old.phase != PairPhase::face || fresh.phase != PairPhase::face) return;
   std::array<Vec3, kManifoldPoints> place;

@@ -21,7 +21,7 @@ enum class PointKind : std::uint8_t { penalty, impulse, anchor };
 
 /// `touching` of a point that touches without a normal force: it overlaps, but damping cancels the spring while the blocks
 /// separate.
-inline constexpr double kUnpressed = 0.5;
+inline constexpr double kTouchingWithoutForce = 0.5;
 
 using FourValues = std::array<double, kRowPoints>;
 using FourVectors = std::array<FourValues, 3>;  // [axis][point], world axes
@@ -32,8 +32,9 @@ struct PenaltyRow {
   FourValues maxwellDepth;   ///< m, relaxed part of the elastic depth in the Maxwell branch; its force is k_v (elastic - relaxed)
   FourValues restDepth;      ///< m, depth of zero force
   FourValues stiffening;     ///< stiffness over the resting one, >= 1 after an impact
-  FourValues touching;       ///< 1 where it pushes, kUnpressed where it only touches, otherwise 0 (a double, to serve as a lane)
-  FourValues slipRatio;      ///< 0 where it sticks; otherwise the share of friction left by the cone
+  FourValues
+      touching;  ///< 1 where it pushes, kTouchingWithoutForce where it only touches, otherwise 0 (a double, to serve as a lane)
+  FourValues slipRatio;  ///< 0 where it sticks; otherwise the share of friction left by the cone
 };
 
 /// Four points as impulses (methods rigid-pgs and rigid-lcp, and islands in rigid mode).
@@ -139,7 +140,7 @@ inline void setVectorAt(FourVectors& values, std::size_t point, const Vec3& valu
   for (std::size_t a = 0; a < 3; ++a) values[a][laneOf(point)] = value[static_cast<Eigen::Index>(a)];
 }
 
-/// `touching` of a penalty point: 1, kUnpressed or 0; 0 of impulses and anchors.
+/// `touching` of a penalty point: 1, kTouchingWithoutForce or 0; 0 of impulses and anchors.
 inline double touchingAt(const ContactView& manifold, std::size_t point) {
   return manifold.penalty(point).touching[laneOf(point)];
 }
@@ -191,7 +192,7 @@ void buildFloorManifold(const CornerView& upper, const ManifoldLimits& limits, M
 /// Transfers the state of the points of an old manifold to a new one of the same pair (warm start): each new point takes that of
 /// the nearest old point within `radius` (m, in space). Upper and lower may have been swapped. The corners are those of each
 /// manifold's upper block.
-void carryMemory(const ContactView& old, const CornerView& oldUpper, Manifold& fresh, const CornerView& freshUpper,
+void carryPoints(const ContactView& old, const CornerView& oldUpper, Manifold& fresh, const CornerView& freshUpper,
                  double radius);
 
 /// Position of a manifold's point in space, m: on the incident face (face manifolds only).

@@ -90,7 +90,7 @@ Scene thinWallScene() {
 }
 
 // Without sines, so that it does not depend on a mathematical library.
-Scene heapScene(int blocks) {
+Scene randomPileScene(int blocks) {
   constexpr double kSpacing_m = 0.09;
   RandomStream random(1, 0);
   Scene scene;
@@ -104,7 +104,7 @@ Scene heapScene(int blocks) {
   return scene;
 }
 
-Scene askewHeapScene(int blocks) {
+Scene askewPileScene(int blocks) {
   Scene scene;
   for (int i = 0; i < blocks; ++i) {
     BlockSpec block;

@@ -34,12 +34,12 @@ Scene thinWallScene();
 
 /// Blocks with random orientations, always the same, on a lattice in which none can touch another: four a layer. They fall into a
 /// pile.
-Scene heapScene(int blocks);
+Scene randomPileScene(int blocks);
 
-/// The largest number of blocks of askewHeapScene without initial overlap.
+/// The largest number of blocks of askewPileScene without initial overlap.
 inline constexpr int kMaxAskewBlocks = 9;
 
 /// Blocks dropped on one another, each askew and rotated further than the one below. Precondition: at most kMaxAskewBlocks.
-Scene askewHeapScene(int blocks);
+Scene askewPileScene(int blocks);
 
 }  // namespace springtower

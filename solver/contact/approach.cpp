@@ -2,7 +2,7 @@
 
 #include "core/tuning.h"
 #include "solver/block/inertia.h"
-#include "solver/contact/births.h"
+#include "solver/contact/create.h"
 #include "solver/world/checkpoint.h"
 
 #include <algorithm>
@@ -281,7 +281,7 @@ bool bounces(const IslandStep& step, double step_s) {
   });
 }
 
-bool meetsSoon(const IslandStep& step, double step_s) {
+bool isAboutToCollide(const IslandStep& step, double step_s) {
   const Simulation& simulation = step.simulation;
   const double frame_s = simulation.scene.settings.frame_s;
   const auto soon = [&](const Closing& closing) {
@@ -296,7 +296,7 @@ bool meetsSoon(const IslandStep& step, double step_s) {
   });
 }
 
-FirstContact meetingsIn(IslandStep& step) {
+FirstContact findFirstContacts(IslandStep& step) {
   const double most = tuning::kMaxFirstOverlap * step.simulation.tolerance_m;
   double longest = 0.0;
   for (const std::int32_t block : step.blocks) longest = std::max(longest, displacementOf(step, block));

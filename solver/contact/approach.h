@@ -23,7 +23,7 @@ bool bounces(const IslandStep& step, double step_s);
 
 /// Whether separated blocks of the island will touch within the frame at their present velocities, at a closing speed that an
 /// implicit step of `step_s` does not resolve.
-bool meetsSoon(const IslandStep& step, double step_s);
+bool isAboutToCollide(const IslandStep& step, double step_s);
 
 /// First contacts of an implicit step. none: none that matters. added: blocks without a known contact overlap at its end. impact:
 /// blocks, or points of a contact without force, closed at a speed that requires stiffer contacts than implicit steps have.
@@ -32,6 +32,6 @@ enum class FirstContact { none, added, impact };
 /// Looks for first contacts in the implicit step just computed. The start of the step is not sufficient for this: within a step a
 /// hand may change the direction of its block. Overlapping blocks get their manifolds; the step then has to be solved again with
 /// them, from its start. Precondition: the trial points are those of the step's end.
-FirstContact meetingsIn(IslandStep& step);
+FirstContact findFirstContacts(IslandStep& step);
 
 }  // namespace springtower

@@ -37,15 +37,15 @@ ContactSide sideOf(const Engine& engine, std::int32_t block, bool sameMotion) {
 struct Evaluation {
   ContactStep contactStep;
   bool sameMotion;
-  Memory memory;
+  PointUpdate update;
 };
 
 SPRINGTOWER_INLINE void evaluatePair(IslandStep& step, const Evaluation& evaluation, const ContactPool::Editable& contact,
                                      PairForce& force) {
   const ContactView& manifold = contact.view;
   const PointRows* keep = nullptr;
-  if (evaluation.memory == Memory::advance) keep = &contact.points;
-  if (evaluation.memory == Memory::trial) keep = &contact.trial;
+  if (evaluation.update == PointUpdate::store) keep = &contact.points;
+  if (evaluation.update == PointUpdate::trial) keep = &contact.trial;
   const ContactSide upper = sideOf(step.engine, manifold.upper, evaluation.sameMotion);
   const ContactSide lower = sideOf(step.engine, manifold.lower, evaluation.sameMotion);
   manifoldForces(manifold, upper, lower, step.law, evaluation.contactStep, reducedMass(step.simulation.model, manifold), keep,
@@ -133,13 +133,15 @@ void addTether(IslandStep& step, const MotionState& state, double time_s) {
 
 }  // namespace
 
-void evaluateForces(IslandStep& step, const MotionState& state, const ParticleArray& carried, double advance_s, Memory memory) {
+void evaluateForces(IslandStep& step, const MotionState& state, const ParticleArray& carried, double advance_s,
+                    PointUpdate update) {
   StageClock clock(step.times);
   Engine& engine = step.engine;
   const bool parallel = step.blocks.size() >= tuning::kParallelBlocks;
   const bool sameMotion = &carried == &state.velocity;
-  const double kick_s = sameMotion && memory == Memory::advance ? step.kick_s : 0.0;
-  const Evaluation evaluation{{advance_s, step.maxStiffening, memory == Memory::trial ? 0.0 : 1.0, kick_s}, sameMotion, memory};
+  const double kick_s = sameMotion && update == PointUpdate::store ? step.kick_s : 0.0;
+  const Evaluation evaluation{
+      {advance_s, step.maxStiffening, update == PointUpdate::trial ? 0.0 : 1.0, kick_s}, sameMotion, update};
   using Blocks = std::span<const std::int32_t>;
   overBlocks(step, parallel, [&](Blocks blocks) {
     computeFrames(state.position, blocks, engine.memo.frames);
@@ -153,7 +155,7 @@ void evaluateForces(IslandStep& step, const MotionState& state, const ParticleAr
   });
   if (!step.unforced) addUserForces(step);
   // Implicit steps evaluate forces at their end.
-  addTether(step, state, step.time_s + (memory == Memory::trial ? advance_s : 0.0));
+  addTether(step, state, step.time_s + (update == PointUpdate::trial ? advance_s : 0.0));
   clock.lap(Stage::springs);
   step.counters.springEvaluations += kSprings * step.blocks.size();
 }

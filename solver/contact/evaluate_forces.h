@@ -6,13 +6,14 @@ namespace springtower {
 
 /// What happens to the contact points advanced by a force evaluation: dropped, stored, or stored in the trial points until an
 /// implicit step is accepted.
-enum class Memory { drop, advance, trial };
+enum class PointUpdate { discard, store, trial };
 
 /// Forces on the island's corners at `state`: springs, contacts, user forces and the hand's tether (gravity is an acceleration,
 /// added by the integrators); fills engine.memo.force for its blocks. `carried` are the velocities that moved the positions
 /// during the last `advance_s`, by which a copy of the contact points is advanced. Deterministic: contacts are summed in the
 /// order of the pairs for any number of threads.
-void evaluateForces(IslandStep& step, const MotionState& state, const ParticleArray& carried, double advance_s, Memory memory);
+void evaluateForces(IslandStep& step, const MotionState& state, const ParticleArray& carried, double advance_s,
+                    PointUpdate update);
 
 /// Whether the hand holds a block of this island; whether a user force acts on one during the frame.
 bool holdsTether(const IslandStep& step);

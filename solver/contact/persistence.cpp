@@ -74,15 +74,15 @@ void keepEdge(const ContactView& old, Manifold& fresh) {
 
 }  // namespace
 
-void keepContactMemory(const ContactView& old, const ParticleArray& position, const ContactLaw& law, double radius,
-                       Manifold& fresh) {
+void transferPointState(const ContactView& old, const ParticleArray& position, const ContactLaw& law, double radius,
+                        Manifold& fresh) {
   const auto oldUpper = static_cast<std::size_t>(old.upper);
   const auto freshUpper = static_cast<std::size_t>(fresh.upper);
   if (old.phase == PairPhase::edge && fresh.phase == PairPhase::edge) {
     keepEdge(old, fresh);
     if (fresh.incidentFace == old.incidentFace && fresh.referenceFace == old.referenceFace) return;
   } else {
-    carryMemory(old, cornersOf(position, oldUpper), fresh, cornersOf(position, freshUpper), radius);
+    carryPoints(old, cornersOf(position, oldUpper), fresh, cornersOf(position, freshUpper), radius);
   }
   if (!anyPointTouches(old)) return;
 

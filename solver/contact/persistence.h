@@ -12,7 +12,7 @@ namespace springtower {
 /// of points that are gone is distributed over the new ones, as if all of them had made contact at one depth. So a rolling pair
 /// whose points keep changing neither gains energy nor sinks. If nothing was stored, a new point starts at its first contact like
 /// any other.
-void keepContactMemory(const ContactView& old, const ParticleArray& position, const ContactLaw& law, double radius,
-                       Manifold& fresh);
+void transferPointState(const ContactView& old, const ParticleArray& position, const ContactLaw& law, double radius,
+                        Manifold& fresh);
 
 }  // namespace springtower

@@ -50,7 +50,7 @@ double energyOf(const Simulation& simulation, const ManifoldNow& now, const Cont
     const PenaltyRow& row = m.penalty(i);
     const double elastic = now.points.depth[i] - row.restDepth[lane];
     if (m.kind != PointKind::penalty) {
-      const double pressed = std::clamp(elastic, 0.0, pressedDepth(simulation, m, i));
+      const double pressed = std::clamp(elastic, 0.0, springDepthOfForce(simulation, m, i));
       energy += 0.5 * stiffness * pressed * pressed;
       continue;
     }

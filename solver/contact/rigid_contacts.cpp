@@ -73,7 +73,7 @@ void gatherContacts(IslandStep& step, RigidIsland& island) {
   }
 }
 
-void keepForces(IslandStep& step, const RigidIsland& island) {
+void storeForces(IslandStep& step, const RigidIsland& island) {
   for (const RigidContact& contact : island.contacts) {
     const auto i = static_cast<std::size_t>(contact.point);
     const std::size_t lane = laneOf(i);

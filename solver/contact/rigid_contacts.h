@@ -24,15 +24,15 @@ constexpr PointKind pointKindOf(Method method) {
 void gatherContacts(IslandStep& step, RigidIsland& island);
 
 /// Stores the impulses of a step in the manifolds, as forces.
-void keepForces(IslandStep& step, const RigidIsland& island);
+void storeForces(IslandStep& step, const RigidIsland& island);
 
-/// The forces that `keepForces` stored in a manifold, for reports: normal and friction of each point.
+/// The forces that `storeForces` stored in a manifold, for reports: normal and friction of each point.
 void readForces(const ContactView& manifold, PointForces& points);
 
 /// Depth to which the springs of a point would be compressed by the normal force of the last rigid step, m. An island in rigid
 /// mode of a penalty method keeps this depth, so that the return to springs changes no energy. At most the tolerance; 0 in the
 /// rigid methods, which have no springs.
-inline double pressedDepth(const Simulation& simulation, const ContactView& manifold, std::size_t point) {
+inline double springDepthOfForce(const Simulation& simulation, const ContactView& manifold, std::size_t point) {
   if (isRigid(simulation.scene.settings.method)) return 0.0;
   const double stiffness = manifold.lower < 0 ? simulation.floorStiffness_n_m : simulation.contactStiffness_n_m;
   return std::min(manifold.impulse(point).normalForce[laneOf(point)] / stiffness, simulation.tolerance_m);

@@ -3,7 +3,7 @@
 #include "core/error.h"
 #include "core/lanes.h"
 #include "core/tuning.h"
-#include "solver/contact/births.h"
+#include "solver/contact/create.h"
 #include "solver/world/checkpoint.h"
 #include "solver/world/island_step.h"
 #include "solver/world/stage_clock.h"
@@ -70,7 +70,7 @@ std::int32_t addPaths(IslandStep& step, bool& inside) {
     BlockHistory& history = step.engine.memo.blockHistory[b];
     history.travel += path;
     step.engine.scratch.path[b] = path;
-    if (path > step.engine.scratch.foreseenPath[b]) step.activeListSteps = 0;
+    if (path > step.engine.scratch.assumedPath[b]) step.activeListSteps = 0;
     if (history.travel - step.engine.memo.travelAtSweep[b] > step.engine.scratch.reach[b])
       inside = inside && isInSweptBox(step, b);
   }
@@ -199,7 +199,7 @@ void updatePair(IslandStep& step, std::size_t at, const RefreshTravel& renewal, 
   PairTable& pairs = step.engine.pairs;
   const double travel = travelOf(step.engine, at);
   if (!pairs.touches(at)) {
-    ++counters.marginsSpent;
+    ++counters.clearanceChecks;
     savePair(step.engine, at);
     pairs.travelAtCheck[at] = travel;
     updateSeparated(step, at, counters, times);
@@ -222,10 +222,10 @@ void listActivePairs(IslandStep& step) {
   const double falling_m = tuning::kActiveListSteps * step.simulation.scene.gravity.magnitude * step.drift_s * step.drift_s;
   for (const std::int32_t block : step.blocks) {
     const auto b = static_cast<std::size_t>(block);
-    engine.scratch.foreseenPath[b] = tuning::kActiveListSpeedGrowth * (engine.scratch.path[b] + falling_m);
+    engine.scratch.assumedPath[b] = tuning::kActiveListSpeedGrowth * (engine.scratch.path[b] + falling_m);
   }
   const auto pathOf = [&](std::int32_t block) {
-    return block < 0 || sleeps(step.simulation, block) ? 0.0 : engine.scratch.foreseenPath[static_cast<std::size_t>(block)];
+    return block < 0 || sleeps(step.simulation, block) ? 0.0 : engine.scratch.assumedPath[static_cast<std::size_t>(block)];
   };
   const std::size_t first = static_cast<std::size_t>(step.pairs.data() - engine.memo.islandPairs.data());
   std::size_t count = 0;
@@ -262,7 +262,7 @@ void recomputeClearances(IslandStep& step) {
     const double travel = travelOf(step.engine, at);
     if (pairs.travelAtCheck[at] <= travel) continue;
     pairs.travelAtCheck[at] = pairs.touches(at) ? -kNever : travel;
-    if (!pairs.touches(at)) pairs.clearance[at] = marginNow(step.simulation, at);
+    if (!pairs.touches(at)) pairs.clearance[at] = clearanceNow(step.simulation, at);
   }
   if (step.activeListSteps > 0) --step.activeListSteps;  // the start is one step away from the pose of the list
 }

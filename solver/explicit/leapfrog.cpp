@@ -16,7 +16,7 @@ namespace springtower {
 void stepSemiImplicitEuler(IslandStep& step) {
   Simulation& simulation = step.simulation;
   MotionState& state = simulation.state;
-  evaluateForces(step, state, state.velocity, step.advance_s, Memory::advance);
+  evaluateForces(step, state, state.velocity, step.advance_s, PointUpdate::store);
   StageClock clock(step.times);
   const auto integrate = [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {

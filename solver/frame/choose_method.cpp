@@ -37,7 +37,7 @@ Settings chooseMethod(const Scene& scene) {
   const double thrown = meetingSpeed(scene);
   const double squaredSpeed = 2.0 * gravity * loads.askewFall_m + thrown * thrown;
   const double stiffening = mass * squaredSpeed / (depth * depth * stiffness);
-  if (stiffening < tuning::kRigidMethodStiffening || mayFall(scene.blocks.size())) {
+  if (stiffening < tuning::kRigidMethodStiffening || mayEnterRigidMode(scene.blocks.size())) {
     settings.method = Method::implicit;
     return settings;
   }

@@ -23,11 +23,11 @@ IslandOutcome runByModes(IslandStep& step) {
   if (mode == IslandMode::implicit) {
     outcome = runImplicitSteps(step, facts.mostlyFallen, begin_s);
     if (!outcome.inside || begin_s >= frame_s) return outcome;
-    mode = nextMode(ModeChange::implicitGaveUp, facts);
+    mode = nextMode(ModeChange::implicitFailed, facts);
     if (mode == IslandMode::rigid) setMode(step, mode);
   }
   const int before = outcome.substeps;
-  outcome = mode == IslandMode::rigid ? runFall(step, begin_s) : runExplicitSteps(step, begin_s);
+  outcome = mode == IslandMode::rigid ? runRigidMode(step, begin_s) : runExplicitSteps(step, begin_s);
   outcome.substeps += before;
   return outcome;
 }

@@ -73,11 +73,11 @@ void impulseToPenalty(const IslandStep& step, std::int32_t contact, const Contac
     const std::size_t lane = laneOf(i);
     PointRow& row = *rows[rowOf(i)];
     const bool touches = points.depth[i] > 0.0;
-    const double pressed = pressedDepth(step.simulation, manifold, i);
+    const double pressed = springDepthOfForce(step.simulation, manifold, i);
     const double elastic = touches ? std::min(pressed, points.depth[i]) : 0.0;
     const double share = elastic > 0.0 ? -elastic * stiffness / (row.impulse.normalForce[lane] * tangential) : 0.0;
     const Vec3 friction = vectorAt(row.impulse.friction, i);
-    row.penalty.touching[lane] = elastic > 0.0 ? 1.0 : (touches ? kUnpressed : 0.0);
+    row.penalty.touching[lane] = elastic > 0.0 ? 1.0 : (touches ? kTouchingWithoutForce : 0.0);
     row.penalty.stiffening[lane] = 1.0;
     row.penalty.restDepth[lane] = touches ? points.depth[i] - elastic : 0.0;
     row.penalty.maxwellDepth[lane] = elastic;
@@ -88,7 +88,7 @@ void impulseToPenalty(const IslandStep& step, std::int32_t contact, const Contac
 
 }  // namespace
 
-bool mayFall(std::size_t blocks) {
+bool mayEnterRigidMode(std::size_t blocks) {
   return blocks >= tuning::kMinRigidModeBlocks && blocks < tuning::kParallelBlocks;
 }
 
@@ -106,7 +106,7 @@ IslandFacts islandFacts(const IslandStep& step) {
     fallen += history.hasFallen ? 1U : 0U;
   }
   facts.mostlyFallen = 2 * fallen > facts.blocks;
-  if (!facts.rigidBefore && !mayFall(facts.blocks)) return facts;
+  if (!facts.rigidBefore && !mayEnterRigidMode(facts.blocks)) return facts;
   const Motion motion = motionOf(step);
   facts.fast = motion.isFasterThan(tuning::kRigidEntrySpeed);
   facts.moving = motion.isFasterThan(tuning::kRigidExitSpeed);
@@ -114,10 +114,10 @@ IslandFacts islandFacts(const IslandStep& step) {
 }
 
 IslandMode nextMode(ModeChange when, const IslandFacts& facts) {
-  if (when == ModeChange::implicitGaveUp)
+  if (when == ModeChange::implicitFailed)
     return facts.leftAlone && facts.mostlyFallen ? IslandMode::rigid : IslandMode::explicitFallback;
   if (!facts.leftAlone) return IslandMode::implicit;
-  const bool rigid = facts.rigidBefore ? facts.rigidPinned || facts.moving : mayFall(facts.blocks) && facts.fast;
+  const bool rigid = facts.rigidBefore ? facts.rigidPinned || facts.moving : mayEnterRigidMode(facts.blocks) && facts.fast;
   return rigid ? IslandMode::rigid : IslandMode::implicit;
 }
 
@@ -148,7 +148,7 @@ void setMode(IslandStep& step, IslandMode mode) {
   forEachContact(PointKind::penalty, penaltyToImpulse);
 }
 
-IslandOutcome runFall(IslandStep& step, double begin_s) {
+IslandOutcome runRigidMode(IslandStep& step, double begin_s) {
   const Simulation& simulation = step.simulation;
   double fastest = 0.0;
   for (const std::int32_t block : step.blocks)

@@ -12,13 +12,13 @@ namespace springtower {
 
 /// Whether an island of so many blocks may change to rigid mode: one thrown block or two colliding ones rebound, and islands of
 /// very many blocks run on many threads.
-bool mayFall(std::size_t blocks);
+bool mayEnterRigidMode(std::size_t blocks);
 
 /// The kind of steps that advances an island through a frame, or through the rest of one.
 enum class IslandMode : std::uint8_t { implicit, rigid, explicitFallback };
 
 /// When that is decided.
-enum class ModeChange : std::uint8_t { frameBegins, implicitGaveUp };
+enum class ModeChange : std::uint8_t { frameBegins, implicitFailed };
 
 /// Inputs of that decision, as the frame begins.
 struct IslandFacts {
@@ -43,6 +43,6 @@ IslandMode nextMode(ModeChange when, const IslandFacts& facts);
 void setMode(IslandStep& step, IslandMode mode);
 
 /// Advances an island in rigid mode through the frame from `begin_s` on. Result as of `runRigidSteps`.
-IslandOutcome runFall(IslandStep& step, double begin_s);
+IslandOutcome runRigidMode(IslandStep& step, double begin_s);
 
 }  // namespace springtower

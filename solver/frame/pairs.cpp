@@ -20,8 +20,8 @@ void dropPair(Simulation& simulation, std::size_t at) {
   Engine& engine = *simulation.engine;
   const BlockPair pair = engine.pairs.key[at];
   if (pair.b >= 0 && !sleepLoadOf(engine, at).force.isZero(0.0)) {
-    if (sleeps(simulation, pair.a)) engine.scratch.lostPartners.push_back(pair.a);
-    if (sleeps(simulation, pair.b)) engine.scratch.lostPartners.push_back(pair.b);
+    if (sleeps(simulation, pair.a)) engine.scratch.lostNeighbours.push_back(pair.a);
+    if (sleeps(simulation, pair.b)) engine.scratch.lostNeighbours.push_back(pair.b);
   }
   if (engine.pairs.contact[at] >= 0) engine.contacts.giveBack(engine.pairs.contact[at]);
 }

@@ -97,7 +97,7 @@ void sizeEngine(Simulation& simulation) {
   e.memo.boxes.resize(count);
   e.scratch.reach.assign(count, 0.0);
   e.scratch.path.assign(count, 0.0);
-  e.scratch.foreseenPath.assign(count, 0.0);
+  e.scratch.assumedPath.assign(count, 0.0);
   e.memo.travelAtSweep.assign(count, 0.0);
   e.memo.force.resize(count);
   e.memo.frames.resize(count);

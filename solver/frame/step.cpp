@@ -85,7 +85,7 @@ void stepFrame(Simulation& simulation) {
   poisonScratch(engine);
 #endif
   wakeForInputs(simulation);
-  engine.scratch.lostPartners.clear();
+  engine.scratch.lostNeighbours.clear();
   if (engine.sleep.awakeCount > 0) {
     double margin = tuning::kSweepMargin * simulation.lengths.blockHeight_m;
     findNearPairs(simulation, margin);

@@ -22,7 +22,7 @@ void synchronise(IslandStep& step) {
   if (behind_s == 0.0) return;
   ParticleArray& velocity = step.simulation.state.velocity;
   step.kick_s = behind_s;
-  evaluateForces(step, step.simulation.state, velocity, behind_s, Memory::advance);
+  evaluateForces(step, step.simulation.state, velocity, behind_s, PointUpdate::store);
   for (const std::int32_t block : step.blocks) {
     const auto b = static_cast<std::size_t>(block);
     const double half_s = 0.5 * engine.memo.blockHistory[b].lastExplicitStep_s;

@@ -2,7 +2,7 @@
 
 #include "core/tuning.h"
 #include "solver/block/inertia.h"
-#include "solver/contact/births.h"
+#include "solver/contact/create.h"
 #include "solver/contact/update.h"
 #include "solver/implicit/run.h"
 #include "solver/world/checkpoint.h"

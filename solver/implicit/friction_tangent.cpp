@@ -92,7 +92,7 @@ ActiveSetBits activeSetBits(const IslandStep& step, const NewtonSystem& island, 
   const ConstPointRows trial = contacts.trial(contact);
   const ConstPointRows slid = island.trialIsAhead ? trial : contacts.points(contact);
   const auto count = static_cast<std::size_t>(contacts.shape(contact).count);
-  const double least = island.useConsistentTangent ? 1.0 : kUnpressed;
+  const double least = island.useConsistentTangent ? 1.0 : kTouchingWithoutForce;
   unsigned mask = 0;
   for (std::size_t first = 0; first < count; first += kRowPoints) {
     const FourValues& touching = trial[rowOf(first)]->penalty.touching;

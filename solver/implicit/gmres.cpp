@@ -15,11 +15,11 @@ namespace {
 // Low-rank structure: the tangent correction acts on few blocks, and right preconditioning makes the residual zero elsewhere, so
 // Krylov vectors of the residual are stored for those blocks only.
 void findCoupledNodes(NewtonSystem& island) {
-  island.coupledAs.assign(island.residual.size(), -1);
+  island.coupledIndex.assign(island.residual.size(), -1);
   island.coupled.clear();
   const auto place = [&](std::int32_t& node) {
     if (node < 0) return;
-    std::int32_t& as = island.coupledAs[static_cast<std::size_t>(node)];
+    std::int32_t& as = island.coupledIndex[static_cast<std::size_t>(node)];
     if (as < 0) {
       as = static_cast<std::int32_t>(island.coupled.size());
       island.coupled.push_back(node);

@@ -155,13 +155,13 @@ void reject(IslandStep& step) {
     history.lastExplicitStep_s = 0.0;
     history.explicitLast = false;
   }
-  ++step.counters.handedOver;
+  ++step.counters.newtonFailures;
 }
 
 // Forces and residual at the present positions.
 double evaluateResidual(IslandStep& step, NewtonSystem& island, double effective_s, StageClock& clock) {
   clock.lap(Stage::integration);
-  evaluateForces(step, step.simulation.state, step.engine.scratch.stepVelocity, step.drift_s, Memory::trial);
+  evaluateForces(step, step.simulation.state, step.engine.scratch.stepVelocity, step.drift_s, PointUpdate::trial);
   clock.skip();  // evaluateForces times itself
   return findResidual(step, island, effective_s);
 }
@@ -313,27 +313,27 @@ bool finishStep(IslandStep& step, bool taken) {
 
 }  // namespace
 
-bool stepImplicit(IslandStep& step, bool finerFollow) {
+bool stepImplicit(IslandStep& step, bool canRetryFiner) {
   const double effective_s = endShare(step.simulation.scene.settings.method) * step.drift_s;
   synchronise(step);
   const bool carried = !islandOf(step).forcesKnown && isCarried(step, effective_s);
   if (!islandOf(step).forcesKnown && !carried)
-    evaluateForces(step, step.simulation.state, step.simulation.state.velocity, 0.0, Memory::trial);
+    evaluateForces(step, step.simulation.state, step.simulation.state.velocity, 0.0, PointUpdate::trial);
   if (!traitsOf(step.simulation.scene.settings.method).twoStep) {
     predictEuler(step, effective_s);
   } else {
     predictBdf2(step, effective_s);
   }
-  const NewtonOptions& how = finerFollow ? kBeforeFiner : kInMotion;
+  const NewtonOptions& how = canRetryFiner ? kBeforeFiner : kInMotion;
   bool converged = solveStep(step, effective_s, carried, how);
   for (int trial = 0; converged && trial < tuning::kMaxNewContactSolves; ++trial) {
     StageClock clock(step.times);
-    const FirstContact met = meetingsIn(step);
+    const FirstContact met = findFirstContacts(step);
     clock.lap(Stage::candidates);
     if (met == FirstContact::impact) return finishStep(step, false);
     if (met == FirstContact::none) break;
     restoreStep(step);
-    evaluateForces(step, step.simulation.state, step.simulation.state.velocity, 0.0, Memory::trial);
+    evaluateForces(step, step.simulation.state, step.simulation.state.velocity, 0.0, PointUpdate::trial);
     converged = solveStep(step, effective_s, false, how);
   }
   // At the start of a frame a force or the hand may jump; that is no vibration.
@@ -345,7 +345,7 @@ bool stepImplicit(IslandStep& step, bool finerFollow) {
 
 bool stepFromRest(IslandStep& step, double effective_s) {
   step.drift_s = effective_s / kBdf2;
-  evaluateForces(step, step.simulation.state, step.simulation.state.velocity, 0.0, Memory::trial);
+  evaluateForces(step, step.simulation.state, step.simulation.state.velocity, 0.0, PointUpdate::trial);
   predictEuler(step, effective_s);
   NewtonOptions how = step.blocks.size() > tuning::kNarrowBlocks ? kWideFromRest : kFromRest;
   how.mostContactIterations = std::max(how.mostContactIterations, static_cast<int>(step.blocks.size()));

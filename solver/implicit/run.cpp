@@ -59,7 +59,7 @@ bool touchesSleeping(const IslandStep& step) {
 
 // Number of implicit steps of the frame. `forced`: whether a force or the hand acts; `known`: whether that is as in the frame
 // before.
-int implicitSteps(const IslandStep& step, bool forced, bool known, bool heap) {
+int implicitSteps(const IslandStep& step, bool forced, bool known, bool mostlyFallen) {
   const Settings& settings = step.simulation.scene.settings;
   if (settings.substeps > 0) return settings.substeps;
   const bool calm = isQuiescent(step) && !forced;
@@ -70,7 +70,7 @@ int implicitSteps(const IslandStep& step, bool forced, bool known, bool heap) {
     known = known && step.engine.memo.blockHistory[static_cast<std::size_t>(block)].lastImplicitStep_s > 0.0;
   int least = forced ? tuning::kMinForcedSteps : 1;
   if (!calm && touchesSleeping(step)) least = tuning::kStandardImplicitSteps;
-  if (!calm && !known) least = std::max(least, heap ? tuning::kMinStepsAfterRigid : tuning::kMaxFrequencySteps);
+  if (!calm && !known) least = std::max(least, mostlyFallen ? tuning::kMinStepsAfterRigid : tuning::kMaxFrequencySteps);
   if (!calm && !forced) least = std::max(least, stepsForDisplacement(step));
   const int steps = std::max(least, stepsForFrequency(step, present));
   for (const std::int32_t block : step.blocks) histories[static_cast<std::size_t>(block)].implicitSteps = steps;
@@ -104,10 +104,10 @@ double turningSpeed(const AffineField& place, const AffineField& motion) {
 }
 
 // Sets the number of frames until implicit steps are tried again.
-void leaveImplicitSteps(IslandStep& step, bool heap) {
+void leaveImplicitSteps(IslandStep& step, bool mostlyFallen) {
   for (const std::int32_t block : step.blocks)
     step.engine.memo.islandHistory[static_cast<std::size_t>(block)].explicitFrames =
-        heap ? tuning::kRigidRetryFrames : tuning::kExplicitFallbackFrames;
+        mostlyFallen ? tuning::kRigidRetryFrames : tuning::kExplicitFallbackFrames;
 }
 
 }  // namespace
@@ -130,7 +130,7 @@ void setJacobians(IslandStep& step, double effective_s) {
   const BlockModel& model = step.simulation.model;
   NewtonSystem& island = step.engine.memo.newtonSystems[static_cast<std::size_t>(step.blocks.front())];
   const auto fits = [&](std::size_t b, std::size_t kind) {
-    return model.dimensions[b] == island.kinds[kind].dimensions && model.mass[b] == island.kinds[kind].mass;
+    return model.dimensions[b] == island.blockClasses[kind].dimensions && model.mass[b] == island.blockClasses[kind].mass;
   };
   bool known = island.jacobianStep_s == effective_s && island.blockClassOf.size() == step.blocks.size();
   for (std::size_t i = 0; known && i < step.blocks.size(); ++i) {
@@ -143,10 +143,11 @@ void setJacobians(IslandStep& step, double effective_s) {
   for (std::size_t i = 0; i < step.blocks.size(); ++i) {
     const auto b = static_cast<std::size_t>(step.blocks[i]);
     if (count == 0 || !fits(b, count - 1)) {
-      if (island.kinds.size() == count) island.kinds.emplace_back();
-      island.kinds[count++] = {model.dimensions[b], model.mass[b],
-                               blockJacobian(model, step.simulation.scene.settings.inertia, b, 1.0 / (effective_s * effective_s),
-                                             1.0 + step.simulation.dampingTime_s / effective_s)};
+      if (island.blockClasses.size() == count) island.blockClasses.emplace_back();
+      island.blockClasses[count++] = {
+          model.dimensions[b], model.mass[b],
+          blockJacobian(model, step.simulation.scene.settings.inertia, b, 1.0 / (effective_s * effective_s),
+                        1.0 + step.simulation.dampingTime_s / effective_s)};
     }
     island.blockClassOf[i] = static_cast<std::int32_t>(count - 1);
   }
@@ -156,7 +157,7 @@ bool implicitStepsFit(const IslandStep& step, double step_s) {
   const Simulation& simulation = step.simulation;
   const bool touches = std::any_of(step.pairs.begin(), step.pairs.end(),
                                    [&](std::int32_t at) { return step.engine.pairs.touches(static_cast<std::size_t>(at)); });
-  if (!touches || meetsSoon(step, step_s) || bounces(step, step_s)) return false;
+  if (!touches || isAboutToCollide(step, step_s) || bounces(step, step_s)) return false;
   for (const std::int32_t block : step.blocks) {
     const auto b = static_cast<std::size_t>(block);
     if (step.engine.memo.islandHistory[b].explicitFrames > 0) return false;
@@ -166,7 +167,7 @@ bool implicitStepsFit(const IslandStep& step, double step_s) {
   return true;
 }
 
-IslandOutcome runImplicitSteps(IslandStep& step, bool heap, double& reached_s) {
+IslandOutcome runImplicitSteps(IslandStep& step, bool mostlyFallen, double& reached_s) {
   Simulation& simulation = step.simulation;
   Engine& engine = step.engine;
   IslandOutcome outcome;
@@ -176,7 +177,7 @@ IslandOutcome runImplicitSteps(IslandStep& step, bool heap, double& reached_s) {
   const bool forced = holdsTether(step) || isPushed(step);
   const bool wasForced = engine.memo.islandHistory[static_cast<std::size_t>(step.blocks.front())].forced;
   if (wasForced && !forced) resetHistory(step);
-  int steps = implicitSteps(step, forced, forced == wasForced, heap);
+  int steps = implicitSteps(step, forced, forced == wasForced, mostlyFallen);
   bool fits = implicitStepsFit(step, frame_s / steps);
   if (!fits && steps < tuning::kStandardImplicitSteps && simulation.scene.settings.substeps == 0) {
     steps = tuning::kStandardImplicitSteps;
@@ -204,22 +205,22 @@ IslandOutcome runImplicitSteps(IslandStep& step, bool heap, double& reached_s) {
     step.time_s = simulation.time_s + reached_s;
     step.gravity = simulation.scene.gravity.at(step.time_s + step.drift_s);  // forces are those of the step's end
     const int finer = retryStepCount(1.0 - reached_s / frame_s, steps);
-    const bool finerFollow = finer > steps && simulation.scene.settings.substeps == 0 && !heap;
-    if (!stepImplicit(step, finerFollow || heap)) {
-      if (finerFollow) {
+    const bool canRetryFiner = finer > steps && simulation.scene.settings.substeps == 0 && !mostlyFallen;
+    if (!stepImplicit(step, canRetryFiner || mostlyFallen)) {
+      if (canRetryFiner) {
         takeSteps(finer);
         continue;
       }
-      leaveImplicitSteps(step, heap);
+      leaveImplicitSteps(step, mostlyFallen);
       return outcome;
     }
     ++outcome.substeps;
     --steps;
     reached_s = frame_s - steps * step.drift_s;
-    const std::uint64_t looked = step.counters.manifoldRefreshes + step.counters.contactsBorn;
+    const std::uint64_t looked = step.counters.manifoldRefreshes + step.counters.contactsCreated;
     outcome.inside = updateContacts(step, refreshTravelOfImplicitSteps(simulation));
     if (!outcome.inside) return outcome;
-    if (looked != step.counters.manifoldRefreshes + step.counters.contactsBorn) {
+    if (looked != step.counters.manifoldRefreshes + step.counters.contactsCreated) {
       island.forcesKnown = false;
     }
   }

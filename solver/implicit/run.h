@@ -16,13 +16,13 @@ constexpr double endShare(Method method) {
 void prepareImplicit(Simulation& simulation);
 
 /// Advances an island by implicit steps through the frame, as far as they fit and converge; `reached_s` is the time reached in
-/// the frame. The rest is left to explicit or rigid steps. `heap`: whether most of its blocks have fallen, so that rigid steps
-/// follow if these do not converge.
-IslandOutcome runImplicitSteps(IslandStep& step, bool heap, double& reached_s);
+/// the frame. The rest is left to explicit or rigid steps. `mostlyFallen`: whether most of its blocks have fallen, so that rigid
+/// steps follow if these do not converge.
+IslandOutcome runImplicitSteps(IslandStep& step, bool mostlyFallen, double& reached_s);
 
 /// One implicit step of step.drift_s. Returns false if it does not converge, or if blocks collide at speed in it; the state is
-/// then restored. With `finerFollow` it stops after fewer iterations.
-bool stepImplicit(IslandStep& step, bool finerFollow);
+/// then restored. With `canRetryFiner` it stops after fewer iterations.
+bool stepImplicit(IslandStep& step, bool canRetryFiner);
 
 /// One step of implicit Euler from rest, of `effective_s`, towards static equilibrium. Contact points advance by more than that,
 /// as in stepImplicit. Returns false if it does not converge; the state is then restored.

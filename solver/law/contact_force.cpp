@@ -118,7 +118,7 @@ SPRINGTOWER_INLINE void pointLaw(const LawStep& s, const Lanes& depth, const Lan
   impact = impact < s.step.maxStiffening ? impact : zero + s.step.maxStiffening;
   p.stiffening = known ? 1.0 + (p.stiffening - 1.0) * s.stiffeningKeep : impact;
   const Lanes lower = p.restDepth < depth ? p.restDepth : depth;
-  p.restDepth = known ? lower : depth * s.step.bornRestDepth;
+  p.restDepth = known ? lower : depth * s.step.firstRestDepthShare;
 
   const Lanes elastic = depth - p.restDepth;
   const Lanes maxwell = p.maxwellDepth + (elastic - p.maxwellDepth) * s.maxwellGain;
@@ -141,7 +141,7 @@ SPRINGTOWER_INLINE void pointLaw(const LawStep& s, const Lanes& depth, const Lan
     const Lanes most = (closing + back) * (s.pointMass / s.step.kick_s);
     push = (p.stiffening > one) & (push > most) ? (most > zero ? most : zero) : push;
   }
-  p.touching = touching ? (push > zero ? one : zero + kUnpressed) : zero;
+  p.touching = touching ? (push > zero ? one : zero + kTouchingWithoutForce) : zero;
   p.normalForce = push;
   frictionLaw(s, {touching, known, closing, stiffness}, relative, carried, normal, p);
 }

@@ -32,7 +32,7 @@ struct ContactStep {
   /// Rest depth of a point at first contact, over its depth: at 1 the spring starts unloaded at the depth where it is detected,
   /// which adds no energy; at 0 it starts at the surface, which an implicit step requires, as it evaluates the step's end only.
   /// The damping velocity is then limited to depth over step.
-  double bornRestDepth = 1.0;
+  double firstRestDepthShare = 1.0;
   double kick_s = 0.0;  ///< s for which the force acts on the velocities of a leapfrog step; 0 in other steps
 };
 

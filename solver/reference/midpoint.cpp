@@ -10,7 +10,7 @@ void stepMidpoint(IslandStep& step) {
   Engine& engine = step.engine;
   MotionState& state = step.simulation.state;
   MotionState& middle = engine.scratch.stage[0];
-  rememberPositions(step);
+  savePositions(step);
   stageAcceleration(step, state, engine.memo.carried, step.advance_s, true, engine.scratch.stageAcceleration[0]);
   advanceStage(step, state, state.velocity, engine.scratch.stageAcceleration[0], 0.5 * step.drift_s, middle);
   stageAcceleration(step, middle, state.velocity, 0.5 * step.drift_s, false, engine.scratch.stageAcceleration[1]);

@@ -58,7 +58,7 @@ void addFriction(IslandStep& step) {
 // corrects them, and the next state is accepted with any collisions left.
 void stepReport(IslandStep& step) {
   MotionState& state = step.simulation.state;
-  evaluateForces(step, state, state.velocity, 0.0, Memory::drop);
+  evaluateForces(step, state, state.velocity, 0.0, PointUpdate::discard);
   StageClock clock(step.times);
   addFriction(step);
   for (const std::int32_t block : step.blocks) step.engine.report.contacts[static_cast<std::size_t>(block)].clear();

@@ -11,7 +11,7 @@ void stepRungeKutta4(IslandStep& step) {
   auto& stage = engine.scratch.stage;
   auto& rate = engine.scratch.stageAcceleration;
   const double half = 0.5 * step.drift_s;
-  rememberPositions(step);
+  savePositions(step);
   stageAcceleration(step, state, engine.memo.carried, step.advance_s, true, rate[0]);
   advanceStage(step, state, state.velocity, rate[0], half, stage[0]);
   stageAcceleration(step, stage[0], state.velocity, half, false, rate[1]);

@@ -9,7 +9,7 @@ namespace springtower {
 
 void stageAcceleration(IslandStep& step, const MotionState& source, const ParticleArray& carried, double advance_s, bool commit,
                        ParticleArray& acceleration) {
-  evaluateForces(step, source, carried, advance_s, commit ? Memory::advance : Memory::drop);
+  evaluateForces(step, source, carried, advance_s, commit ? PointUpdate::store : PointUpdate::discard);
   StageClock clock(step.times);
   for (const std::int32_t block : step.blocks) {
     const auto b = static_cast<std::size_t>(block);
@@ -50,7 +50,7 @@ void copyCorners(const IslandStep& step, const ParticleArray& from, ParticleArra
   }
 }
 
-void rememberPositions(IslandStep& step) {
+void savePositions(IslandStep& step) {
   copyCorners(step, step.simulation.state.position, step.engine.memo.previous);
 }
 

@@ -20,6 +20,6 @@ void advanceStage(const IslandStep& step, const MotionState& base, const Particl
 void copyCorners(const IslandStep& step, const ParticleArray& from, ParticleArray& to);
 
 /// Stores the start positions of the step in engine.memo.previous.
-void rememberPositions(IslandStep& step);
+void savePositions(IslandStep& step);
 
 }  // namespace springtower

@@ -114,7 +114,7 @@ SPRINGTOWER_INLINE void addPoints(const ContactView& m, const Mover& upper, cons
       // The two tangential directions together have the rest of the sum, and each has at least the inverse masses alone.
       p.acrossMass = 1.0 / (up.all + low.all - normal - (upper.body.inverseMass + lower.body.inverseMass));
       warmStart(m, i, step_s, p);
-      p.gap = m.impulse(i).restDepth[lane] + pressedDepth(simulation, m, i) - places.depth[lane];
+      p.gap = m.impulse(i).restDepth[lane] + springDepthOfForce(simulation, m, i) - places.depth[lane];
       p.coefficient = slipsAt(m, i) ? simulation.scene.kineticFriction : simulation.scene.staticFriction;
       p.upper = upper.at;
       p.lower = lower.at;

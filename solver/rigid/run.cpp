@@ -100,7 +100,7 @@ void stepOnce(IslandStep& step, bool again) {
     } else {
       stepXpbd(step, island);
     }
-    keepForces(step, island);
+    storeForces(step, island);
   } else {
     solveAndIntegratePgs(step, island, again);
   }
@@ -226,10 +226,10 @@ IslandOutcome runRigidSteps(IslandStep& step, int steps, double begin_s) {
     step.gravity = simulation.scene.gravity.at(step.time_s);
     saveStep(step);
     for (int repeat = 0;; ++repeat) {
-      const std::uint64_t born = step.counters.contactsBorn;
+      const std::uint64_t born = step.counters.contactsCreated;
       stepOnce(step, repeat > 0);
       outcome.inside = findContacts(step);
-      if (!outcome.inside || born == step.counters.contactsBorn || repeat == tuning::kMaxRigidStepRepeats) break;
+      if (!outcome.inside || born == step.counters.contactsCreated || repeat == tuning::kMaxRigidStepRepeats) break;
       restoreStep(step);
       recomputeClearances(step);
     }

@@ -141,7 +141,7 @@ bool findWakeCandidates(Simulation& simulation) {
     if (simulation.scene.settings.sleep == Sleep::on) failed = findFailedSupports(simulation);
   }
   // A pair that the sweep has dropped has no contact force any more.
-  for (const std::int32_t block : engine.scratch.lostPartners)
+  for (const std::int32_t block : engine.scratch.lostNeighbours)
     engine.scratch.toWake.push_back({block, WakeReason::lostNeighbour});
   return failed;
 }

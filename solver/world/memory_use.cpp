@@ -58,11 +58,11 @@ std::size_t ofFactors(const Memo& memo) {
 std::size_t ofNewton(const NewtonSystem& island) {
   const BlockCholesky& matrix = island.matrix;
   std::size_t sum =
-      sizeof(NewtonSystem) + sumOf(matrix.mark, matrix.firstChild, matrix.nextChild, matrix.edgeStart, matrix.edgeRow,
-                                   matrix.work, island.touching, island.slot, island.mask, island.axes, island.residual,
-                                   island.direction, island.affine, island.factorTangents, island.tangents, island.coupled,
-                                   island.coupledAs, island.coupledMotion, island.coupledForce, island.correction, island.kinds,
-                                   island.blockClassOf, island.order.nodes, island.order.centre, island.edges);
+      sizeof(NewtonSystem) +
+      sumOf(matrix.mark, matrix.firstChild, matrix.nextChild, matrix.edgeStart, matrix.edgeRow, matrix.work, island.touching,
+            island.slot, island.mask, island.axes, island.residual, island.direction, island.affine, island.factorTangents,
+            island.tangents, island.coupled, island.coupledIndex, island.coupledMotion, island.coupledForce, island.correction,
+            island.blockClasses, island.blockClassOf, island.order.nodes, island.order.centre, island.edges);
   for (const DissectionSpace& space : island.order.space)
     sum += sizeof(space) +
            sumOf(space.neighbourStart, space.neighbour, space.sorted, space.best, space.place, space.reach, space.change);
@@ -85,9 +85,9 @@ std::size_t ofMemo(const Memo& memo) {
 
 std::size_t ofScratch(const Scratch& s) {
   std::size_t sum =
-      sumOf(s.awakeBlocks, s.reach, s.cursor, s.path, s.foreseenPath, s.newContactCount, s.nodeOf, s.contactForce,
-            s.contactMetric, s.pastPosition, s.stepVelocity, s.freePosition, s.lostPartners, s.toWake, s.wakeRoots, s.pushed,
-            s.loadChange, s.support.start, s.support.pairs, s.support.blocks, s.support.parent, s.support.open, s.support.groups,
+      sumOf(s.awakeBlocks, s.reach, s.cursor, s.path, s.assumedPath, s.newContactCount, s.nodeOf, s.contactForce, s.contactMetric,
+            s.pastPosition, s.stepVelocity, s.freePosition, s.lostNeighbours, s.toWake, s.wakeRoots, s.pushed, s.loadChange,
+            s.support.start, s.support.pairs, s.support.blocks, s.support.parent, s.support.open, s.support.groups,
             s.support.beneath, s.support.supports, s.touchingEdges, s.restless, s.parent, s.touched, s.joined, s.chunkCounters,
             s.chunkTimes, s.islandCounters, s.islandTimes, s.islandOutcome);
   for (const MotionState& stage : s.stage) sum += bytesOf(stage);

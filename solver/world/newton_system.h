@@ -50,7 +50,7 @@ struct NewtonWork {
   std::vector<double> affine;              ///< right-hand sides and solutions, [nodes][12]
   AlignedVector<ContactTangent> tangents;  ///< differences to the contacts in the factors; may be empty
   std::vector<std::int32_t> coupled;       ///< of `solveCoupled`: nodes that the tangents act on
-  std::vector<std::int32_t> coupledAs;     ///< index of each node among them
+  std::vector<std::int32_t> coupledIndex;  ///< index of each node among them
   std::vector<double> coupledMotion;       ///< m, [coupled][12]
   std::vector<double> coupledForce;        ///< N, [direction][coupled][12]
   std::vector<double> correction;          ///< m, [direction][nodes][12]
@@ -80,7 +80,7 @@ struct NewtonSystem : NewtonWork {
   std::vector<BlockSlot> slot;                             ///< of each of these; at = -1 where one side is the floor or asleep
   std::vector<ActiveSetBits> mask;                         ///< active set of each of these in the factors
   std::vector<std::array<std::array<double, 3>, 3>> axes;  ///< frames of the blocks at assembly, [node][axis][component]
-  std::vector<BlockClass> kinds;                           ///< of the island's blocks; may include classes that have left it
+  std::vector<BlockClass> blockClasses;                    ///< of the island's blocks; may include classes that have left it
   std::vector<std::int32_t> blockClassOf;                  ///< of each node
   double jacobianStep_s = 0.0;                             ///< step for which the own matrices were computed
   AlignedVector<ContactTangent> factorTangents;  ///< contributions to the factors of pairs that slipped when they were made
@@ -92,7 +92,7 @@ struct NewtonSystem : NewtonWork {
 
 /// The own matrix of a node's block.
 inline const BlockJacobian& jacobianOf(const NewtonSystem& island, std::size_t node) {
-  return island.kinds[static_cast<std::size_t>(island.blockClassOf[node])].jacobian;
+  return island.blockClasses[static_cast<std::size_t>(island.blockClassOf[node])].jacobian;
 }
 
 }  // namespace springtower

@@ -59,7 +59,7 @@ struct Scratch {
   std::vector<std::int32_t> cursor;           ///< of counting sorts
   std::vector<std::int32_t> watchedPairs;     ///< active pairs of each island, by position in islandPairs
   std::vector<double> path;                   ///< m, path of each block's fastest corner in the last step, [blocks]
-  std::vector<double> foreseenPath;           ///< m, upper bound of that path for which a list of active pairs is valid, [blocks]
+  std::vector<double> assumedPath;            ///< m, upper bound of that path for which a list of active pairs is valid, [blocks]
   std::vector<std::int32_t> newContactCount;  ///< [blocks]: pairs of the block that may make first contact in this frame
   std::vector<std::int32_t> nodeOf;           ///< index of each block in its island, for implicit steps and rigid methods
 
@@ -74,7 +74,8 @@ struct Scratch {
   std::vector<RigidIsland> rigidIslands;  ///< by the island's smallest block; of rigid methods, and of islands in rigid mode
 
   // Sleep.
-  std::vector<std::int32_t> lostPartners;  ///< sleeping blocks whose pair with an awake neighbour the sweep dropped in this frame
+  std::vector<std::int32_t>
+      lostNeighbours;  ///< sleeping blocks whose pair with an awake neighbour the sweep dropped in this frame
   std::vector<WakeRequest> toWake;
   std::vector<std::int32_t> wakeRoots;  ///< blocks from which the search over contacts starts
   std::vector<std::int32_t> pushed;     ///< sleeping blocks with awake neighbours

@@ -35,26 +35,27 @@ struct NamedCounter {
 };
 
 /// All of them: none depends on times, or on how many threads there are.
-inline constexpr std::array<NamedCounter, 20> kNamedCounters = {{{"frames", &Counters::frames},
-                                                                 {"steps", &Counters::steps},
-                                                                 {"replayedFrames", &Counters::replayedFrames},
-                                                                 {"blockPairs", &Counters::blockPairs},
-                                                                 {"marginsSpent", &Counters::marginsSpent},
-                                                                 {"candidateTests", &Counters::candidateTests},
-                                                                 {"boxOverlaps", &Counters::boxOverlaps},
-                                                                 {"planeCrossings", &Counters::planeCrossings},
-                                                                 {"cubicTests", &Counters::cubicTests},
-                                                                 {"cubicHits", &Counters::cubicHits},
-                                                                 {"contactsBorn", &Counters::contactsBorn},
-                                                                 {"contactsBornPenetrating", &Counters::contactsBornPenetrating},
-                                                                 {"manifoldRefreshes", &Counters::manifoldRefreshes},
-                                                                 {"contactEvaluations", &Counters::contactEvaluations},
-                                                                 {"springEvaluations", &Counters::springEvaluations},
-                                                                 {"implicitSteps", &Counters::implicitSteps},
-                                                                 {"implicitIterations", &Counters::implicitIterations},
-                                                                 {"factorisations", &Counters::factorisations},
-                                                                 {"handedOver", &Counters::handedOver},
-                                                                 {"responseIterations", &Counters::responseIterations}}};
+inline constexpr std::array<NamedCounter, 20> kNamedCounters = {
+    {{"frames", &Counters::frames},
+     {"steps", &Counters::steps},
+     {"replayedFrames", &Counters::replayedFrames},
+     {"blockPairs", &Counters::blockPairs},
+     {"clearanceChecks", &Counters::clearanceChecks},
+     {"candidateTests", &Counters::candidateTests},
+     {"boxOverlaps", &Counters::boxOverlaps},
+     {"planeCrossings", &Counters::planeCrossings},
+     {"cubicTests", &Counters::cubicTests},
+     {"cubicHits", &Counters::cubicHits},
+     {"contactsCreated", &Counters::contactsCreated},
+     {"contactsCreatedPenetrating", &Counters::contactsCreatedPenetrating},
+     {"manifoldRefreshes", &Counters::manifoldRefreshes},
+     {"contactEvaluations", &Counters::contactEvaluations},
+     {"springEvaluations", &Counters::springEvaluations},
+     {"implicitSteps", &Counters::implicitSteps},
+     {"implicitIterations", &Counters::implicitIterations},
+     {"factorisations", &Counters::factorisations},
+     {"newtonFailures", &Counters::newtonFailures},
+     {"responseIterations", &Counters::responseIterations}}};
 static_assert(sizeof(Counters) == kNamedCounters.size() * sizeof(std::uint64_t), "a new counter is pinned as well");
 
 /// The pins of a file that writePins wrote. Throws InputError naming the file.

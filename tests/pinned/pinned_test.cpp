@@ -78,7 +78,7 @@ TEST(Pins, OfARestoredFallRepeatThemselves) {
 // Blocks that fall meet others than those they stood on; 18 rows that stand have 156 contacts.
 TEST(Pins, OfFallsAreOfWhatFalls) {
   for (const char* fall : {"CollapseAndBack", "RestoredFall"})
-    EXPECT_GT(pinsOfFile().at(fall).counters.contactsBorn, 300U) << fall;
+    EXPECT_GT(pinsOfFile().at(fall).counters.contactsCreated, 300U) << fall;
 }
 
 // The same bits as where instructions are counted.

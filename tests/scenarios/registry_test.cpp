@@ -131,8 +131,8 @@ TEST(Scenarios, AreThoseOfTheFilesOfTheSameScenes) {
 }
 
 TEST(Scenarios, OfAskewBlocksEndWhereTheyWouldOverlap) {
-  EXPECT_NO_THROW(checkScene(askewHeapScene(kMaxAskewBlocks), "askew"));
-  EXPECT_THROW(checkScene(askewHeapScene(kMaxAskewBlocks + 1), "askew"), InputError);
+  EXPECT_NO_THROW(checkScene(askewPileScene(kMaxAskewBlocks), "askew"));
+  EXPECT_THROW(checkScene(askewPileScene(kMaxAskewBlocks + 1), "askew"), InputError);
 }
 
 TEST(Scenarios, OfManyTowersLayThemOnASquare) {

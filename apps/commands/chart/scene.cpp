@@ -23,7 +23,7 @@ constexpr double kMotion_s = 2.0;  // of scenes that do not come to rest
 // Blocks on their own.
 Scene looseBlocks(ChartScene kind) {
   constexpr int kHeap = 8;
-  Scene scene = kind == ChartScene::heap     ? askewHeapScene(kHeap)
+  Scene scene = kind == ChartScene::heap     ? askewPileScene(kHeap)
                 : kind == ChartScene::thrown ? thrownPairScene()
                 : kind == ChartScene::spin   ? spinningBlockScene()
                                              : slidingBlockScene();

@@ -47,15 +47,15 @@ Json countersJson(const Counters& counters) {
           {"plane_crossings", counters.planeCrossings},
           {"cubic_tests", counters.cubicTests},
           {"cubic_hits", counters.cubicHits},
-          {"contacts_born", counters.contactsBorn},
-          {"contacts_born_penetrating", counters.contactsBornPenetrating},
+          {"contacts_born", counters.contactsCreated},
+          {"contacts_born_penetrating", counters.contactsCreatedPenetrating},
           {"manifold_refreshes", counters.manifoldRefreshes},
           {"spring_evaluations", counters.springEvaluations},
           {"implicit_steps", counters.implicitSteps},
           {"implicit_iterations", counters.implicitIterations},
           {"factorisations", counters.factorisations},
-          {"handed_over", counters.handedOver},
-          {"margins_spent", counters.marginsSpent},
+          {"handed_over", counters.newtonFailures},
+          {"margins_spent", counters.clearanceChecks},
           {"response_iterations", counters.responseIterations}};
 }
 
@@ -110,7 +110,7 @@ Json reportJson(const Simulation& simulation, const RunResult& result, int threa
   report["steps"] = result.counters.steps;
   report["contact_evaluations"] = result.counters.contactEvaluations;
   report["cubic_tests"] = result.counters.cubicTests;
-  report["contacts_born_penetrating"] = result.counters.contactsBornPenetrating;
+  report["contacts_born_penetrating"] = result.counters.contactsCreatedPenetrating;
   report["ms_per_frame"] = timesJson(result.frameTimes);
   report["stage_ms"] = stagesJson(result);
 

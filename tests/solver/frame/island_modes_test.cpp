@@ -49,11 +49,11 @@ TEST(IslandModes, AFallGoesOnUntilItIsSlow) {
 
 TEST(IslandModes, FailedImplicitStepsAreFollowedByRigidOnesWhereBlocksHaveFallen) {
   IslandFacts facts = fastIsland();
-  EXPECT_EQ(nextMode(ModeChange::implicitGaveUp, facts), IslandMode::explicitFallback);
+  EXPECT_EQ(nextMode(ModeChange::implicitFailed, facts), IslandMode::explicitFallback);
   facts.mostlyFallen = true;
-  EXPECT_EQ(nextMode(ModeChange::implicitGaveUp, facts), IslandMode::rigid);
+  EXPECT_EQ(nextMode(ModeChange::implicitFailed, facts), IslandMode::rigid);
   facts.leftAlone = false;
-  EXPECT_EQ(nextMode(ModeChange::implicitGaveUp, facts), IslandMode::explicitFallback);
+  EXPECT_EQ(nextMode(ModeChange::implicitFailed, facts), IslandMode::explicitFallback);
 }
 
 }  // namespace

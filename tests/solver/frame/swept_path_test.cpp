@@ -19,8 +19,8 @@ TEST_P(SweptPathTest, SeldomLeadsOutOfItsBox) {
   Simulation simulation(scene);
   for (int frame = 0; frame < 90; ++frame) stepFrame(simulation);
   EXPECT_LE(simulation.counters.replayedFrames, 4U);
-  EXPECT_GT(simulation.counters.contactsBorn, 100U) << "blocks meet all the time";
-  EXPECT_EQ(simulation.counters.contactsBornPenetrating, 0U);
+  EXPECT_GT(simulation.counters.contactsCreated, 100U) << "blocks meet all the time";
+  EXPECT_EQ(simulation.counters.contactsCreatedPenetrating, 0U);
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, SweptPathTest, ::testing::Values(Method::implicit, Method::semiImplicitEuler),

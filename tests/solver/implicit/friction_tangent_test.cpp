@@ -28,7 +28,7 @@ struct DrawnBlock {
   DrawnBlock() {
     step.drift_s = 0.25 * simulation.scene.settings.frame_s;
     effective_s = endShare(Method::implicit) * step.drift_s;
-    evaluateForces(step, simulation.state, simulation.engine->scratch.stepVelocity, step.drift_s, Memory::trial);
+    evaluateForces(step, simulation.state, simulation.engine->scratch.stepVelocity, step.drift_s, PointUpdate::trial);
     island().trialIsAhead = true;
     island().useConsistentTangent = true;
   }
@@ -86,7 +86,7 @@ struct DrawnBlock {
         }
       }
     }
-    evaluateForces(step, s.state, s.engine->scratch.stepVelocity, step.drift_s, Memory::trial);
+    evaluateForces(step, s.state, s.engine->scratch.stepVelocity, step.drift_s, PointUpdate::trial);
   }
 
   // Contact forces on the blocks if the step's end were moved by displacements; both [node][12].
@@ -171,7 +171,7 @@ TEST(ContactTangent, ATouchingPointThatDoesNotPushResistsNothing) {
     const auto at = static_cast<std::size_t>(pair);
     const ContactView trial = trialOf(engine, at, contactOf(engine, at));
     for (std::size_t i = 0; i < static_cast<std::size_t>(trial.count); ++i)
-      unpressed += touchingAt(trial, i) == kUnpressed ? 1 : 0;
+      unpressed += touchingAt(trial, i) == kTouchingWithoutForce ? 1 : 0;
   }
   ASSERT_GE(unpressed, 2);
   expectTangentsToBeTheDerivative(drawn, 1e-9);

@@ -148,7 +148,7 @@ TEST(ReportFailure, CollisionsTakeMoreThanACoupleOfIterations) {
   }
   EXPECT_GT(most, 10.0);
   EXPECT_LT(mostOfOurs, 3.0);
-  EXPECT_EQ(ours.counters.handedOver, 0U) << "a step that did not converge";
+  EXPECT_EQ(ours.counters.newtonFailures, 0U) << "a step that did not converge";
 }
 
 // Largest horizontal displacement of the blocks of the top row, m.

@@ -121,7 +121,7 @@ TEST_P(RigidMethod, StopsAtTheFloor) {
   const RunResult result = runScene(simulation, options);
   EXPECT_LT(result.deepest.depth, 1e-5);
   EXPECT_LT(*result.maxEnergyRise, 1e-3);
-  EXPECT_EQ(result.counters.contactsBornPenetrating, 0U);
+  EXPECT_EQ(result.counters.contactsCreatedPenetrating, 0U);
   EXPECT_NEAR(centre(simulation.state.position, 0).z(), 0.5 * kBlockHeight_m, 1e-5);
 }
 
@@ -237,8 +237,8 @@ TEST(RigidSteps, TakenAgainMissNoContact) {
     RunOptions options;
     options.seconds = 1.5;
     const RunResult result = runScene(simulation, options);
-    EXPECT_GT(result.counters.contactsBorn, 300U) << nameOf(method);
-    EXPECT_EQ(result.counters.contactsBornPenetrating, 0U) << nameOf(method);
+    EXPECT_GT(result.counters.contactsCreated, 300U) << nameOf(method);
+    EXPECT_EQ(result.counters.contactsCreatedPenetrating, 0U) << nameOf(method);
   }
 }
 
@@ -258,7 +258,7 @@ TEST(RigidSteps, TakenAgainAreGoneOnce) {
   Simulation simulation(scene);
   const double start = centre(simulation.state.position, 0).z();
   stepFrame(simulation);
-  ASSERT_EQ(simulation.counters.contactsBorn, 1U);
+  ASSERT_EQ(simulation.counters.contactsCreated, 1U);
   const double way = start - centre(simulation.state.position, 0).z();
   EXPECT_NEAR(simulation.engine->memo.blockHistory[0].travel, way, 1e-9);
   EXPECT_EQ(simulation.counters.manifoldRefreshes, 1U);

@@ -1,4 +1,4 @@
-#include "solver/contact/births.h"
+#include "solver/contact/create.h"
 
 #include "core/tuning.h"
 #include "narrowphase/turning_face.h"
@@ -153,8 +153,8 @@ void updateSeparatedFloor(IslandStep& step, std::size_t at, Counters& counters) 
   if (!step.simulation.scene.settings.continuousTests) return;
   ++counters.cubicHits;
   const double before = lowestCorner(cornersOf(step.engine.memo.previous, block));
-  if (step.simulation.frame > 0 && before < -step.simulation.lengths.contactError_m) ++counters.contactsBornPenetrating;
-  ++counters.contactsBorn;
+  if (step.simulation.frame > 0 && before < -step.simulation.lengths.contactError_m) ++counters.contactsCreatedPenetrating;
+  ++counters.contactsCreated;
   Manifold fresh;
   fresh.upper = pairs.key[at].a;
   fresh.kind = step.pointKind;
@@ -233,17 +233,17 @@ void updateSeparated(IslandStep& step, std::size_t at, Counters& counters, Stage
   }
   const double overlapError =
       step.simulation.lengths.contactError_m + 2.0 * (warp(step.engine.memo.previous, a) + warp(step.engine.memo.previous, b));
-  if (step.simulation.frame > 0 && before.best() < -overlapError) ++counters.contactsBornPenetrating;
+  if (step.simulation.frame > 0 && before.best() < -overlapError) ++counters.contactsCreatedPenetrating;
   Manifold fresh;
   fresh.kind = step.pointKind;
   chooseManifold(before, movingA.end, movingB.end, limitsOf(step.simulation), 0.0, edgeSlackOf(step.simulation), pair, {}, fresh);
   pairs.clearance[at] = 0.0;
   if (fresh.count == 0) return;
-  ++counters.contactsBorn;
+  ++counters.contactsCreated;
   storeContact(step.engine, at, fresh);
 }
 
-double marginNow(const Simulation& simulation, std::size_t at) {
+double clearanceNow(const Simulation& simulation, std::size_t at) {
   const PairTable& pairs = simulation.engine->pairs;
   const BlockPair& pair = pairs.key[at];
   const CornerView a = cornersOf(simulation.state.position, static_cast<std::size_t>(pair.a));
@@ -287,7 +287,7 @@ void refreshManifold(IslandStep& step, std::size_t at, Counters& counters) {
       return;
     }
   }
-  keepContactMemory(old, position, step.law, radius, fresh);
+  transferPointState(old, position, step.law, radius, fresh);
   storeContact(step.engine, at, fresh);
 }
 

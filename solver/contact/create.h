@@ -10,7 +10,7 @@ namespace springtower {
 void updateSeparated(IslandStep& step, std::size_t at, Counters& counters, StageTimes& times);
 
 /// Present gap (m) of a separated pair along its stored axis, at least 0.
-double marginNow(const Simulation& simulation, std::size_t at);
+double clearanceNow(const Simulation& simulation, std::size_t at);
 
 /// Recomputes the manifold of a touching pair from the present positions, keeping what its points store; marks the pair as
 /// separated when it has parted.
