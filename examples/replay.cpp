@@ -13,15 +13,15 @@ namespace {
 // A push at the top for a quarter of a second, and what becomes of it. Returns 0 where the simulation fails.
 std::uint64_t play(st::World& world) {
   const int top = world.blockCount() - 2;
-  st::applyForce(world, {top, -1, {1.5, 0.0, 0.0}, world.time_s(), world.time_s() + 0.25});
-  if (world.step(60)) return 0;
+  st::applyForce(world, {top, -1, {1.0, 0.0, 0.0}, world.time_s(), world.time_s() + 0.25});
+  if (world.step(40)) return 0;
   return world.stateHash();
 }
 
 }  // namespace
 
 int main() {
-  const st::Scene scene = st::towerScene(6);
+  const st::Scene scene = st::towerScene(4);
   st::World world(scene);
   if (world.step(30)) return 3;
   const st::Snapshot before = world.snapshot();
