@@ -26,7 +26,7 @@ cmake --preset "$preset" --log-level=WARNING
 cmake --build --preset "$preset"
 
 if [[ $preset == ci ]]; then
-  folders=(core broadphase narrowphase solver scenarios apps bench tests)
+  folders=(core broadphase narrowphase solver scenarios include api apps bench examples tests)
   step "layout: clang-format"
   find "${folders[@]}" -name '*.cpp' -print0 -o -name '*.h' -print0 | xargs -0 clang-format --dry-run --Werror
   step "names and common mistakes: clang-tidy"

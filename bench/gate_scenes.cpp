@@ -9,6 +9,7 @@
 #include "core/version.h"
 #include "scenarios/gate.h"
 #include "scenarios/towers.h"
+#include "solver/frame/inputs.h"
 #include "solver/metrics/measures.h"
 #include "solver/metrics/penetration.h"
 #include "solver/world/simulation.h"
@@ -52,8 +53,7 @@ void pull(Simulation& simulation, std::size_t block, double speed_m_s, double& f
   const double missing = speed_m_s - centre(simulation.state.velocity, block).dot(along);
   const double unit_n = simulation.model.mass[block] / simulation.scene.settings.frame_s * missing;
   friction_n = std::max(0.0, friction_n + 0.2 * unit_n);
-  const double end_s = simulation.time_s + 1.5 * simulation.scene.settings.frame_s;
-  simulation.scene.forces = {{static_cast<int>(block), -1, (friction_n + 0.5 * unit_n) * along, simulation.time_s, end_s}};
+  setOnlyForce(simulation, forceForOneFrame(simulation, block, (friction_n + 0.5 * unit_n) * along));
 }
 
 void runGate(const GateTower& gate, Method method, int frames) {

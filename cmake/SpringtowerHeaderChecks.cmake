@@ -10,7 +10,7 @@ find_package(PkgConfig REQUIRED)
 pkg_check_modules(cairo REQUIRED IMPORTED_TARGET cairo)
 
 set(check_sources)
-foreach(folder IN ITEMS core broadphase narrowphase solver scenarios apps bench tests)
+foreach(folder IN ITEMS core broadphase narrowphase solver scenarios api apps bench tests)
   file(GLOB_RECURSE headers CONFIGURE_DEPENDS RELATIVE "${PROJECT_SOURCE_DIR}" "${PROJECT_SOURCE_DIR}/${folder}/*.h")
   foreach(header IN LISTS headers)
     string(REGEX REPLACE "\\.h$" ".cpp" own "${header}")
@@ -23,13 +23,26 @@ foreach(folder IN ITEMS core broadphase narrowphase solver scenarios apps bench 
   endforeach()
 endforeach()
 
+# Public headers get no include path but their own, as outside this project.
+file(GLOB headers CONFIGURE_DEPENDS RELATIVE "${PROJECT_SOURCE_DIR}/include" "${PROJECT_SOURCE_DIR}/include/springtower/*.h")
+set(public_check_sources)
+foreach(header IN LISTS headers)
+  set(source "${PROJECT_BINARY_DIR}/header_checks/include/${header}.cpp")
+  file(CONFIGURE OUTPUT "${source}" CONTENT "#include <@header@>\n" @ONLY)
+  list(APPEND public_check_sources "${source}")
+endforeach()
+add_library(springtower_public_header_checks OBJECT ${public_check_sources})
+springtower_configure_target(springtower_public_header_checks)
+target_compile_options(springtower_public_header_checks PRIVATE -O0)
+target_include_directories(springtower_public_header_checks PRIVATE "${PROJECT_SOURCE_DIR}/include")
+
 if(check_sources)
   add_library(springtower_header_checks OBJECT ${check_sources})
   springtower_configure_target(springtower_header_checks)
   target_compile_options(springtower_header_checks PRIVATE -O0)
   target_include_directories(springtower_header_checks PRIVATE "${PROJECT_SOURCE_DIR}")
   target_link_libraries(
-    springtower_header_checks PRIVATE springtower::springtower CLI11::CLI11 nlohmann_json::nlohmann_json fmt::fmt
+    springtower_header_checks PRIVATE springtower::engine springtower::springtower CLI11::CLI11 nlohmann_json::nlohmann_json fmt::fmt
                                       tomlplusplus::tomlplusplus PkgConfig::cairo benchmark::benchmark GTest::gmock)
   target_compile_definitions(
     springtower_header_checks PRIVATE SPRINGTOWER_SOURCE_DIR="" SPRINGTOWER_BINARY_DIR="" SPRINGTOWER_TEST_DATA_DIR=""

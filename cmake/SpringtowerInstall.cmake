@@ -4,18 +4,16 @@ include(CMakePackageConfigHelpers)
 set(package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/springtower")
 
 install(
-  TARGETS springtower_library springtower_core springtower_broadphase springtower_narrowphase springtower_solver
-          springtower_scenarios
+  TARGETS springtower_api springtower_core springtower_broadphase springtower_narrowphase springtower_solver springtower_scenarios
   EXPORT springtowerTargets
   ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}")
 install(EXPORT springtowerTargets NAMESPACE springtower:: DESTINATION "${package_dir}")
 
-# Headers keep their folder, so that #include "core/state.h" reads the same inside and outside the repository.
+# The public interface alone; it includes nothing but the standard library.
 install(
-  DIRECTORY core broadphase narrowphase solver scenarios
-  DESTINATION "${SPRINGTOWER_INSTALL_INCLUDEDIR}"
+  DIRECTORY include/springtower
+  DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}"
   FILES_MATCHING PATTERN "*.h")
-install(FILES "${SPRINGTOWER_GENERATED_DIR}/core/version.h" DESTINATION "${SPRINGTOWER_INSTALL_INCLUDEDIR}/core")
 
 configure_package_config_file("${CMAKE_CURRENT_LIST_DIR}/springtowerConfig.cmake.in"
                               "${PROJECT_BINARY_DIR}/springtowerConfig.cmake" INSTALL_DESTINATION "${package_dir}")

@@ -49,9 +49,9 @@ function(springtower_add_library folder)
     target_link_libraries(${target} INTERFACE ${arg_PUBLIC})
     set(scope INTERFACE)
   endif()
-  target_include_directories(
-    ${target} ${scope} "$<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>" "$<BUILD_INTERFACE:${SPRINGTOWER_GENERATED_DIR}>"
-                       "$<INSTALL_INTERFACE:${SPRINGTOWER_INSTALL_INCLUDEDIR}>")
+  # Outside this project nobody includes its headers: they are not installed.
+  target_include_directories(${target} ${scope} "$<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>"
+                                                "$<BUILD_INTERFACE:${SPRINGTOWER_GENERATED_DIR}>")
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${folder})
   add_library(springtower::${folder} ALIAS ${target})
 endfunction()
@@ -63,6 +63,6 @@ function(springtower_add_program target)
   add_executable(${target} ${arg_SOURCES})
   springtower_configure_target(${target})
   target_include_directories(${target} PRIVATE "${PROJECT_SOURCE_DIR}")
-  target_link_libraries(${target} PRIVATE springtower::springtower ${arg_LIBRARIES})
+  target_link_libraries(${target} PRIVATE springtower::engine ${arg_LIBRARIES})
   set_target_properties(${target} PROPERTIES OUTPUT_NAME ${arg_NAME} RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/bin")
 endfunction()

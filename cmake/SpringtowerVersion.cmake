@@ -1,7 +1,6 @@
 # Writes core/version.h into the build folder: the version, the commit and how the library was compiled.
 
 include(GNUInstallDirs)
-set(SPRINGTOWER_INSTALL_INCLUDEDIR "${CMAKE_INSTALL_INCLUDEDIR}/springtower")
 set(SPRINGTOWER_GENERATED_DIR "${PROJECT_BINARY_DIR}/generated")
 
 set(SPRINGTOWER_GIT_COMMIT "unknown")

@@ -2,6 +2,7 @@
 #include "core/geometry/oriented_box.h"
 #include "core/geometry/sweep.h"
 #include "core/limits.h"
+#include "core/scene/input_check.h"
 #include "core/scene/scene.h"
 
 #include <algorithm>
@@ -75,22 +76,6 @@ void checkBlock(const Scene& scene, std::size_t b, std::string_view source) {
   requireInRange(length, kUnit, where + ": length of the orientation's quaternion");
 }
 
-void checkGravity(const Gravity& gravity, std::string_view source) {
-  requireInRange(gravity.magnitude, kGravityRange, fmt::format("{}: gravity: magnitude", source));
-  requireInRange(gravity.tilt_deg, kTiltRange, fmt::format("{}: gravity: tilt", source));
-  requireInRange(gravity.direction_deg, kDirectionRange, fmt::format("{}: gravity: direction", source));
-  requireInRange(gravity.sway_deg, kTiltRange, fmt::format("{}: gravity: sway", source));
-  requireInRange(gravity.sway_hz, kFrequencyRange, fmt::format("{}: gravity: frequency of the sway", source));
-}
-
-void checkForce(const UserForce& force, std::size_t blocks, const std::string& where) {
-  requireInRange(force.block, {0.0, static_cast<double>(blocks) - 1.0, ""}, where + ": block");
-  requireInRange(force.corner, {-1.0, 7.0, "(-1 is the centre)"}, where + ": corner");
-  checkVector(force.force, kForceRange, where + ": force");
-  requireInRange(force.start_s, kTimeRange, where + ": start");
-  requireInRange(force.end_s, {force.start_s, kTimeRange.most, kTimeRange.unit}, where + ": end");
-}
-
 void checkFloor(const Scene& scene, const std::vector<OrientedBox>& boxes, std::string_view source) {
   for (std::size_t b = 0; b < boxes.size(); ++b) {
     const double depth = boxes[b].reach().z() - boxes[b].centre.z();
@@ -100,12 +85,15 @@ void checkFloor(const Scene& scene, const std::vector<OrientedBox>& boxes, std::
   }
 }
 
+// A number that would lead out of the plane y = 0.
+void requireNone(double found, std::string_view where) {
+  constexpr double kRounding = 1e-9;  // m, m/s, rad/s, N, m/s2 and cosines
+  requireInRange(found, {-kRounding, kRounding, "for a motion in the plane y = 0"}, where);
+}
+
 // Whether everything about a scene is its own mirror image in the plane y = 0.
 void checkPlane(const Scene& scene, std::string_view source) {
-  constexpr double kRounding = 1e-9;  // m, m/s, rad/s, N, m/s2 and cosines
-  const auto require = [&](double found, const std::string& where) {
-    requireInRange(found, {-kRounding, kRounding, "for a motion in the plane y = 0"}, fmt::format("{}: {}", source, where));
-  };
+  const auto require = [&](double found, const std::string& where) { requireNone(found, fmt::format("{}: {}", source, where)); };
   for (std::size_t b = 0; b < scene.blocks.size(); ++b) {
     const BlockSpec& block = scene.blocks[b];
     const std::string where = nameOfBlock(scene, b);
@@ -116,11 +104,9 @@ void checkPlane(const Scene& scene, std::string_view source) {
     require(block.spin.z(), where + ": spin z");
   }
   for (std::size_t f = 0; f < scene.forces.size(); ++f) {
-    const UserForce& force = scene.forces[f];
-    require(force.force.y(), fmt::format("force {}: force y", f));
-    require(force.corner + 1.0, fmt::format("force {}: corner, counted from 1,", f));
+    checkForceInPlane(scene.forces[f], fmt::format("{}: force {}", source, f));
   }
-  require(scene.gravity.at(0.0).y(), "gravity: y");
+  checkGravityInPlane(scene.gravity, source);
 }
 
 void checkPair(const Scene& scene, const std::vector<OrientedBox>& boxes, std::size_t one, std::size_t other,
@@ -150,13 +136,42 @@ void checkPairs(const Scene& scene, const std::vector<OrientedBox>& boxes, std::
 
 }  // namespace
 
+void checkGravity(const Gravity& gravity, std::string_view source) {
+  requireInRange(gravity.magnitude, kGravityRange, fmt::format("{}: gravity: magnitude", source));
+  requireInRange(gravity.tilt_deg, kTiltRange, fmt::format("{}: gravity: tilt", source));
+  requireInRange(gravity.direction_deg, kDirectionRange, fmt::format("{}: gravity: direction", source));
+  requireInRange(gravity.sway_deg, kTiltRange, fmt::format("{}: gravity: sway", source));
+  requireInRange(gravity.sway_hz, kFrequencyRange, fmt::format("{}: gravity: frequency of the sway", source));
+}
+
+void checkForce(const UserForce& force, std::size_t blocks, std::string_view source) {
+  const std::string where(source);
+  requireInRange(force.block, {0.0, static_cast<double>(blocks) - 1.0, ""}, where + ": block");
+  requireInRange(force.corner, {-1.0, 7.0, "(-1 is the centre)"}, where + ": corner");
+  checkVector(force.force, kForceRange, where + ": force");
+  requireInRange(force.start_s, kTimeRange, where + ": start");
+  requireInRange(force.end_s, {force.start_s, kTimeRange.most, kTimeRange.unit}, where + ": end");
+}
+
+void checkFriction(double staticFriction, double kineticFriction, std::string_view source) {
+  requireInRange(staticFriction, kFrictionRange, fmt::format("{}: static friction", source));
+  requireInRange(kineticFriction, {0.0, staticFriction, "(the static one)"}, fmt::format("{}: kinetic friction", source));
+}
+
+void checkForceInPlane(const UserForce& force, std::string_view source) {
+  requireNone(force.force.y(), fmt::format("{}: force y", source));
+  requireNone(force.corner + 1.0, fmt::format("{}: corner, counted from 1,", source));
+}
+
+void checkGravityInPlane(const Gravity& gravity, std::string_view source) {
+  requireNone(gravity.at(0.0).y(), fmt::format("{}: gravity: y", source));
+}
+
 void checkScene(const Scene& scene, std::string_view source) {
   checkSettings(scene.settings, source);
   checkGravity(scene.gravity, source);
   requireInRange(scene.seconds, kSecondsRange, fmt::format("{}: seconds", source));
-  requireInRange(scene.staticFriction, kFrictionRange, fmt::format("{}: static friction", source));
-  requireInRange(scene.kineticFriction, {0.0, scene.staticFriction, "(the static one)"},
-                 fmt::format("{}: kinetic friction", source));
+  checkFriction(scene.staticFriction, scene.kineticFriction, source);
   requireInRange(static_cast<double>(scene.blocks.size()), {1.0, static_cast<double>(kMaxBlocks), ""},
                  fmt::format("{}: number of blocks", source));
   std::vector<OrientedBox> boxes;

@@ -7,7 +7,6 @@
 #include "solver/frame/pairs.h"
 #include "solver/implicit/run.h"
 #include "solver/rigid/run.h"
-#include "solver/sleep/rest.h"
 #include "solver/world/engine.h"
 #include "solver/world/simulation.h"
 #include "solver/world/stiffness.h"
@@ -161,14 +160,6 @@ Simulation::Simulation(const Scene& given) : scene(given), engine(std::make_uniq
     for (MotionState& stage : e.scratch.stage) stage = state;
     for (ParticleArray& acceleration : e.scratch.stageAcceleration) acceleration.resize(count);
   }
-}
-
-void kick(Simulation& simulation, std::size_t block, const Vec3& velocity) {
-  for (std::size_t c = 0; c < kCorners; ++c) simulation.state.velocity.add(block, c, velocity);
-  simulation.engine->memo.blockHistory[block].lastImplicitStep_s = 0.0;
-  simulation.engine->memo.islandHistory[block].explicitFrames = tuning::kExplicitFallbackFrames;
-  simulation.restTime_s[block] = 0.0;
-  wake(simulation, block, WakeReason::kick);
 }
 
 }  // namespace springtower

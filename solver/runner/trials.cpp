@@ -2,6 +2,7 @@
 
 #include "core/tuning.h"
 #include "solver/block/inertia.h"
+#include "solver/frame/inputs.h"
 #include "solver/statics/friction_limit.h"
 
 #include <algorithm>
@@ -14,12 +15,6 @@ namespace {
 
 double friction_n(const Simulation& simulation, double normal_n) {
   return simulation.scene.staticFriction * normal_n;
-}
-
-// A force that acts through the coming frame only.
-UserForce forceNow(const Simulation& simulation, std::size_t block, const Vec3& force) {
-  const double now = simulation.time_s;
-  return {static_cast<int>(block), -1, force, now, now + 1.5 * simulation.scene.settings.frame_s};
 }
 
 // Position of a point of a block, given in shares of its edges from its centre.
@@ -113,14 +108,14 @@ SlipTrial pullUntilSlip(Simulation& simulation, std::size_t block, const Vec3& d
             : tuning::kSlipRampQuickShare + tuning::kSlipRampSlowRate_per_s * (trial.time_s - tuning::kSlipRampQuickTime_s);
     if (share > tuning::kMaxSlipRampShare) break;
     trial.force_n = share * borne_n;
-    simulation.scene.forces = {forceNow(simulation, block, trial.force_n * direction)};
+    setOnlyForce(simulation, forceForOneFrame(simulation, block, trial.force_n * direction));
     const std::vector<ContactForce> before = contactForces(simulation);
     stepFrame(simulation);
     trial.normal_n = normalForceOn(before, id, false);
     trial.slipped = slip() > slip_m;
     if (trial.slipped) trial.limit_n = frictionLimit_n(simulation, before, id, direction);
   }
-  simulation.scene.forces.clear();
+  clearForces(simulation);
   return trial;
 }
 
@@ -128,19 +123,22 @@ TiltTrial tiltUntilFall(Scene scene, const TiltRamp& ramp) {
   scene.gravity.tilt_deg = ramp.most_deg;  // stiff enough for the loads at the largest tilt, not only upright
   scene.gravity.direction_deg = ramp.direction_deg;
   Simulation simulation(scene);
-  simulation.scene.gravity.tilt_deg = 0.0;
+  Gravity gravity = scene.gravity;
+  gravity.tilt_deg = 0.0;
+  setGravity(simulation, gravity);
   const std::vector<FittedBox> start = fittedBoxes(simulation.state.position);
   TiltTrial trial;
-  while (trial.standing.stands && simulation.scene.gravity.tilt_deg < ramp.most_deg) {
+  while (trial.standing.stands && gravity.tilt_deg < ramp.most_deg) {
     const double next_s = simulation.time_s + scene.settings.frame_s;
     const double slow_s = ramp.start_deg / ramp.approach_deg_s + ramp.hold_s;  // start of the slow rotation
-    simulation.scene.gravity.tilt_deg = next_s > slow_s ? ramp.start_deg + ramp.rate_deg_s * (next_s - slow_s)
-                                                        : std::min(ramp.start_deg, ramp.approach_deg_s * next_s);
+    gravity.tilt_deg = next_s > slow_s ? ramp.start_deg + ramp.rate_deg_s * (next_s - slow_s)
+                                       : std::min(ramp.start_deg, ramp.approach_deg_s * next_s);
+    setGravity(simulation, gravity);
     stepFrame(simulation);
     trial.standing = standing(simulation.model, start, simulation.state.position);
   }
   trial.fell = !trial.standing.stands;
-  trial.tilt_deg = simulation.scene.gravity.tilt_deg;
+  trial.tilt_deg = gravity.tilt_deg;
   return trial;
 }
 

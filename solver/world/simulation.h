@@ -15,7 +15,7 @@ namespace springtower {
 
 struct Engine;  // the engine's working data: pairs, contacts, islands, workspaces (solver/world/engine.h)
 
-/// A running scene. Plain data that tools may read between frames; changed only by the functions below.
+/// A running scene. Plain data that tools may read between frames; changed only by functions: below, solver/frame/inputs.h.
 struct Simulation {
   explicit Simulation(const Scene& scene);
   ~Simulation();

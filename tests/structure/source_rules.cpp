@@ -17,16 +17,20 @@ struct Folder {
 };
 
 // core < broadphase, narrowphase < solver < apps, bench; core < scenarios < apps, bench; tests see the apps, whose viewer has
-// parts that are tested without a window.
+// parts that are tested without a window. The public headers (include) know themselves alone; what is behind them (api) lies
+// above solver and scenarios, beside apps; examples see what other projects see.
 const Folder kFolders[] = {
     {"core", {"core"}},
     {"broadphase", {"core", "broadphase"}},
     {"narrowphase", {"core", "narrowphase"}},
     {"solver", {"core", "broadphase", "narrowphase", "solver"}},
     {"scenarios", {"core", "scenarios"}},
+    {"include", {"include"}},
+    {"api", {"core", "solver", "scenarios", "include", "api"}},
     {"apps", {"core", "broadphase", "narrowphase", "solver", "scenarios", "apps"}},
     {"bench", {"core", "broadphase", "narrowphase", "solver", "scenarios", "bench"}},
-    {"tests", {"core", "broadphase", "narrowphase", "solver", "scenarios", "apps", "tests"}},
+    {"examples", {"include"}},
+    {"tests", {"core", "broadphase", "narrowphase", "solver", "scenarios", "include", "api", "apps", "tests"}},
 };
 
 // The rooms of the top-level folders that have some, from the ground up: each may know those before it in its own folder.
@@ -132,14 +136,26 @@ std::string complaintInFolder(std::string_view path, std::string_view target) {
   return std::string(from) + " must not know " + std::string(to);
 }
 
+// Public headers are included as they are installed.
+constexpr std::string_view kPublicHeaders = "springtower/";
+
 // Empty when the include is allowed in a file of `folder`, else why not.
 std::string complaint(std::string_view path, const Folder& folder, const Include& include) {
+  const auto& allowed = folder.mayInclude;
+  if (include.target.starts_with(kPublicHeaders)) {
+    if (include.quoted) return "needs angle brackets: it is a public header";
+    if (std::find(allowed.begin(), allowed.end(), "include") != allowed.end()) return "";
+    return std::string(folder.name) + " must not know the public headers";
+  }
   const Folder* target = include.target.find('/') == std::string_view::npos ? nullptr : findFolder(include.target);
   if (target == nullptr) {
-    return include.quoted ? "is not written from the repository root" : "";
+    if (include.quoted) return "is not written from the repository root";
+    // The standard library's headers are single words.
+    const bool isStandard = include.target.find_first_of("/.") == std::string_view::npos;
+    return folder.name == "include" && !isStandard ? "a public header includes the standard library alone" : "";
   }
+  if (target->name == "include") return "is written <springtower/...>: it is a public header";
   if (!include.quoted) return "needs quotes: it is a file of this project";
-  const auto& allowed = folder.mayInclude;
   if (std::find(allowed.begin(), allowed.end(), target->name) != allowed.end()) return complaintInFolder(path, include.target);
   return std::string(folder.name) + " must not know " + std::string(target->name);
 }
@@ -245,6 +261,8 @@ std::vector<std::string> brokenRulesInTree(const std::filesystem::path& root) {
   const std::vector<std::filesystem::path> files = sourceFiles(root);
   const auto flat = std::count_if(files.begin(), files.end(), [](const auto& file) { return file.parent_path() == "solver"; });
   if (flat > kMaxFlatFiles) broken.push_back("solver/: " + std::to_string(flat) + " files beside its folders");
+  const auto open = std::count_if(files.begin(), files.end(), [](const auto& file) { return *file.begin() == "include"; });
+  if (open > kMaxPublicHeaders) broken.push_back("include/: " + std::to_string(open) + " public headers");
   for (const std::filesystem::path& file : files) {
     std::ifstream stream(root / file, std::ios::binary);
     std::ostringstream text;

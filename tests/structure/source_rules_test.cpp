@@ -20,16 +20,19 @@ TEST(SourceRules, TheProjectKeepsThem) {
 }
 
 TEST(SourceRules, EachFolderKnowsItselfAndTheFoldersBelow) {
-  const std::vector<std::string> folders = {"core", "broadphase", "narrowphase", "solver", "scenarios", "apps", "bench", "tests"};
+  const std::vector<std::string> folders = {"core", "broadphase", "narrowphase", "solver",   "scenarios",
+                                            "api",  "apps",       "bench",       "examples", "tests"};
   const std::vector<std::string> allowed = {
-      "10000000",  // core
-      "11000000",  // broadphase
-      "10100000",  // narrowphase
-      "11110000",  // solver
-      "10001000",  // scenarios
-      "11111100",  // apps
-      "11111010",  // bench
-      "11111101",  // tests
+      "1000000000",  // core
+      "1100000000",  // broadphase
+      "1010000000",  // narrowphase
+      "1111000000",  // solver
+      "1000100000",  // scenarios
+      "1001110000",  // api
+      "1111101000",  // apps
+      "1111100100",  // bench
+      "0000000000",  // examples
+      "1111111001",  // tests
   };
   for (size_t from = 0; from < folders.size(); ++from) {
     for (size_t to = 0; to < folders.size(); ++to) {
@@ -37,6 +40,39 @@ TEST(SourceRules, EachFolderKnowsItselfAndTheFoldersBelow) {
       EXPECT_EQ(broken.empty(), allowed[from][to] == '1') << folders[from] << " includes " << folders[to];
     }
   }
+}
+
+TEST(SourceRules, PublicHeadersKnowTheStandardLibraryAlone) {
+  const std::string once = "#pragma once\n";
+  const std::string header = "include/springtower/world.h";
+  EXPECT_THAT(brokenRules(header, once + "#include <vector>\n#include <springtower/scene.h>\n"), IsEmpty());
+  EXPECT_THAT(brokenRules(header, once + "#include \"core/state.h\"\n"), ElementsAre(HasSubstr("include must not know core")));
+  EXPECT_THAT(brokenRules(header, once + "#include <Eigen/Core>\n"), ElementsAre(HasSubstr("the standard library alone")));
+  EXPECT_THAT(brokenRules(header, once + "#include <math.h>\n"), ElementsAre(HasSubstr("the standard library alone")));
+  EXPECT_THAT(brokenRules(header, once + "#include \"springtower/scene.h\"\n"), ElementsAre(HasSubstr("angle brackets")));
+  EXPECT_THAT(brokenRules("api/world.cpp", "#include <springtower/world.h>\n"), IsEmpty());
+  EXPECT_THAT(brokenRules("examples/tower.cpp", "#include <springtower/world.h>\n"), IsEmpty());
+  EXPECT_THAT(brokenRules("tests/api/world_test.cpp", "#include <springtower/world.h>\n"), IsEmpty());
+  for (const std::string inside : {"core", "solver", "scenarios", "apps", "bench"}) {
+    EXPECT_THAT(brokenRules(inside + "/user.cpp", "#include <springtower/world.h>\n"),
+                ElementsAre(HasSubstr(inside + " must not know the public headers")));
+  }
+  EXPECT_THAT(brokenRules("api/world.cpp", "#include \"include/springtower/world.h\"\n"),
+              ElementsAre(HasSubstr("<springtower/...>")));
+}
+
+TEST(SourceRules, ThePublicInterfaceIsSmall) {
+  const std::filesystem::path root = std::filesystem::path(testing::TempDir()) / "springtower_public_headers";
+  std::filesystem::remove_all(root);
+  std::filesystem::create_directories(root / "include/springtower");
+  const auto add = [&](int number) {
+    std::ofstream(root / ("include/springtower/part" + std::to_string(number) + ".h")) << "#pragma once\n";
+  };
+  for (int i = 0; i < kMaxPublicHeaders; ++i) add(i);
+  EXPECT_THAT(brokenRulesInTree(root), IsEmpty());
+  add(kMaxPublicHeaders);
+  EXPECT_THAT(brokenRulesInTree(root), ElementsAre(HasSubstr("8 public headers")));
+  std::filesystem::remove_all(root);
 }
 
 TEST(SourceRules, ARoomOfTheSolverKnowsThoseBeforeIt) {

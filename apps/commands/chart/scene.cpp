@@ -2,6 +2,7 @@
 
 #include "scenarios/loose.h"
 #include "scenarios/towers.h"
+#include "solver/frame/inputs.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -168,8 +169,7 @@ void pull(SteadyPull& hand, Simulation& simulation) {
   const double unit = simulation.model.mass[block] / simulation.scene.settings.frame_s * missing;
   hand.held_n = std::clamp(hand.held_n + kIntegral * unit, 0.0, kStrongestPull_n);
   const double force_n = std::clamp(hand.held_n + kProportional * unit, 0.0, kStrongestPull_n);
-  const double now = simulation.time_s;
-  simulation.scene.forces = {{hand.block, -1, force_n * hand.direction, now, now + 1.5 * simulation.scene.settings.frame_s}};
+  setOnlyForce(simulation, forceForOneFrame(simulation, block, force_n * hand.direction));
 }
 
 }  // namespace springtower

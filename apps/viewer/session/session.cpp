@@ -1,7 +1,7 @@
 #include "apps/viewer/session/session.h"
 
 #include "core/error.h"
-#include "solver/sleep/rest.h"
+#include "solver/frame/inputs.h"
 
 #include <algorithm>
 #include <chrono>
@@ -35,11 +35,8 @@ void tune(Session& session, const Tuning& tuning) {
     rebuild(session, tuning);
     return;
   }
-  Simulation& simulation = session.simulation;
-  simulation.scene.staticFriction = tuning.friction;
-  simulation.scene.kineticFriction = tuning.friction;
-  simulation.scene.settings.sleep = tuning.sleep;
-  for (std::size_t b = 0; b < simulation.asleep.size(); ++b) wake(simulation, b, WakeReason::settings);
+  setFriction(session.simulation, tuning.friction, tuning.friction);
+  setSleep(session.simulation, tuning.sleep);
   session.tuning = tuning;
 }
 
@@ -89,11 +86,7 @@ const Keyframe& keyBefore(const Session& session, std::uint64_t frame) {
 void restore(Session& session, const Keyframe& key) {
   if (needsRebuild(key.tuning, session.tuning)) rebuild(session, key.tuning);
   session.tuning = key.tuning;
-  const Scene tuned = withTuning(session.scene, key.tuning);
-  session.simulation.scene.staticFriction = tuned.staticFriction;
-  session.simulation.scene.kineticFriction = tuned.kineticFriction;
-  session.simulation.scene.settings.sleep = tuned.settings.sleep;
-  restoreSnapshot(session.simulation, *key.snapshot);
+  restoreSnapshot(session.simulation, *key.snapshot);  // friction and sleep are in it
   session.frame = key.frame;
   session.grip = key.grip;
   session.game = key.game;

@@ -5,6 +5,7 @@
 #include "core/scene/scene.h"
 #include "solver/contact/evaluate_forces.h"
 #include "solver/contact/query.h"
+#include "solver/frame/inputs.h"
 #include "solver/implicit/gmres.h"
 #include "solver/implicit/run.h"
 #include "solver/implicit/system.h"
@@ -269,7 +270,7 @@ void draw(Simulation& simulation, int block, const Vec3& way, double& held_n) {
   const auto b = static_cast<std::size_t>(block);
   const double missing_n = simulation.model.mass[b] / frame_s * (kSpeed_m_s - centre(simulation.state.velocity, b).dot(way));
   held_n += 0.2 * missing_n;
-  simulation.scene.forces = {{block, -1, (held_n + 0.5 * missing_n) * way, simulation.time_s, simulation.time_s + 1.5 * frame_s}};
+  setOnlyForce(simulation, forceForOneFrame(simulation, b, (held_n + 0.5 * missing_n) * way));
   stepFrame(simulation);
 }
 

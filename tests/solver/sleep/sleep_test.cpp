@@ -1,4 +1,5 @@
 #include "core/scene/scene.h"
+#include "solver/frame/inputs.h"
 #include "solver/hand/moves.h"
 #include "solver/runner/run.h"
 #include "tests/solver/hand/take.h"
@@ -230,7 +231,7 @@ TEST(Sleep, EveryWakeHasAReason) {
   Simulation forced = sleepingTower();
   ASSERT_TRUE(allAsleep(forced));
   EXPECT_EQ(forced.wakes, WakeCounts{}) << "nothing has woken yet";
-  forced.scene.forces.push_back({4, -1, Vec3(0.01, 0.0, 0.0), forced.time_s, forced.time_s + 0.1});
+  applyForce(forced, {4, -1, Vec3(0.01, 0.0, 0.0), forced.time_s, forced.time_s + 0.1});
   stepFrame(forced);
   EXPECT_EQ(wokenBy(forced, WakeReason::force), 1U);
 
@@ -241,7 +242,7 @@ TEST(Sleep, EveryWakeHasAReason) {
   EXPECT_EQ(wokenBy(kicked, WakeReason::kick), 1U) << "it was awake already";
 
   Simulation tilted = sleepingTower();
-  tilted.scene.gravity.tilt_deg = 1.0;
+  setGravity(tilted, {.tilt_deg = 1.0});
   stepFrame(tilted);
   EXPECT_EQ(wokenBy(tilted, WakeReason::gravity), 9U);
   EXPECT_EQ(std::accumulate(tilted.wakes.begin(), tilted.wakes.end(), std::uint64_t{0}), 9U);

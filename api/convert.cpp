@@ -1,0 +1,175 @@
+#include "api/convert.h"
+
+#include "core/limits.h"
+
+#include <array>
+#include <fmt/format.h>
+
+namespace springtower::api {
+namespace {
+
+template <class Engine, class Public>
+struct Match {
+  Engine engine;
+  Public shown;
+};
+
+using Methods = Match<springtower::Method, Method>;
+constexpr std::array<Methods, 11> kMethods = {{{springtower::Method::implicit, Method::implicit},
+                                               {springtower::Method::implicitEuler, Method::implicitEuler},
+                                               {springtower::Method::implicitEigen, Method::implicitEigen},
+                                               {springtower::Method::semiImplicitEuler, Method::semiImplicitEuler},
+                                               {springtower::Method::midpoint, Method::midpoint},
+                                               {springtower::Method::rungeKutta4, Method::rungeKutta4},
+                                               {springtower::Method::report, Method::report},
+                                               {springtower::Method::rigidPgs, Method::rigidPgs},
+                                               {springtower::Method::rigidLcp, Method::rigidLcp},
+                                               {springtower::Method::xpbd, Method::xpbd},
+                                               {springtower::Method::automatic, Method::automatic}}};
+using Sleeps = Match<springtower::Sleep, Sleep>;
+constexpr std::array<Sleeps, 3> kSleeps = {
+    {{springtower::Sleep::off, Sleep::off}, {springtower::Sleep::on, Sleep::on}, {springtower::Sleep::report, Sleep::report}}};
+using Inertias = Match<springtower::Inertia, Inertia>;
+constexpr std::array<Inertias, 2> kInertias = {
+    {{springtower::Inertia::cuboid, Inertia::cuboid}, {springtower::Inertia::lumped, Inertia::lumped}}};
+
+template <class Table, class Public>
+auto engineValue(const Table& table, Public value, const char* what) {
+  for (const auto& match : table) {
+    if (match.shown == value) return match.engine;
+  }
+  throw InputError(
+      fmt::format("{}: found number {}, allowed 0 to {}", what, static_cast<int>(value), static_cast<int>(table.size()) - 1));
+}
+
+template <class Table, class Engine>
+auto publicValue(const Table& table, Engine value) {
+  for (const auto& match : table) {
+    if (match.engine == value) return match.shown;
+  }
+  return table.front().shown;  // tests compare the tables with the enumerations
+}
+
+// The numbers of both kinds of settings have the same names.
+template <class From, class To>
+void copyNumbers(const From& from, To& to) {
+  to.frame_s = from.frame_s;
+  to.tolerance_m = from.tolerance_m;
+  to.substeps = from.substeps;
+  to.allowUnstable = from.allowUnstable;
+  to.stabilitySafety = from.stabilitySafety;
+  to.springRatio = from.springRatio;
+  to.tangentialRatio = from.tangentialRatio;
+  to.maxwellRatio = from.maxwellRatio;
+  to.maxwellTime = from.maxwellTime;
+  to.stiffnessDamping = from.stiffnessDamping;
+  to.impactDepth = from.impactDepth;
+  to.continuousTests = from.continuousTests;
+  to.sleepSpeed = from.sleepSpeed;
+  to.sleepTime = from.sleepTime;
+  to.sleepImbalance = from.sleepImbalance;
+  to.reportRestitution = from.reportRestitution;
+  to.reportFrictionDrag = from.reportFrictionDrag;
+  to.reportDisableDistance_m = from.reportDisableDistance_m;
+  to.reportIterations = from.reportIterations;
+  to.iterations = from.iterations;
+}
+
+}  // namespace
+
+springtower::Method toEngine(Method method) {
+  return engineValue(kMethods, method, "method");
+}
+Method toPublic(springtower::Method method) {
+  return publicValue(kMethods, method);
+}
+springtower::Sleep toEngine(Sleep sleep) {
+  return engineValue(kSleeps, sleep, "sleep");
+}
+
+springtower::Settings toEngine(const Settings& settings) {
+  springtower::Settings result;
+  result.method = toEngine(settings.method);
+  result.inertia = engineValue(kInertias, settings.inertia, "inertia");
+  result.sleep = toEngine(settings.sleep);
+  copyNumbers(settings, result);
+  return result;
+}
+
+Settings toPublic(const springtower::Settings& settings) {
+  Settings result;
+  result.method = toPublic(settings.method);
+  result.inertia = publicValue(kInertias, settings.inertia);
+  result.sleep = publicValue(kSleeps, settings.sleep);
+  copyNumbers(settings, result);
+  return result;
+}
+
+springtower::Gravity toEngine(const Gravity& gravity) {
+  return {gravity.magnitude_m_s2, gravity.tilt_deg, gravity.direction_deg, gravity.sway_deg, gravity.sway_hz};
+}
+
+Gravity toPublic(const springtower::Gravity& gravity) {
+  return {gravity.magnitude, gravity.tilt_deg, gravity.direction_deg, gravity.sway_deg, gravity.sway_hz};
+}
+
+springtower::UserForce toEngine(const Force& force) {
+  return {force.block, force.corner, toEngine(force.force_n), force.start_s, force.end_s};
+}
+
+springtower::TowerOptions toEngine(const TowerOptions& options) {
+  springtower::TowerOptions result;
+  result.heightsSigma_m = options.heightsSigma_m;
+  result.massSigma_kg = options.massSigma_kg;
+  result.seed = options.seed;
+  result.startGap_m = options.startGap_m;
+  for (const BlockOffset& offset : options.offsets)
+    result.offsets.push_back({offset.row, offset.position, offset.dx_m, offset.dy_m});
+  for (const LooseBlock& block : options.loose) result.loose.push_back({block.row, block.position, block.by_m});
+  return result;
+}
+
+springtower::Scene toEngine(const Scene& scene) {
+  springtower::Scene result;
+  result.name = scene.name;
+  result.blocks.reserve(scene.blocks.size());
+  for (const Block& block : scene.blocks) {
+    result.blocks.push_back({toEngine(block.centre), toEngine(block.dimensions), toEngine(block.orientation),
+                             toEngine(block.velocity), toEngine(block.spin), block.mass_kg, block.row, block.position});
+  }
+  for (const Force& force : scene.forces) result.forces.push_back(toEngine(force));
+  result.gravity = toEngine(scene.gravity);
+  result.floor = scene.floor;
+  result.plane = scene.plane;
+  result.staticFriction = scene.staticFriction;
+  result.kineticFriction = scene.kineticFriction;
+  result.seconds = scene.seconds;
+  result.settings = toEngine(scene.settings);
+  return result;
+}
+
+Scene toPublic(const springtower::Scene& scene) {
+  Scene result;
+  result.name = scene.name;
+  result.blocks.reserve(scene.blocks.size());
+  for (const springtower::BlockSpec& block : scene.blocks) {
+    result.blocks.push_back({toPublic(block.centre), toPublic(block.dimensions), toPublic(block.orientation),
+                             toPublic(block.velocity), toPublic(block.spin), block.mass, block.row, block.position});
+  }
+  for (const springtower::UserForce& force : scene.forces)
+    result.forces.push_back({force.block, force.corner, toPublic(force.force), force.start_s, force.end_s});
+  result.gravity = toPublic(scene.gravity);
+  result.floor = scene.floor;
+  result.plane = scene.plane;
+  result.staticFriction = scene.staticFriction;
+  result.kineticFriction = scene.kineticFriction;
+  result.seconds = scene.seconds;
+  result.settings = toPublic(scene.settings);
+  return result;
+}
+
+std::string sourceOf(const Scene& scene) {
+  return scene.name.empty() ? "scene" : onOneLine(scene.name);
+}
+
+}  // namespace springtower::api

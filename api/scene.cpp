@@ -1,0 +1,51 @@
+#include "api/convert.h"
+#include "core/limits.h"
+#include "scenarios/registry.h"
+
+#include <fmt/format.h>
+#include <springtower/scene.h>
+
+namespace springtower::api {
+namespace {
+
+// A scene as worlds take it: they play no moves.
+Scene withoutMoves(const springtower::Scene& scene, const std::string& source) {
+  if (!scene.moves.empty()) {
+    throw InputError(fmt::format("{}: found {} moves of a scripted hand, allowed is a scene without moves", onOneLine(source),
+                                 scene.moves.size()));
+  }
+  return toPublic(scene);
+}
+
+}  // namespace
+
+Scene towerScene(int rows, const TowerOptions& options) {
+  return withPublicErrors([&] { return toPublic(springtower::towerScene(rows, toEngine(options))); });
+}
+
+Scene bitCodeScene(std::string_view code, const TowerOptions& options) {
+  return withPublicErrors([&] { return toPublic(springtower::bitCodeScene(code, toEngine(options))); });
+}
+
+Scene sceneFromToml(const std::string& path, const TowerOptions& options) {
+  return withPublicErrors([&] { return withoutMoves(springtower::sceneFromToml(path, toEngine(options)), path); });
+}
+
+Scene namedScene(const std::string& name, const TowerOptions& options) {
+  return withPublicErrors([&] { return withoutMoves(springtower::sceneNamed(name, toEngine(options)), name); });
+}
+
+std::vector<ScenarioInfo> scenarioList() {
+  std::vector<ScenarioInfo> list;
+  for (const springtower::Scenario& scenario : springtower::scenarios()) {
+    list.push_back(
+        {springtower::usageOf(scenario), std::string(scenario.what), springtower::allowedSizes(scenario), scenario.isTower});
+  }
+  return list;
+}
+
+void checkScene(const Scene& scene) {
+  withPublicErrors([&] { springtower::checkScene(toEngine(scene), sourceOf(scene)); });
+}
+
+}  // namespace springtower::api

@@ -1,0 +1,90 @@
+#include "solver/statics/statics.h"
+
+#include "api/convert.h"
+#include "api/world_impl.h"
+#include "core/limits.h"
+
+#include <cmath>
+#include <fmt/format.h>
+#include <springtower/statics.h>
+
+namespace springtower::api {
+namespace {
+
+constexpr std::size_t kMaxStaticBlocks = 1000;
+
+// Statics of a scene that has been checked. `left`: a block that is left out, or kFloor.
+StaticScene analysed(const Scene& scene, int left = kFloor) {
+  springtower::Scene blocks = toEngine(scene);
+  const std::string source = sourceOf(scene);
+  springtower::checkScene(blocks, source);
+  if (blocks.blocks.size() > kMaxStaticBlocks) {
+    throw InputError(
+        fmt::format("{}: found {} blocks, allowed for statics 1 to {}", source, blocks.blocks.size(), kMaxStaticBlocks));
+  }
+  if (!(blocks.gravity.magnitude > 0.0))
+    throw InputError(fmt::format("{}: found no gravity, allowed for statics is a magnitude above 0", source));
+  blocks.forces.clear();
+  if (left != kFloor) {
+    if (blocks.blocks.size() < 2) throw InputError(fmt::format("{}: found one block, allowed to leave one out are two", source));
+    blocks.blocks.erase(blocks.blocks.begin() + left);
+  }
+  return staticScene(blocks);
+}
+
+Verdict verdictOf(Rest rest) {
+  return rest == Rest::stands ? Verdict::stands : rest == Rest::leans ? Verdict::leans : Verdict::falls;
+}
+
+}  // namespace
+
+Verdict verdict(const Scene& scene) {
+  return withPublicErrors([&] { return verdictOf(analysed(scene).rest); });
+}
+
+Verdict verdictWithout(const Scene& scene, int block) {
+  return withPublicErrors([&] {
+    checkedBlock(block, scene.blocks.size());
+    return verdictOf(analysed(scene, block).rest);
+  });
+}
+
+std::optional<StabilityMargin> stabilityMargin(const Scene& scene) {
+  return withPublicErrors([&]() -> std::optional<StabilityMargin> {
+    const auto margin = tiltMargin(analysed(scene));
+    if (!margin) return {};
+    return StabilityMargin{margin->tilt_deg, margin->direction_deg};
+  });
+}
+
+std::optional<Loads> loads(const Scene& scene) {
+  return withPublicErrors([&]() -> std::optional<Loads> {
+    const StaticScene analysis = analysed(scene);
+    if (analysis.rest == Rest::falls) return {};
+    const ContactLoads contactForces = contactLoads(analysis);
+    Loads result;
+    result.anyOfMany = contactForces.anyOfMany;
+    for (const ContactLoad& contact : contactForces.contacts) {
+      result.contacts.push_back({static_cast<int>(contact.upper), static_cast<int>(contact.lower), toPublic(contact.force),
+                                 toPublic(contact.place), contact.normal_n, contact.frictionUsed});
+    }
+    for (const springtower::BlockLoad& load : blockLoads(analysis, contactForces)) {
+      result.blocks.push_back(
+          {load.weight_n, load.above_n, load.leastAbove_n, load.greatestAbove_n, load.covered, load.loose, load.gap_m});
+    }
+    return result;
+  });
+}
+
+std::optional<double> pullLimit(const Scene& scene, int block, const Vec3& direction) {
+  return withPublicErrors([&]() -> std::optional<double> {
+    const std::size_t b = checkedBlock(block, scene.blocks.size());
+    const springtower::Vec3 along = toEngine(direction);
+    const double length = along.stableNorm();
+    if (!(length > 0.0) || !std::isfinite(length))
+      throw InputError(fmt::format("direction: found a length of {}, allowed is a finite one above 0", length));
+    return springtower::pullLimit(analysed(scene), blockId(b), along / length);
+  });
+}
+
+}  // namespace springtower::api

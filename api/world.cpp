@@ -1,0 +1,256 @@
+#include "api/convert.h"
+#include "api/world_impl.h"
+#include "core/hash.h"
+#include "core/limits.h"
+#include "core/version.h"
+#include "solver/block/inertia.h"
+
+#include <bit>
+#include <fmt/format.h>
+#include <numeric>
+#include <oneapi/tbb/global_control.h>
+#include <springtower/world.h>
+
+namespace springtower::api {
+namespace {
+
+constexpr Range kThreadRange{1.0, 4096.0, ""};
+
+void mix(Hash& hash, double value) {
+  hash.word(std::bit_cast<std::uint64_t>(value));
+}
+
+void mix(Hash& hash, const springtower::Vec3& value) {
+  for (Eigen::Index a = 0; a < 3; ++a) mix(hash, value[a]);
+}
+
+// Of all that the constructor of a simulation reads. What may change while it runs is in snapshots, but has decided stiffness.
+std::uint64_t hashOf(const springtower::Scene& scene) {
+  Hash hash;
+  for (const springtower::BlockSpec& block : scene.blocks) {
+    for (const springtower::Vec3& vector : {block.centre, block.dimensions, block.velocity, block.spin}) mix(hash, vector);
+    for (Eigen::Index a = 0; a < 4; ++a) mix(hash, block.orientation.coeffs()[a]);
+    mix(hash, block.mass);
+  }
+  for (const springtower::UserForce& force : scene.forces) {
+    hash.word(static_cast<std::uint64_t>(force.block));
+    hash.word(static_cast<std::uint64_t>(force.corner));
+    mix(hash, force.force);
+    mix(hash, force.start_s);
+    mix(hash, force.end_s);
+  }
+  const springtower::Gravity& gravity = scene.gravity;
+  for (const double value : {gravity.magnitude, gravity.tilt_deg, gravity.direction_deg, gravity.sway_deg, gravity.sway_hz,
+                             scene.staticFriction, scene.kineticFriction}) {
+    mix(hash, value);
+  }
+  for (const bool value : {scene.floor, scene.plane}) hash.word(value ? 1 : 0);
+  hash.word(static_cast<std::uint64_t>(scene.settings.method));
+  hash.word(static_cast<std::uint64_t>(scene.settings.inertia));
+  hash.word(static_cast<std::uint64_t>(scene.settings.sleep));
+  for (const springtower::SettingRow& row : springtower::settingTable())
+    mix(hash, springtower::numberOf(scene.settings, row).value_or(-1.0));
+  return hash.value();
+}
+
+// Runs a frame with the forces that are to pass with it.
+void stepWithPassingForces(WorldImpl& impl) {
+  std::vector<springtower::UserForce>& forces = impl.simulation.scene.forces;
+  const std::size_t lasting = forces.size();
+  forces.insert(forces.end(), impl.passing.begin(), impl.passing.end());
+  impl.passing.clear();
+  try {
+    leadHand(impl);
+    stepFrame(impl.simulation);
+  } catch (const DivergenceError& error) {
+    impl.divergence = {error.block, error.time_s, error.what()};
+  } catch (...) {
+    impl.divergence = {kFloor, impl.simulation.time_s, "a frame could not be finished"};
+    forces.resize(lasting);
+    throw;
+  }
+  forces.resize(lasting);
+}
+
+}  // namespace
+
+WorldImpl& WorldAccess::impl(World& world) {
+  if (world.impl_ == nullptr) throw InputError("world: found one that has been moved from, allowed is one that holds a scene");
+  return *world.impl_;
+}
+
+const WorldImpl& WorldAccess::impl(const World& world) {
+  return impl(const_cast<World&>(world));
+}
+
+WorldImpl& WorldAccess::running(World& world) {
+  WorldImpl& inside = impl(world);
+  if (inside.divergence) {
+    throw InputError(fmt::format("world: found one that has failed ({}), allowed is one that runs: restore a snapshot",
+                                 inside.divergence->cause));
+  }
+  return inside;
+}
+
+const WorldImpl& WorldAccess::running(const World& world) {
+  return running(const_cast<World&>(world));
+}
+
+std::size_t checkedBlock(int block, std::size_t count, const char* what) {
+  if (block < 0 || static_cast<std::size_t>(block) >= count)
+    throw InputError(fmt::format("{}: found {}, allowed 0 to {}", what, block, count - 1));
+  return static_cast<std::size_t>(block);
+}
+
+double Snapshot::time_s() const {
+  if (empty()) throw InputError("snapshot: found an empty one, allowed is one that a world has taken");
+  return data_->time_s;
+}
+
+World::World(const Scene& scene) {
+  withPublicErrors([&] {
+    springtower::Scene given = toEngine(scene);
+    given.name = sourceOf(scene);
+    impl_ = std::make_unique<WorldImpl>(given);
+    impl_->sceneHash = hashOf(given);
+  });
+}
+
+World::~World() = default;
+World::World(World&& other) noexcept = default;
+World& World::operator=(World&& other) noexcept = default;
+
+std::optional<Divergence> World::step() {
+  WorldImpl& impl = WorldAccess::impl(*this);
+  if (!impl.divergence) stepWithPassingForces(impl);
+  return impl.divergence;
+}
+
+std::optional<Divergence> World::step(int frames) {
+  if (frames < 0) throw InputError(fmt::format("step: found {} frames, allowed 0 or more", frames));
+  WorldImpl& impl = WorldAccess::impl(*this);
+  for (int done = 0; done < frames && !impl.divergence; ++done) stepWithPassingForces(impl);
+  return impl.divergence;
+}
+
+const std::optional<Divergence>& World::divergence() const {
+  return WorldAccess::impl(*this).divergence;
+}
+double World::time_s() const {
+  return WorldAccess::impl(*this).simulation.time_s;
+}
+std::uint64_t World::frame() const {
+  return WorldAccess::impl(*this).simulation.frame;
+}
+double World::frame_s() const {
+  return WorldAccess::impl(*this).simulation.scene.settings.frame_s;
+}
+double World::tolerance_m() const {
+  return WorldAccess::impl(*this).simulation.tolerance_m;
+}
+Method World::method() const {
+  return toPublic(WorldAccess::impl(*this).simulation.scene.settings.method);
+}
+int World::blockCount() const {
+  return static_cast<int>(WorldAccess::impl(*this).simulation.model.blockCount());
+}
+
+Counters World::counters() const {
+  const springtower::Simulation& simulation = WorldAccess::impl(*this).simulation;
+  const springtower::Counters& from = simulation.counters;
+  Counters counters;
+  counters.frames = from.frames;
+  counters.steps = from.steps;
+  counters.replayedFrames = from.replayedFrames;
+  counters.contactsCreated = from.contactsCreated;
+  counters.contactsCreatedPenetrating = from.contactsCreatedPenetrating;
+  counters.contactEvaluations = from.contactEvaluations;
+  counters.implicitSteps = from.implicitSteps;
+  counters.implicitIterations = from.implicitIterations;
+  counters.factorisations = from.factorisations;
+  counters.explicitFallbacks = from.newtonFailures;
+  counters.wakes = std::accumulate(simulation.wakes.begin(), simulation.wakes.end(), std::uint64_t{0});
+  return counters;
+}
+
+Pose World::pose(int block) const {
+  const springtower::Simulation& simulation = WorldAccess::running(*this).simulation;
+  const std::size_t b = checkedBlock(block, simulation.model.blockCount());
+  return {toPublic(centre(simulation.state.position, b)), toPublic(orientationOf(simulation.state.position, b))};
+}
+
+Velocity World::velocity(int block) const {
+  const springtower::Simulation& simulation = WorldAccess::running(*this).simulation;
+  const RigidMotion motion = rigidMotion(simulation.state, checkedBlock(block, simulation.model.blockCount()));
+  return {toPublic(motion.velocity), toPublic(motion.spin)};
+}
+
+std::array<Vec3, 8> World::corners(int block) const {
+  const springtower::Simulation& simulation = WorldAccess::running(*this).simulation;
+  const std::size_t b = checkedBlock(block, simulation.model.blockCount());
+  std::array<Vec3, 8> corners;
+  for (std::size_t c = 0; c < kCorners; ++c) corners[c] = toPublic(simulation.state.position.at(b, c));
+  return corners;
+}
+
+Vec3 World::dimensions(int block) const {
+  const BlockModel& model = WorldAccess::impl(*this).simulation.model;
+  return toPublic(model.dimensions[checkedBlock(block, model.blockCount())]);
+}
+
+double World::mass_kg(int block) const {
+  const BlockModel& model = WorldAccess::impl(*this).simulation.model;
+  return model.mass[checkedBlock(block, model.blockCount())];
+}
+
+void World::poses(std::span<Pose> into) const {
+  const springtower::Simulation& simulation = WorldAccess::running(*this).simulation;
+  const std::size_t count = simulation.model.blockCount();
+  if (into.size() != count) throw InputError(fmt::format("poses: found room for {}, allowed for {}", into.size(), count));
+  for (std::size_t b = 0; b < count; ++b)
+    into[b] = {toPublic(centre(simulation.state.position, b)), toPublic(orientationOf(simulation.state.position, b))};
+}
+
+Snapshot World::snapshot() const {
+  const WorldImpl& impl = WorldAccess::running(*this);
+  Snapshot snapshot;
+  snapshot.data_ = std::make_shared<const SnapshotData>(
+      SnapshotData{takeSnapshot(impl.simulation), impl.lead, impl.passing, impl.sceneHash, impl.simulation.time_s});
+  return snapshot;
+}
+
+void World::restore(const Snapshot& snapshot) {
+  WorldImpl& impl = WorldAccess::impl(*this);
+  if (snapshot.empty()) throw InputError("restore: found an empty snapshot, allowed is one that a world has taken");
+  const SnapshotData& data = *snapshot.data_;
+  if (data.sceneHash != impl.sceneHash)
+    throw InputError("restore: found a snapshot of another scene, allowed is one of a world made of the same scene");
+  // Until all is there.
+  impl.divergence = {kFloor, data.time_s, "a snapshot could not be restored"};
+  restoreSnapshot(impl.simulation, *data.simulation);
+  impl.lead = data.lead;
+  impl.passing = data.passing;
+  impl.divergence.reset();
+}
+
+std::uint64_t World::stateHash() const {
+  return springtower::stateHash(WorldAccess::running(*this).simulation);
+}
+
+struct ThreadLimit::Impl {
+  explicit Impl(std::size_t threads) : control(tbb::global_control::max_allowed_parallelism, threads) {}
+  tbb::global_control control;  // its copies would not count
+};
+
+ThreadLimit::ThreadLimit(int threads) {
+  withPublicErrors([&] { requireInRange(threads, kThreadRange, "threads"); });
+  impl_ = std::make_unique<Impl>(static_cast<std::size_t>(threads));
+}
+
+ThreadLimit::~ThreadLimit() = default;
+
+BuildInfo buildInfo() {
+  return {kVersion, kGitCommit, kCompiler, kCompilerFlags, kBuildType};
+}
+
+}  // namespace springtower::api

@@ -1,0 +1,30 @@
+#pragma once
+
+#include "core/scene/scene.h"
+
+#include <cstddef>
+#include <string_view>
+
+namespace springtower {
+
+// What may change while a scene runs is checked as it is when the scene is made (checkScene).
+
+/// Checks that every number of a gravity is within the limits of core/limits.h. Throws InputError naming `source`, the number,
+/// what was found and what is allowed.
+void checkGravity(const Gravity& gravity, std::string_view source);
+
+/// Checks that a force acts on one of so many blocks, at its centre (-1) or at one of its corners (0 to 7), that its numbers are
+/// within the limits and that it does not end before it starts. Throws InputError naming `source`, the number, what was found and
+/// what is allowed.
+void checkForce(const UserForce& force, std::size_t blocks, std::string_view source);
+
+/// Checks both coefficients of friction: within the limits, and the kinetic one no larger than the static one. Throws InputError
+/// naming `source`, the coefficient, what was found and what is allowed.
+void checkFriction(double staticFriction, double kineticFriction, std::string_view source);
+
+/// Checks what a scene in the plane y = 0 allows: a force at the centre and without a y component; gravity without one. Throws
+/// InputError naming `source`, what was found and what is allowed.
+void checkForceInPlane(const UserForce& force, std::string_view source);
+void checkGravityInPlane(const Gravity& gravity, std::string_view source);
+
+}  // namespace springtower

@@ -1,0 +1,37 @@
+#pragma once
+
+#include "solver/world/simulation.h"
+
+#include <cstddef>
+
+namespace springtower {
+
+// What the outside may change between two frames of a running scene, beside `kick` (solver/world/simulation.h) and the hand
+// (solver/hand/grip.h). All of it is part of snapshots. Every function checks what it is given as checkScene does, and throws
+// InputError, with nothing changed, naming what was found and what is allowed.
+
+/// A force at a block's centre through the coming frame. It ends half a frame later, as the sum of times on the border of two
+/// frames may be rounded to either side. Who pushes again in the next frame replaces it (setOnlyForce). Precondition: there is
+/// such a block.
+UserForce forceForOneFrame(const Simulation& simulation, std::size_t block, const Vec3& force);
+
+/// Adds a force to those that act on the scene; forces that ended before the last frame began are dropped.
+void applyForce(Simulation& simulation, const UserForce& force);
+
+/// Replaces all forces that act on the scene by one.
+void setOnlyForce(Simulation& simulation, const UserForce& force);
+
+/// Takes all forces away.
+void clearForces(Simulation& simulation);
+
+/// Sets gravity from the coming frame on. Sleepers wake where it has changed. Stiffness stays what it was chosen for: under
+/// stronger gravity blocks compress more than the tolerance.
+void setGravity(Simulation& simulation, const Gravity& gravity);
+
+/// Sets Coulomb's coefficients, and wakes all blocks.
+void setFriction(Simulation& simulation, double staticFriction, double kineticFriction);
+
+/// Sets whether blocks at rest are put to sleep, and wakes all blocks.
+void setSleep(Simulation& simulation, Sleep sleep);
+
+}  // namespace springtower
