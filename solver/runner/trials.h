@@ -4,6 +4,7 @@
 #include "solver/world/simulation.h"
 
 #include <cstddef>
+#include <functional>
 #include <vector>
 
 namespace springtower {
@@ -26,8 +27,10 @@ struct SlipTrial {
 
 /// Pulls a block at its centre along a unit direction with a force that grows slowly (1 % of what its friction bears a
 /// second, the first nine tenths in 1.5 s) until it has slipped by kFirstSlip_m. Replaces the forces of the simulation's scene
-/// and takes them away at the end. The block should be at rest.
-SlipTrial pullUntilSlip(Simulation& simulation, std::size_t block, const Vec3& direction);
+/// and takes them away at the end. The block should be at rest. `afterFrame` is called after every frame, where there is one;
+/// what it throws ends the trial.
+SlipTrial pullUntilSlip(Simulation& simulation, std::size_t block, const Vec3& direction,
+                        const std::function<void()>& afterFrame = {});
 
 /// How gravity is turned in `tiltUntilFall`.
 struct TiltRamp {
@@ -46,8 +49,8 @@ struct TiltTrial {
   Standing standing;      ///< and what fell first
 };
 
-/// Turns a scene's gravity frame by frame until the scene does not stand any more. Throws DivergenceError.
-TiltTrial tiltUntilFall(Scene scene, const TiltRamp& ramp);
+/// Turns a scene's gravity frame by frame until the scene does not stand any more. `afterFrame` as above. Throws DivergenceError.
+TiltTrial tiltUntilFall(Scene scene, const TiltRamp& ramp, const std::function<void()>& afterFrame = {});
 
 /// The same scene of blocks `size` times as large and `density` times as dense, its frames and its duration longer by the root of
 /// the size, as all times are that gravity sets. Preconditions: both positive; no start gap, velocities or forces.
