@@ -116,7 +116,7 @@ void printTables(const std::vector<CollisionQuery>& queries, const std::vector<A
 }
 
 int complain(const std::string& message, int code) {
-  fmt::print(stderr, "ccd_queries: {}\n", onOneLine(message));
+  std::fputs(fmt::format("ccd_queries: {}\n", onOneLine(message)).c_str(), stderr);  // throws nothing where it takes nothing
   return code;
 }
 

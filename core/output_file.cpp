@@ -6,12 +6,40 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <fcntl.h>
 #include <filesystem>
 #include <fmt/format.h>
+#include <sys/file.h>
+#include <sys/stat.h>
 #include <system_error>
 #include <unistd.h>
 
 namespace springtower {
+namespace {
+
+constexpr std::chrono::seconds kFlushEvery{1};
+
+// Opens a file for its lock, which only one process holds; -1 where another one does, or the file cannot be opened or locked
+// (errno says why). Its content stays as it is.
+int lockedFile(const std::string& name) {
+  while (true) {
+    const int file = open(name.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0666);
+    if (file < 0) return -1;
+    struct stat opened {};
+    struct stat named {};
+    if (flock(file, LOCK_EX | LOCK_NB) != 0 || fstat(file, &opened) != 0 || !S_ISREG(opened.st_mode)) {
+      const int why = errno;
+      close(file);
+      errno = why;
+      return -1;
+    }
+    // Between opening and locking the process that held it may have given the file its final name.
+    if (stat(name.c_str(), &named) == 0 && named.st_ino == opened.st_ino && named.st_dev == opened.st_dev) return file;
+    close(file);
+  }
+}
+
+}  // namespace
 
 OutputFile::OutputFile(std::string path, std::string option) : path_(std::move(path)), option_(std::move(option)) {
   namespace fs = std::filesystem;
@@ -24,14 +52,16 @@ OutputFile::OutputFile(std::string path, std::string option) : path_(std::move(p
     // A link stays a link: what it points to is replaced.
     if (fs::is_regular_file(status)) path_ = fs::canonical(path_, error).string();
   }
+  flushed_ = std::chrono::steady_clock::now();
   if (!fs::exists(status) || fs::is_regular_file(status)) {
-    partial_ = fmt::format("{}.partial-{}", path_, getpid());
-    stream_.open(partial_, std::ios::binary | std::ios::trunc);
-    if (stream_.is_open() || !fs::exists(status)) {
-      if (!stream_.is_open()) fail(std::strerror(errno));
-      return;
-    }
-    partial_.clear();  // the folder takes no new files, but this one may be written
+    const std::string partial = path_ + ".partial";
+    lock_ = lockedFile(partial);
+    if (lock_ >= 0 && openPartial(partial)) return;
+    const int why = errno;
+    unlock();
+    if (openPartial(fmt::format("{}-{}", partial, getpid()))) return;
+    if (!fs::exists(status)) fail(std::strerror(why));
+    // The folder takes no new files, but this one may be written.
   }
   stream_.open(path_, std::ios::binary);
   if (!stream_.is_open()) fail(std::strerror(errno));
@@ -40,6 +70,34 @@ OutputFile::OutputFile(std::string path, std::string option) : path_(std::move(p
 OutputFile::~OutputFile() {
   stream_.close();
   if (!partial_.empty()) std::remove(partial_.c_str());
+  unlock();
+}
+
+bool OutputFile::openPartial(const std::string& name) {
+  stream_.open(name, std::ios::binary | std::ios::trunc);
+  if (!stream_.is_open()) return false;
+  partial_ = name;
+  return true;
+}
+
+void OutputFile::unlock() {
+  if (lock_ >= 0) close(lock_);
+  lock_ = -1;
+}
+
+void OutputFile::flushEverySecond() {
+  const auto now = std::chrono::steady_clock::now();
+  if (now - flushed_ < kFlushEvery) return;
+  flushed_ = now;
+  if (!stream_.flush()) fail("writing failed; is the disk full?");
+}
+
+void OutputFile::cutTo(std::uintmax_t bytes) {
+  std::error_code error;
+  if (!stream_.flush()) fail("writing failed; is the disk full?");
+  std::filesystem::resize_file(partial_, bytes, error);
+  if (error) fail(error.message());
+  if (!stream_.seekp(static_cast<std::streamoff>(bytes))) fail("writing failed");
 }
 
 void OutputFile::commit() {
@@ -48,6 +106,7 @@ void OutputFile::commit() {
   if (partial_.empty()) return;
   if (std::rename(partial_.c_str(), path_.c_str()) != 0) fail(std::strerror(errno));
   partial_.clear();
+  unlock();
 }
 
 void OutputFile::fail(const std::string& what) const {

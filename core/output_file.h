@@ -1,13 +1,18 @@
 #pragma once
 
+#include <chrono>
+#include <cstdint>
 #include <fstream>
 #include <string>
 
 namespace springtower {
 
 /// A file that is written while the program works and appears under its name only when it is complete. It is opened at once, so
-/// that a name that cannot be written is known before any work is done. Until `commit` the content stands in a partial file
-/// beside it, which the destructor removes; a device or pipe is written directly.
+/// that a name that cannot be written is known before any work is done. Until `commit` the content stands beside it in
+/// NAME.partial, which the destructor removes; a device or pipe is written directly. A process that is killed leaves NAME.partial
+/// as it was last flushed, and the next one that writes to NAME takes its place. Of two processes that write to NAME at the same
+/// time the second one writes NAME.partial-PID, and NAME is in the end that of the one that finishes last. NAME.partial is locked
+/// (flock) while its process lives: that is how the second one tells it from what a killed process has left.
 class OutputFile {
  public:
   /// Opens `path`; `option` names the command line option it came from. Throws InputError naming both when it cannot be written.
@@ -18,17 +23,35 @@ class OutputFile {
 
   [[nodiscard]] std::ostream& stream() { return stream_; }
 
+  /// Hands what was written to the system, so that it is kept whatever becomes of this process, unless that was done less than a
+  /// second ago. Call it after every frame or line. Throws InputError naming the file when the disk is full.
+  void flushEverySecond();
+
+  /// Whether content can be taken back: not from a device or pipe.
+  [[nodiscard]] bool canCut() const { return !partial_.empty(); }
+
+  /// Takes back all but the first `bytes` bytes. Precondition: canCut(), and so many were written. Throws InputError when that
+  /// fails.
+  void cutTo(std::uintmax_t bytes);
+
+  /// The file that is written until `commit`, for a program that is told its name: NAME.partial, or a device's own name.
+  [[nodiscard]] const std::string& writtenPath() const { return partial_.empty() ? path_ : partial_; }
+
   /// Writes what is left and gives the file its name. Throws InputError naming the file when the disk is full or the name is
   /// gone.
   void commit();
 
  private:
   [[noreturn]] void fail(const std::string& what) const;
+  bool openPartial(const std::string& name);
+  void unlock();
 
   std::string path_;
   std::string option_;
   std::string partial_;  // empty when written directly
+  int lock_ = -1;        // the partial file once more, to hold its lock
   std::ofstream stream_;
+  std::chrono::steady_clock::time_point flushed_;
 };
 
 }  // namespace springtower

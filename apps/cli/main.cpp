@@ -1,5 +1,4 @@
-// The command line program. Exit codes: 0 done, 1 an answer differs (--check), 2 bad input or arguments, 3 diverged, 70 an error
-// of the program itself.
+// The command line program. Its exit codes are those of apps/common/program.h, and 1 where an answer differs (--check).
 #include "apps/commands/chart/command.h"
 #include "apps/commands/profile/command.h"
 #include "apps/commands/run/command.h"
@@ -8,21 +7,14 @@
 #include "apps/commands/statics/command.h"
 #include "apps/commands/validate/command.h"
 #include "apps/commands/verdict/verdict.h"
-#include "core/error.h"
+#include "apps/common/program.h"
 #include "core/version.h"
 
 #include <CLI/CLI.hpp>
-#include <exception>
 #include <fmt/format.h>
-#include <iostream>
-#include <new>
 
 namespace springtower {
 namespace {
-
-constexpr int kBadInput = 2;
-constexpr int kDiverged = 3;
-constexpr int kProgramError = 70;
 
 constexpr std::string_view kFooter = R"help(examples:
   springtower run tower:18                          the full tower for 10 simulated seconds
@@ -35,21 +27,17 @@ constexpr std::string_view kFooter = R"help(examples:
   springtower validate --out validation             every claim about it, measured
   springtower settings --all                        what can be set, and the engine's own constants
   springtower run --help                            all options of a command
-exit codes: 0 done, 1 an answer differs (--check), 2 bad input, 3 the simulation diverged)help";
-
-int complain(const std::string& message, int code) {
-  fmt::print(stderr, "springtower: {}\n", onOneLine(message));
-  return code;
-}
+exit codes: 0 done, 1 an answer differs (--check), 2 bad input or no place for the output, 3 the simulation diverged, 130 and 143
+ended by SIGINT (Ctrl-C) and SIGTERM: what was done is kept, and a second signal ends at once)help";
 
 // CLI11 has an exit code for each kind of mistake; here they are all bad arguments.
 int complainAboutArguments(const CLI::App& program, const CLI::ParseError& error) {
   std::string hint = "springtower --help";
   for (const CLI::App* command : program.get_subcommands()) hint = fmt::format("springtower {} --help", command->get_name());
   const bool noCommand = program.get_subcommands().empty() && error.get_name() == "RequiredError";
-  complain(noCommand ? "found no command, allowed are run, verdict, profile, statics, chart, validate, scenes and settings"
-                     : error.what(),
-           kBadInput);
+  complain("springtower",
+           noCommand ? "found no command, allowed are run, verdict, profile, statics, chart, validate, scenes and settings"
+                     : error.what());
   fmt::print(stderr, "Try '{}'.\n", hint);
   return kBadInput;
 }
@@ -97,21 +85,5 @@ int run(int argc, char** argv) {
 }  // namespace springtower
 
 int main(int argc, char** argv) {
-  using springtower::complain;
-  try {
-    const int code = springtower::run(argc, argv);
-    // A full disk or a closed pipe behind standard output must not pass unseen.
-    if (std::fflush(stdout) != 0 || !std::cout.flush()) {
-      return complain("standard output: writing failed", springtower::kBadInput);
-    }
-    return code;
-  } catch (const springtower::InputError& error) {
-    return complain(error.what(), springtower::kBadInput);
-  } catch (const springtower::DivergenceError& error) {
-    return complain(error.what(), springtower::kDiverged);
-  } catch (const std::bad_alloc&) {
-    return complain("not enough memory for this scene", springtower::kBadInput);
-  } catch (const std::exception& error) {
-    return complain(error.what(), springtower::kProgramError);
-  }
+  return springtower::exitCodeOf("springtower", [&] { return springtower::run(argc, argv); });
 }

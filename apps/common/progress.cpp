@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -12,6 +13,12 @@ using namespace std::chrono_literals;
 
 constexpr std::size_t kBarWidth = 24;
 
+// A terminal that is gone takes no bar, which is no reason to end the work.
+void show(const std::string& text) {
+  std::fwrite(text.data(), 1, text.size(), stderr);
+  std::fflush(stderr);
+}
+
 }  // namespace
 
 Progress::Progress(double total, std::string unit)
@@ -19,17 +26,17 @@ Progress::Progress(double total, std::string unit)
 
 void Progress::update(double done, std::string_view at) {
   if (!terminal_ || Clock::now() < next_) return;
-  const double share = total_ > 0.0 ? std::clamp(done / total_, 0.0, 1.0) : 0.0;
-  const auto filled = static_cast<std::size_t>(std::lround(share * static_cast<double>(kBarWidth)));
-  fmt::print(stderr, "\r[{:<{}}] {:.4g} of {:.4g} {}{}{}\033[K", std::string(filled, '#'), kBarWidth, done, total_, unit_,
-             at.empty() ? "" : ": ", at);
-  std::fflush(stderr);
-  shown_ = true;
   next_ = Clock::now() + 200ms;
+  const std::string where = at.empty() ? "" : fmt::format(": {}", at);
+  shown_ = true;
+  if (total_ <= 0.0) return show(fmt::format("\r{:.4g} {}{}\033[K", done, unit_, where));
+  const double share = std::clamp(done / total_, 0.0, 1.0);
+  const auto filled = static_cast<std::size_t>(std::lround(share * static_cast<double>(kBarWidth)));
+  show(fmt::format("\r[{:<{}}] {:.4g} of {:.4g} {}{}\033[K", std::string(filled, '#'), kBarWidth, done, total_, unit_, where));
 }
 
 void Progress::clear() {
-  if (shown_) fmt::print(stderr, "\r\033[K");
+  if (shown_) show("\r\033[K");
   shown_ = false;
 }
 

@@ -10,7 +10,7 @@ namespace springtower {
 /// takes more than two seconds. For one thread.
 class Progress {
  public:
-  /// `unit` follows "[####      ] DONE of TOTAL ".
+  /// `unit` follows "[####      ] DONE of TOTAL "; with a total of 0, one that is not known, "DONE ".
   Progress(double total, std::string unit);
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;

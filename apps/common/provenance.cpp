@@ -8,6 +8,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <oneapi/tbb/info.h>
+#include <tuple>
 
 namespace springtower {
 namespace {
@@ -55,6 +56,13 @@ Provenance provenanceFromJson(const nlohmann::ordered_json& json) {
   json.at("processors").get_to(provenance.processors);
   json.at("date").get_to(provenance.date);
   return provenance;
+}
+
+bool sameOrigin(const Provenance& a, const Provenance& b) {
+  const auto origin = [](const Provenance& p) {
+    return std::tie(p.version, p.commit, p.compiler, p.flags, p.buildType, p.processor);
+  };
+  return origin(a) == origin(b);
 }
 
 std::string footnote(const Provenance& provenance) {

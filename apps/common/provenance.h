@@ -24,6 +24,9 @@ nlohmann::ordered_json provenanceJson(const Provenance& provenance);
 /// Back from JSON. Throws nlohmann::json::exception when a key is missing or has another type.
 Provenance provenanceFromJson(const nlohmann::ordered_json& json);
 
+/// Whether results of both may stand beside each other: the same version, commit, compiler, flags, build type and processor.
+bool sameOrigin(const Provenance& a, const Provenance& b);
+
 /// One line for the foot of a chart.
 std::string footnote(const Provenance& provenance);
 

@@ -174,7 +174,8 @@ RunResult runScene(Simulation& simulation, const RunOptions& options, const Fram
   MoveRun moves = beginMoves(simulation);
   if (afterFrame) afterFrame(simulation);
   const long frames = std::max(1L, std::lround(options.seconds / simulation.scene.settings.frame_s));
-  for (long frame = 0; frame < frames; ++frame) {
+  bool interrupted = false;
+  for (long frame = 0; frame < frames && !interrupted; ++frame) {
     if (!simulation.scene.moves.empty()) {
       guideHand(moves, simulation);
       if (moves.finished || recorder.soFar().fallTime_s) break;
@@ -194,8 +195,10 @@ RunResult runScene(Simulation& simulation, const RunOptions& options, const Fram
         simulation.time_s > *soFar.restTime_s + options.secondsAfterRest - halfFrame_s) {
       break;
     }
+    interrupted = frame + 1 < frames && options.shouldStop && options.shouldStop();
   }
   RunResult result = recorder.finish(simulation);
+  result.interrupted = interrupted;
   result.moves = std::move(moves.results);
   result.wall_s = secondsSince(start);
   return result;

@@ -26,6 +26,7 @@ struct RunOptions {
   bool measureEveryFrame =
       true;  ///< penetration, strain, creep, jitter and energy in every frame; otherwise at the start and at the end only
   std::vector<std::uint8_t> leftOut;  ///< 1 for blocks that do not count for `stands`, [blocks] or empty
+  std::function<bool()> shouldStop;   ///< asked after every frame: true ends the run with it, as `interrupted`; or empty
 };
 
 /// Times of the frames, ms: stepFrame only, without measures and output. CPU time is that of the whole process, over all threads;
@@ -42,6 +43,7 @@ struct RunResult {
   Standing standing;                       ///< the first fall, or that the scene stands
   std::optional<double> fallTime_s;        ///< first frame in which it had fallen
   std::optional<double> restTime_s;        ///< first frame in which all blocks were at rest (`atRest`)
+  bool interrupted = false;                ///< ended by `shouldStop` with frames left to do
   std::uint64_t frames = 0;                ///< of this run
   int substeps = 0;                        ///< steps of the last frame in which a block was awake
   double simulated_s = 0.0;                ///< simulated time of this run

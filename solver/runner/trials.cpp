@@ -80,7 +80,8 @@ double normalForceOn(const std::vector<ContactForce>& forces, BlockId block, boo
   return sum;
 }
 
-SlipTrial pullUntilSlip(Simulation& simulation, std::size_t block, const Vec3& direction) {
+SlipTrial pullUntilSlip(Simulation& simulation, std::size_t block, const Vec3& direction,
+                        const std::function<void()>& afterFrame) {
   const BlockId id = blockId(block);
   const double slip_m = kFirstSlip_m / kBlockHeight_m * simulation.lengths.blockHeight_m;
   const std::vector<ContactForce> forces = contactForces(simulation);
@@ -111,6 +112,7 @@ SlipTrial pullUntilSlip(Simulation& simulation, std::size_t block, const Vec3& d
     setOnlyForce(simulation, forceForOneFrame(simulation, block, trial.force_n * direction));
     const std::vector<ContactForce> before = contactForces(simulation);
     stepFrame(simulation);
+    if (afterFrame) afterFrame();
     trial.normal_n = normalForceOn(before, id, false);
     trial.slipped = slip() > slip_m;
     if (trial.slipped) trial.limit_n = frictionLimit_n(simulation, before, id, direction);
@@ -119,7 +121,7 @@ SlipTrial pullUntilSlip(Simulation& simulation, std::size_t block, const Vec3& d
   return trial;
 }
 
-TiltTrial tiltUntilFall(Scene scene, const TiltRamp& ramp) {
+TiltTrial tiltUntilFall(Scene scene, const TiltRamp& ramp, const std::function<void()>& afterFrame) {
   scene.gravity.tilt_deg = ramp.most_deg;  // stiff enough for the loads at the largest tilt, not only upright
   scene.gravity.direction_deg = ramp.direction_deg;
   Simulation simulation(scene);
@@ -135,6 +137,7 @@ TiltTrial tiltUntilFall(Scene scene, const TiltRamp& ramp) {
                                        : std::min(ramp.start_deg, ramp.approach_deg_s * next_s);
     setGravity(simulation, gravity);
     stepFrame(simulation);
+    if (afterFrame) afterFrame();
     trial.standing = standing(simulation.model, start, simulation.state.position);
   }
   trial.fell = !trial.standing.stands;

@@ -4,6 +4,7 @@
 #include "solver/world/simulation.h"
 
 #include <cstddef>
+#include <functional>
 #include <vector>
 
 namespace springtower {
@@ -27,8 +28,10 @@ struct SlipTrial {
 
 /// Pulls a block at its centre along a unit direction with a slowly increasing force (1 % of its friction limit a second, after
 /// the first nine tenths in 1.5 s) until it has slipped by kFirstSlip_m. Replaces the forces of the simulation's scene and
-/// removes them at the end. The block should be at rest.
-SlipTrial pullUntilSlip(Simulation& simulation, std::size_t block, const Vec3& direction);
+/// removes them at the end. The block should be at rest. `afterFrame` is called after every frame, where there is one; what it
+/// throws ends the trial.
+SlipTrial pullUntilSlip(Simulation& simulation, std::size_t block, const Vec3& direction,
+                        const std::function<void()>& afterFrame = {});
 
 /// How gravity is rotated in `tiltUntilFall`.
 struct TiltRamp {
@@ -47,8 +50,9 @@ struct TiltTrial {
   Standing standing;      ///< and what fell first
 };
 
-/// Rotates a scene's gravity frame by frame until the scene does not stand any more. Throws DivergenceError.
-TiltTrial tiltUntilFall(Scene scene, const TiltRamp& ramp);
+/// Rotates a scene's gravity frame by frame until the scene does not stand any more. `afterFrame` as above. Throws
+/// DivergenceError.
+TiltTrial tiltUntilFall(Scene scene, const TiltRamp& ramp, const std::function<void()>& afterFrame = {});
 
 /// The same scene with blocks `size` times as large and `density` times as dense, and its frames and duration scaled by the root
 /// of the size, like all times under gravity. Preconditions: both positive; no start gap, velocities or forces.

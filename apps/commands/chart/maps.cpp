@@ -1,5 +1,6 @@
 #include "apps/commands/chart/maps.h"
 
+#include "apps/common/interruption.h"
 #include "core/error.h"
 #include "core/processor_time.h"
 #include "core/scene/scene.h"
@@ -78,6 +79,7 @@ MapPoint tried(Method method, int rows, double tolerance_m, int steps, const Map
   double squares = 0.0;
   try {
     for (long frame = 0; frame < frames; ++frame) {
+      endIfInterrupted();
       stepFrame(simulation);
       point.omega = std::max(point.omega, largestOmega(simulation));
       if (frame == 0) kick(simulation, simulation.model.blockCount() - 1, Vec3(kNudge_m_s, 0.0, 0.0));

@@ -2,6 +2,7 @@
 
 #include "apps/commands/chart/peers.h"
 #include "apps/commands/chart/scene.h"
+#include "apps/common/interruption.h"
 #include "core/error.h"
 #include "core/processor_time.h"
 #include "solver/metrics/balance.h"
@@ -68,7 +69,10 @@ ParticleArray convergedEnd(const ChartCase& what, const ChartLimits& limits) {
   if (what.knob == Knob::tolerance) scene.settings.stabilitySafety /= kFinerSteps;
   Simulation simulation(scene);
   const double end_s = timesOf(what.scene, limits).end_s - 0.5 * scene.settings.frame_s;
-  while (simulation.time_s < end_s) stepFrame(simulation);
+  while (simulation.time_s < end_s) {
+    endIfInterrupted();
+    stepFrame(simulation);
+  }
   return simulation.state.position;
 }
 
@@ -113,6 +117,7 @@ class ChartRun {
     double wrong_j = 0.0;
     try {
       while (simulation_.time_s < times_.end_s - halfFrame()) {
+        endIfInterrupted();
         if (!kept_ && simulation_.time_s > times_.keep_s - halfFrame()) keep();
         const double step_s = timedStep();
         spent_s_ += step_s;
@@ -153,6 +158,7 @@ class ChartRun {
       if (peer_) peer_->restore();
       spent_s = timedStep();
       while (frame < frames && (inMotion || spent_s < limits_.sample_s || frame < 1)) {
+        endIfInterrupted();
         const double step_s = timedStep();
         spent_s += step_s;
         keepLeast(frame++, step_s);

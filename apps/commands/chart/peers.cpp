@@ -94,9 +94,14 @@ PeerProcess::PeerProcess(const ChartCase& what, const Scene& scene)
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_adddup2(&actions, ends[1], STDIN_FILENO);
   posix_spawn_file_actions_adddup2(&actions, ends[1], STDOUT_FILENO);
+  // In a group of its own, so that the terminal's Ctrl-C, which this program answers, does not end it in the middle of a frame.
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
   std::string name = program;
   char* arguments[] = {name.data(), nullptr};
-  const int error = posix_spawn(&process_, program.c_str(), &actions, nullptr, arguments, environ);
+  const int error = posix_spawn(&process_, program.c_str(), &actions, &attributes, arguments, environ);
+  posix_spawnattr_destroy(&attributes);
   posix_spawn_file_actions_destroy(&actions);
   close(ends[1]);
   socket_ = ends[0];

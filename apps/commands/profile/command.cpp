@@ -5,19 +5,23 @@
 #include "apps/commands/profile/measure.h"
 #include "apps/commands/profile/report_figures.h"
 #include "apps/commands/profile/scene.h"
+#include "apps/common/interruption.h"
 #include "apps/common/options.h"
 #include "apps/common/output_file.h"
+#include "apps/common/program.h"
 #include "apps/common/progress.h"
 #include "core/error.h"
 #include "core/limits.h"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <fmt/format.h>
 #include <functional>
 #include <memory>
+#include <system_error>
 
 namespace springtower {
 namespace {
@@ -29,11 +33,14 @@ constexpr Range kProfileSamplesRange{1, 1000, ""};
 constexpr Range kFramesRange{2, 100000, ""};
 constexpr Range kLimitRange{0.0, 1e6, "s"};
 constexpr int kTowersRows = 18;
+constexpr const char* kUnfinished = "profile.unfinished.json";
 
 constexpr std::string_view kProfileExamples =
     R"help(what is timed: the state is kept once the scene has settled; each sample restores it, leaves out one frame and times the
 next ones; samples of all cases of a scene take turns. The frames of every sample are the same, so the least time of each
 frame counts, then their median, 99th percentile and largest. On one thread that is processor time, else wall time.
+
+A run with --out that was broken off goes on where it was.
 
 scenes: rest (settled, awake), sway (gravity sways by 0.1 degree), heights (varying by 0.2 mm), pull (a block at 4 cm/s, all
 awake), pull-sleep (the same with sleep), collapse (gravity tilted by 14.5 degrees), asleep, towers (many of 18 rows, awake),
@@ -199,8 +206,54 @@ void writeFolder(const std::string& folder, const Profile& profile, bool measure
     writeOutputFile(folder, chart.first + ".svg", [&](std::ostream& stream) { writeSvg(stream, chart.second); });
     writeOutputFile(folder, chart.first + ".png", [&](std::ostream& stream) { writePng(stream, chart.second); });
   }
+  std::error_code ignored;
+  if (measured) std::filesystem::remove(std::filesystem::path(folder) / kUnfinished, ignored);
   fmt::print("\n{} charts (SVG and PNG), profile.csv, culling.csv{} in {}\n", charts.size(), measured ? ", profile.json" : "",
              onOneLine(folder));
+}
+
+// The results that a run that was broken off has left in the folder. A trace is of one run.
+std::vector<ProfileResult> keptResults(const ProfileCommand& command, const Profile& now) {
+  if (!command.out || command.fresh || command.trace) return {};
+  const std::filesystem::path path = std::filesystem::path(*command.out) / kUnfinished;
+  if (!std::filesystem::exists(path)) return {};
+  Profile then = readProfileJson(path.string());
+  if (!sameOrigin(then.provenance, now.provenance) || !(then.limits == now.limits)) {
+    throw InputError(
+        fmt::format("{}: found figures of another build, machine or limits, allowed are those of this run, or --fresh",
+                    onOneLine(path.string())));
+  }
+  return std::move(then.results);
+}
+
+// Measures scene by scene, and puts into the profile what is known of the cases after each. A scene is taken over from a run that
+// was broken off only as a whole, as its cases were timed by turns.
+void measureAll(const ProfileCommand& command, const std::vector<ProfileCase>& cases, Profile& profile,
+                std::vector<TracedCase>* traced) {
+  const auto begun = std::chrono::steady_clock::now();
+  Profile kept{profile.provenance, profile.limits, keptResults(command, profile)};
+  const auto known = [&](const ProfileCase& what) {
+    return std::find_if(kept.results.begin(), kept.results.end(), [&](const ProfileResult& old) { return old.what == what; });
+  };
+  const int stepsOfCase = 2 + profile.limits.samples;
+  Progress progress(static_cast<double>(cases.size()) * stepsOfCase, "steps");
+  for (auto first = cases.begin(); first != cases.end();) {
+    const auto last = std::find_if(first, cases.end(), [&](const ProfileCase& what) { return what.scene != first->scene; });
+    const std::vector<ProfileCase> group(first, last);
+    if (!std::all_of(first, last, [&](const ProfileCase& what) { return known(what) != kept.results.end(); })) {
+      const auto before = static_cast<int>(first - cases.begin()) * stepsOfCase;
+      const std::vector<ProfileResult> results =
+          measureProfile(group, profile.limits, begun, traced, [&](int done, int, const ProfileCase& next) {
+            endIfInterrupted();
+            progress.update(before + done, fmt::format("{}, {} rows, {}", nameOf(next.scene), sizeOf(next), nameOf(next.method)));
+          });
+      std::erase_if(kept.results, [&](const ProfileResult& old) { return std::find(first, last, old.what) != last; });
+      kept.results.insert(kept.results.end(), results.begin(), results.end());
+      if (command.out) writeOutputFile(*command.out, kUnfinished, [&](std::ostream& stream) { writeProfileJson(stream, kept); });
+    }
+    for (const ProfileCase& what : group) profile.results.push_back(*known(what));
+    first = last;
+  }
 }
 
 }  // namespace
@@ -226,6 +279,8 @@ CLI::App* defineProfile(CLI::App& program, ProfileCommand& command) {
   addNumber(*profile, "--sample-limit", command.sample_s, kLimitRange, "S",
             "wall time after which a sample ends, with fewer frames (default 1)");
   profile->add_flag("--quick", command.quick, "fewer cases, shorter samples: seconds instead of minutes");
+  profile->add_flag("--fresh", command.fresh,
+                    "times everything again, also what a run that was broken off has left in the folder");
   profile->add_option("--out", command.out, "writes CSV, JSON and the charts into this folder")->type_name("DIR");
   profile->add_option("--trace", command.trace, "writes the frames of the last samples for Perfetto or chrome://tracing")
       ->type_name("FILE.json");
@@ -255,13 +310,14 @@ int executeProfile(const ProfileCommand& command) {
   profile.provenance = provenanceNow();
   profile.limits = limitsOf(command);
   std::vector<TracedCase> traced;
-  std::unique_ptr<Progress> progress;
-  profile.results =
-      measureProfile(cases, profile.limits, traceFile ? &traced : nullptr, [&](int done, int all, const ProfileCase& next) {
-        if (!progress) progress = std::make_unique<Progress>(all, "steps");
-        progress->update(done, fmt::format("{}, {} rows, {}", nameOf(next.scene), sizeOf(next), nameOf(next.method)));
-      });
-  progress.reset();
+  try {
+    measureAll(command, cases, profile, traceFile ? &traced : nullptr);
+  } catch (const Interrupted&) {
+    if (!profile.results.empty()) printTable(profile);
+    complain("springtower", fmt::format("interrupted; {} of {} cases are timed{}", profile.results.size(), cases.size(),
+                                        command.out ? fmt::format(" and kept in {}/{}", *command.out, kUnfinished) : ""));
+    throw;
+  }
   printTable(profile);
   printCulling(profile);
   if (command.out) writeFolder(*command.out, profile, true);

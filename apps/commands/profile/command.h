@@ -29,13 +29,16 @@ struct ProfileCommand {
   std::optional<std::string> trace;
   std::optional<std::string> from;
   bool quick = false;
+  bool fresh = false;
 };
 
 /// Adds the command to the program.
 CLI::App* defineProfile(CLI::App& program, ProfileCommand& command);
 
 /// Times every case and prints a table; writes profile.json, profile.csv, culling.csv and the charts into the folder of `--out`
-/// and the trace into the file of `--trace`. Returns the exit code 0. Throws InputError before anything is timed.
+/// and the trace into the file of `--trace`. Scenes that are done are kept in that folder, in profile.unfinished.json, until all
+/// are: a run that was broken off is gone on with, one of another build, machine or limits is refused unless `--fresh`. Returns
+/// the exit code 0. Throws InputError before anything is timed, and Interrupted when a signal has come.
 int executeProfile(const ProfileCommand& command);
 
 }  // namespace springtower

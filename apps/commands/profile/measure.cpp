@@ -1,6 +1,7 @@
 #include "apps/commands/profile/measure.h"
 
 #include "apps/commands/profile/scene.h"
+#include "apps/common/interruption.h"
 #include "core/error.h"
 #include "core/processor_time.h"
 #include "solver/metrics/measures.h"
@@ -92,6 +93,7 @@ void sample(Measured& measured, const ProfileLimits& limits, Clock::time_point e
   std::size_t frames = 0;
   while (frames < static_cast<std::size_t>(limits.frames) &&
          (frames < 2 || secondsBetween(begin, Clock::now()) < limits.sample_s)) {
+    endIfInterrupted();
     const StageTimes stages = simulation.stageTimes;
     const Counters counters = simulation.counters;
     const double processorStart_s = processorTime_s();
@@ -126,6 +128,7 @@ void warmUp(Measured& measured, const ProfileLimits& limits) {
   const Clock::time_point begin = Clock::now();
   PenetrationWorkspace workspace;
   for (int frame = 0; frame < limits.frames && (frame < 2 || secondsBetween(begin, Clock::now()) < limits.sample_s); ++frame) {
+    endIfInterrupted();
     scene.step();
     const Penetration deepest = maxPenetration(simulation.state.position, simulation.scene.floor, workspace);
     result.penetration_mm = std::max(result.penetration_mm, 1e3 * deepest.depth);
@@ -200,49 +203,44 @@ double counted(const ProfileResult& result, std::string_view name) {
 }
 
 std::vector<ProfileResult> measureProfile(const std::vector<ProfileCase>& cases, const ProfileLimits& limits,
-                                          std::vector<TracedCase>* traced, const ProfileProgress& progress) {
-  const Clock::time_point epoch = Clock::now();
+                                          std::chrono::steady_clock::time_point begun, std::vector<TracedCase>* traced,
+                                          const ProfileProgress& progress) {
   std::vector<ProfileResult> results(cases.size());
-  if (traced != nullptr) traced->resize(cases.size());
+  const std::size_t before = traced != nullptr ? traced->size() : 0;
+  if (traced != nullptr) traced->resize(before + cases.size());
   const int all = static_cast<int>(cases.size()) * (2 + limits.samples);
   int done = 0;
-  for (std::size_t first = 0; first < cases.size();) {
-    std::size_t last = first;
-    while (last < cases.size() && cases[last].scene == cases[first].scene) ++last;
-
-    std::vector<std::unique_ptr<PreparedScene>> scenes;
-    std::vector<Measured> group(last - first);
-    for (std::size_t i = first; i < last; ++i) {
-      progress(done++, all, cases[i]);
-      ProfileResult& result = results[i];
-      result.what = cases[i];
-      result.methodName = nameOf(cases[i].method);
-      if (i == first || !samePreparation(cases[i - 1], cases[i])) {
-        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(cases[i].threads));
-        scenes.push_back(prepareScene(cases[i], limits));
-      }
-      PreparedScene& scene = *scenes.back();
-      group[i - first].scene = &scene;
-      group[i - first].result = &result;
-      result.blocks = scene.simulation.scene.blocks.size();
-      result.failure = scene.failure;
-      if (traced != nullptr) (*traced)[i].what = cases[i];
-      describePrepared(scene, result);
-      progress(done++, all, cases[i]);
-      attempt(result, [&] { warmUp(group[i - first], limits); });
+  std::vector<std::unique_ptr<PreparedScene>> scenes;
+  std::vector<Measured> group(cases.size());
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    progress(done++, all, cases[i]);
+    ProfileResult& result = results[i];
+    result.what = cases[i];
+    result.methodName = nameOf(cases[i].method);
+    if (i == 0 || !samePreparation(cases[i - 1], cases[i])) {
+      const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(cases[i].threads));
+      scenes.push_back(prepareScene(cases[i], limits));
     }
-    for (int turn = 0; turn < limits.samples; ++turn) {
-      for (Measured& measured : group) {
-        const auto at = static_cast<std::size_t>(measured.result - results.data());
-        progress(done++, all, measured.result->what);
-        const bool lastTurn = turn + 1 == limits.samples;
-        attempt(*measured.result, [&] {
-          sample(measured, limits, epoch, traced != nullptr && lastTurn ? &(*traced)[at] : nullptr);
-          if (lastTurn) finish(measured);
-        });
-      }
+    PreparedScene& scene = *scenes.back();
+    group[i].scene = &scene;
+    group[i].result = &result;
+    result.blocks = scene.simulation.scene.blocks.size();
+    result.failure = scene.failure;
+    if (traced != nullptr) (*traced)[before + i].what = cases[i];
+    describePrepared(scene, result);
+    progress(done++, all, cases[i]);
+    attempt(result, [&] { warmUp(group[i], limits); });
+  }
+  for (int turn = 0; turn < limits.samples; ++turn) {
+    for (Measured& measured : group) {
+      const auto at = static_cast<std::size_t>(measured.result - results.data());
+      progress(done++, all, measured.result->what);
+      const bool lastTurn = turn + 1 == limits.samples;
+      attempt(*measured.result, [&] {
+        sample(measured, limits, begun, traced != nullptr && lastTurn ? &(*traced)[before + at] : nullptr);
+        if (lastTurn) finish(measured);
+      });
     }
-    first = last;
   }
   return results;
 }

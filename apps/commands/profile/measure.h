@@ -3,6 +3,7 @@
 #include "apps/commands/profile/profile.h"
 
 #include <array>
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <vector>
@@ -11,7 +12,7 @@ namespace springtower {
 
 /// One timed frame, for the trace.
 struct TracedFrame {
-  double start_us = 0.0;  ///< wall time since the profile began
+  double start_us = 0.0;  ///< wall time since the profile began (`begun` of measureProfile)
   double duration_us = 0.0;
   std::array<double, kStages> stage_us{};
   int substeps = 0;
@@ -29,9 +30,11 @@ struct TracedCase {
 /// comes next.
 using ProfileProgress = std::function<void(int done, int all, const ProfileCase& next)>;
 
-/// Times all cases: those of one scene are prepared, then sampled by turns. Cases that differ in the number of threads alone
-/// share their preparation. `traced` may be null. Throws InputError for a case that is not allowed.
+/// Times the cases of one scene: they are prepared, then sampled by turns. Cases that differ in the number of threads alone share
+/// their preparation. `begun` is when the profile began; their frames are appended to `traced`, which may be null. Throws
+/// InputError for a case that is not allowed, and Interrupted with the frame after a signal has come.
 std::vector<ProfileResult> measureProfile(const std::vector<ProfileCase>& cases, const ProfileLimits& limits,
-                                          std::vector<TracedCase>* traced, const ProfileProgress& progress);
+                                          std::chrono::steady_clock::time_point begun, std::vector<TracedCase>* traced,
+                                          const ProfileProgress& progress);
 
 }  // namespace springtower

@@ -43,6 +43,7 @@ struct ProfileCase {
   Inertia inertia = Settings{}.inertia;
   double tolerance_m = 0.0;
   int threads = 1;
+  bool operator==(const ProfileCase&) const = default;
 };
 
 /// How long to prepare and to measure.
@@ -52,6 +53,7 @@ struct ProfileLimits {
   double settle_s = 5.0;    ///< simulated before the state is kept
   double prepare_s = 10.0;  ///< s of wall time after which preparing ends, settled or not
   double sample_s = 1.0;    ///< s of wall time after which a sample ends early
+  bool operator==(const ProfileLimits&) const = default;
 };
 
 /// Median, 99th percentile and largest of the frames, ms.

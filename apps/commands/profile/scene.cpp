@@ -1,5 +1,6 @@
 #include "apps/commands/profile/scene.h"
 
+#include "apps/common/interruption.h"
 #include "core/error.h"
 #include "scenarios/towers.h"
 #include "scenarios/walls.h"
@@ -39,7 +40,10 @@ class Deadline {
 };
 
 void settle(PreparedScene& scene, double seconds, const Deadline& deadline) {
-  while (scene.simulation.time_s < seconds && !deadline.passed()) scene.step();
+  while (scene.simulation.time_s < seconds && !deadline.passed()) {
+    endIfInterrupted();
+    scene.step();
+  }
 }
 
 void fallAsleep(PreparedScene& scene, const Deadline& deadline) {
@@ -48,6 +52,7 @@ void fallAsleep(PreparedScene& scene, const Deadline& deadline) {
       scene.failure = fmt::format("not asleep after {:.1f} s simulated", scene.simulation.time_s);
       return;
     }
+    endIfInterrupted();
     scene.step();
   }
 }
@@ -75,6 +80,7 @@ void startPulling(PreparedScene& scene, const Deadline& deadline) {
                                   gripForce(simulation).force.norm());
       return;
     }
+    endIfInterrupted();
     scene.step();
   }
 }

@@ -2,6 +2,8 @@
 
 #include "apps/commands/run/forces_report.h"
 #include "apps/commands/run/report.h"
+#include "apps/common/interruption.h"
+#include "apps/common/json_values.h"
 #include "apps/common/output_file.h"
 #include "apps/common/poses.h"
 #include "apps/common/progress.h"
@@ -124,13 +126,17 @@ int executeRun(const RunCommand& command) {
   Simulation simulation(scene);
   RunOptions options;
   options.seconds = scene.seconds;
+  options.shouldStop = interrupted;
   std::optional<PoseWriter> writer;
   if (poses) writer.emplace(poses->stream(), command.posesEvery_s.value_or(scene.settings.frame_s), scene.settings.frame_s);
   Progress progress(scene.seconds, "s simulated");
   RunResult result;
   try {
     result = runScene(simulation, options, [&](const Simulation& now) {
-      if (writer) writer->frame(now);
+      if (writer) {
+        writer->frame(now);
+        poses->flushEverySecond();
+      }
       progress.update(now.time_s);
     });
   } catch (const DivergenceError&) {
@@ -142,7 +148,7 @@ int executeRun(const RunCommand& command) {
   if (report) {
     nlohmann::ordered_json json = reportJson(simulation, result, threads);
     if (command.forces) json["forces"] = forcesJson(simulation);
-    report->stream() << json.dump(2) << '\n';
+    report->stream() << jsonText(json, 2) << '\n';
     report->commit();
   }
   if (picture) {
@@ -150,7 +156,7 @@ int executeRun(const RunCommand& command) {
     picture->commit();
   }
   printResult(simulation, result, threads);
-  return 0;
+  return result.interrupted ? interruptionExitCode() : 0;
 }
 
 }  // namespace springtower

@@ -104,6 +104,7 @@ Json reportJson(const Simulation& simulation, const RunResult& result, int threa
   report["fall"] = result.standing.stands ? Json(nullptr) : Json(describe(result.standing));
   report["fall_time_s"] = orNull(result.fallTime_s);
   report["t_rest_s"] = orNull(result.restTime_s);
+  report["interrupted"] = result.interrupted;
   report["simulated_s"] = result.simulated_s;
   report["wall_s"] = result.wall_s;
   report["frames"] = result.frames;
@@ -170,6 +171,7 @@ void printResult(const Simulation& simulation, const RunResult& result, int thre
       result.maxEnergyRise ? fmt::format("{:.2g} of the energy at the start", *result.maxEnergyRise) : "unknown");
   row("simulated",
       fmt::format("{:.4g} s in {:.3g} s, {} thread{}", result.simulated_s, result.wall_s, threads, threads == 1 ? "" : "s"));
+  if (result.interrupted) row("interrupted", "yes, by a signal: all figures are of the time until then");
   row("frame, processor time", fmt::format("{:.3g} ms median", times.cpuMedian));
   row("frame, wall time",
       fmt::format("{:.3g} ms median, {:.3g} ms 99th percentile, {:.3g} ms longest", times.median, times.p99, times.max));

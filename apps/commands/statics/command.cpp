@@ -2,6 +2,8 @@
 
 #include "apps/commands/statics/list.h"
 #include "apps/commands/statics/report.h"
+#include "apps/common/interruption.h"
+#include "apps/common/json_values.h"
 #include "apps/common/options.h"
 #include "apps/common/output_file.h"
 #include "core/error.h"
@@ -17,6 +19,7 @@
 #include <nlohmann/json.hpp>
 #include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/info.h>
+#include <oneapi/tbb/parallel_for.h>
 
 namespace springtower {
 namespace {
@@ -91,6 +94,15 @@ Scene sceneOf(const StaticsCommand& command) {
   return scene;
 }
 
+// Of every block; nothing for those left when a signal comes.
+std::vector<std::optional<Removal>> removalsUntilInterrupted(const Scene& scene) {
+  std::vector<std::optional<Removal>> known(scene.blocks.size());
+  tbb::parallel_for(std::size_t{0}, known.size(), [&](std::size_t b) {
+    if (!interrupted()) known[b] = removalOf(scene, blockId(b));
+  });
+  return known;
+}
+
 StaticsAnswer answerOf(const Scene& scene, const StaticsCommand& command) {
   const auto start = std::chrono::steady_clock::now();
   std::vector<Vec3> directions;
@@ -102,14 +114,16 @@ StaticsAnswer answerOf(const Scene& scene, const StaticsCommand& command) {
   }
   answer.statics = staticScene(scene);
   answer.margin = tiltMargin(answer.statics);
-  if (answer.statics.rest != Rest::falls) {
+  if (answer.statics.rest != Rest::falls && !interrupted()) {
     answer.loads = contactLoads(answer.statics);
     answer.blocks = blockLoads(answer.statics, answer.loads);
     for (std::size_t i = 0; i < directions.size(); ++i) {
       answer.pulls[i].limit_n = pullLimit(answer.statics, answer.pulls[i].block, directions[i]);
     }
   }
-  if (!command.noRemovals) answer.removals = removals(scene);
+  if (!command.noRemovals) answer.removals = removalsUntilInterrupted(scene);
+  answer.interrupted = (answer.statics.rest != Rest::falls && answer.blocks.empty()) ||
+                       std::any_of(answer.removals.begin(), answer.removals.end(), [](const auto& known) { return !known; });
   answer.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return answer;
 }
@@ -167,6 +181,8 @@ CLI::App* defineStatics(CLI::App& program, StaticsCommand& command) {
   statics->add_option("--report", command.report, "writes all figures as JSON")->type_name("FILE.json");
   statics->add_flag("--check", command.check,
                     "for a list: prints how many answers agree with what is expected; exit code 1 if one differs");
+  statics->add_flag("--keep-going", command.keepGoing,
+                    "for a list: tells a bad line on standard error, leaves it out and goes on; exit code 2 at the end");
   addWholeNumber(*statics, "--threads", command.threads, kThreadsRange, "threads to use (default: one for each processor)");
   wrapDescriptions(*statics);
   statics->footer(std::string(kHelp));
@@ -202,21 +218,25 @@ int executeStatics(const StaticsCommand& command) {
   const int threads = command.threads ? static_cast<int>(*command.threads) : tbb::info::default_concurrency();
   if (isList(command.scene)) {
     checkListOptions(command);
-    return executeStaticsList(command.scene, command.check, threads);
+    return executeStaticsList(command.scene, command.check, command.keepGoing, threads);
   }
   if (command.check) {
     throw InputError(fmt::format("--check: found the scene {}, allowed is a list, FILE.jsonl or -", inQuotes(command.scene)));
+  }
+  if (command.keepGoing) {
+    throw InputError(
+        fmt::format("--keep-going: found the scene {}, allowed is a list, FILE.jsonl or -", inQuotes(command.scene)));
   }
   const Scene scene = sceneOf(command);
   const auto report = command.report ? std::make_unique<OutputFile>(*command.report, "--report") : nullptr;
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
   const StaticsAnswer answer = answerOf(scene, command);
   if (report) {
-    report->stream() << staticsJson(scene, answer).dump(2) << '\n';
+    report->stream() << jsonText(staticsJson(scene, answer), 2) << '\n';
     report->commit();
   }
   printStatics(scene, answer, command.contacts);
-  return 0;
+  return answer.interrupted ? interruptionExitCode() : 0;
 }
 
 }  // namespace springtower

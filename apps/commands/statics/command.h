@@ -28,6 +28,7 @@ struct StaticsCommand {
   bool noRemovals = false;
   bool contacts = false;
   bool check = false;
+  bool keepGoing = false;  ///< of a list, after a bad line
   std::optional<std::string> report;
   std::optional<std::int64_t> threads;
 };

@@ -3,19 +3,21 @@
 #include "apps/commands/statics/report.h"
 #include "apps/commands/verdict/json.h"
 #include "apps/commands/verdict/verdict.h"
+#include "apps/common/interruption.h"
+#include "apps/common/json_values.h"
+#include "apps/common/line_jobs.h"
+#include "apps/common/line_reader.h"
 #include "core/error.h"
 #include "core/limits.h"
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <fmt/format.h>
-#include <fstream>
-#include <iostream>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <oneapi/tbb/global_control.h>
-#include <oneapi/tbb/parallel_for.h>
-#include <sstream>
+#include <optional>
+#include <set>
 
 namespace springtower {
 namespace {
@@ -36,9 +38,14 @@ struct Answer {
   std::vector<bool> standsAfter;  // of a sequence: at the start and after each removal
 };
 
-struct Lines {
-  std::vector<VerdictLine> lines;
-  std::map<std::size_t, Sequence> sequences;  // by the number of the line
+// A line, and its answer once that is known.
+struct StaticsLine {
+  std::size_t number = 0;
+  std::string id;
+  Json expect;
+  std::optional<bool> clear;     // what is expected where that is clear
+  std::vector<bool> sequence;    // what is expected of its states
+  std::optional<Answer> answer;  // empty until then
 };
 
 [[noreturn]] void fail(const std::string& where, const Json& found, std::string_view allowed) {
@@ -68,43 +75,33 @@ Sequence readSequence(const Json& remove, const Json& expected, const Scene& sce
   return sequence;
 }
 
-// Takes the keys of sequences out of the lines and has `verdict` read the rest, whose complaints keep the numbers of the lines.
-Lines readLines(std::istream& input, const std::string& source) {
-  std::map<std::size_t, std::pair<Json, Json>> found;
-  std::string rest;
-  std::string text;
-  for (std::size_t number = 1; std::getline(input, text); ++number) {
-    const std::string where = fmt::format("{}: line {}", source, number);
-    Json json = isBlankLine(text) ? Json(nullptr) : parseVerdictLine(text, where);
-    if (json.is_object() && (json.contains("remove") || json.contains("stands_after"))) {
-      if (!json.contains("remove")) throw InputError(where + ": found stands_after without remove, allowed is both");
-      found[number] = {json.at("remove"), json.contains("stands_after") ? json.at("stands_after") : Json(nullptr)};
-      json.erase("remove");
-      json.erase("stands_after");
-      text = json.dump(-1, ' ', true, Json::error_handler_t::replace);
-    }
-    rest += text + '\n';
+// Takes the keys of a sequence out of a line and has `verdict` read the rest.
+std::pair<VerdictLine, std::optional<Sequence>> readLine(std::string text, std::size_t number, const std::string& where,
+                                                         std::set<std::string>& ids) {
+  Json json = parseVerdictLine(text, where);
+  if (!json.is_object() || (!json.contains("remove") && !json.contains("stands_after"))) {
+    return {readVerdictLine(text, number, where, ids), std::nullopt};
   }
-  if (input.bad()) throw InputError(fmt::format("{}: reading failed", source));
-  std::istringstream stream(rest);
-  Lines lines;
-  lines.lines = readVerdictLines(stream, source);
-  for (const VerdictLine& line : lines.lines) {
-    const auto sequence = found.find(line.number);
-    if (sequence == found.end()) continue;
-    lines.sequences[line.number] = readSequence(sequence->second.first, sequence->second.second, line.scene,
-                                                fmt::format("{}: line {}", source, line.number));
-  }
-  return lines;
+  if (!json.contains("remove")) throw InputError(where + ": found stands_after without remove, allowed is both");
+  const Json remove = json.at("remove");
+  const Json after = json.contains("stands_after") ? json.at("stands_after") : Json(nullptr);
+  json.erase("remove");
+  json.erase("stands_after");
+  text = jsonText(json);
+  VerdictLine line = readVerdictLine(text, number, where, ids);
+  Sequence sequence = readSequence(remove, after, line.scene, where);
+  return {std::move(line), std::move(sequence)};
 }
 
-Answer solve(const VerdictLine& line, const Sequence* sequence) {
+Answer solve(const VerdictLine& line, const std::optional<Sequence>& sequence) {
+  endIfInterrupted();
   const StaticScene statics = staticScene(line.scene);
   Answer answer{statics.rest, tiltMargin(statics), {}};
-  if (sequence == nullptr) return answer;
+  if (!sequence) return answer;
   answer.standsAfter.push_back(statics.rest != Rest::falls);
   std::vector<char> gone(line.scene.blocks.size(), 0);
   for (const std::size_t block : sequence->remove) {
+    endIfInterrupted();
     gone[block] = 1;
     Scene rest = line.scene;
     rest.blocks.clear();
@@ -116,8 +113,8 @@ Answer solve(const VerdictLine& line, const Sequence* sequence) {
   return answer;
 }
 
-std::optional<double> expectedTilt(const VerdictLine& line) {
-  if (!isClear(line) || !line.expect.contains("tilt_deg") || !line.expect.at("tilt_deg").is_number()) return {};
+std::optional<double> expectedTilt(const StaticsLine& line) {
+  if (!line.clear || !line.expect.contains("tilt_deg") || !line.expect.at("tilt_deg").is_number()) return {};
   return line.expect.at("tilt_deg").get<double>();
 }
 
@@ -133,32 +130,30 @@ struct Count {
   }
 };
 
-bool printAgreement(const Lines& lines, const std::vector<Answer>& answers) {
+bool printAgreement(const std::deque<StaticsLine>& lines) {
   Count stands;
   Count falls;
   Count states;
   Count tilts;
   Count fallenTilts;
   std::string differing;
-  for (std::size_t i = 0; i < answers.size(); ++i) {
-    const VerdictLine& line = lines.lines[i];
+  for (const StaticsLine& line : lines) {
+    if (!line.answer) continue;
+    const Answer& answer = *line.answer;
     const std::string where = fmt::format("  line {}: {}", line.number, onOneLine(line.id));
-    const bool standing = answers[i].rest != Rest::falls;
-    if (isClear(line)) {
-      const bool expected = line.expect.at("stands").get<bool>();
-      (expected ? stands : falls).add(standing == expected);
-      if (standing != expected) differing += fmt::format("{} {}\n", where, standing ? "stands" : "falls");
+    const bool standing = answer.rest != Rest::falls;
+    if (line.clear) {
+      (*line.clear ? stands : falls).add(standing == *line.clear);
+      if (standing != *line.clear) differing += fmt::format("{} {}\n", where, standing ? "stands" : "falls");
     }
     if (const std::optional<double> expected = expectedTilt(line)) {
-      const double difference = answers[i].margin ? std::abs(answers[i].margin->tilt_deg - *expected) : 180.0;
+      const double difference = answer.margin ? std::abs(answer.margin->tilt_deg - *expected) : 180.0;
       const bool agrees = difference <= kTiltTolerance_deg;
       (*expected >= 0.0 ? tilts : fallenTilts).add(agrees, difference);
       if (*expected >= 0.0 && !agrees) differing += fmt::format("{} differs by {:.3f} deg of tilt\n", where, difference);
     }
-    const auto sequence = lines.sequences.find(line.number);
-    if (sequence == lines.sequences.end()) continue;
-    for (std::size_t state = 0; state < sequence->second.expected.size(); ++state) {
-      const bool agrees = sequence->second.expected[state] == answers[i].standsAfter[state];
+    for (std::size_t state = 0; state < line.sequence.size(); ++state) {
+      const bool agrees = line.sequence[state] == answer.standsAfter[state];
       states.add(agrees);
       if (!agrees) differing += fmt::format("{} differs after {} removals\n", where, state);
     }
@@ -179,39 +174,42 @@ bool printAgreement(const Lines& lines, const std::vector<Answer>& answers) {
   return differing.empty();
 }
 
-Lines readFile(const std::string& file) {
-  if (file == "-") return readLines(std::cin, "standard input");
-  std::ifstream stream(file);
-  if (!stream) throw InputError(fmt::format("{}: cannot be read", onOneLine(file)));
-  return readLines(stream, onOneLine(file));
+std::string answerLine(const StaticsLine& line) {
+  Json json = {{"id", line.id}};
+  json.update(restJson(line.answer->rest, line.answer->margin));
+  if (!line.answer->standsAfter.empty()) json["stands_after"] = line.answer->standsAfter;
+  if (!line.expect.is_null()) json["expect"] = line.expect;
+  return json.dump() + '\n';
 }
 
 }  // namespace
 
-int executeStaticsList(const std::string& file, bool check, int threads) {
-  const Lines lines = readFile(file);
-  const bool judged = std::any_of(lines.lines.begin(), lines.lines.end(), isClear) ||
-                      std::any_of(lines.sequences.begin(), lines.sequences.end(),
-                                  [](const auto& sequence) { return !sequence.second.expected.empty(); });
-  if (check && !judged) {
+int executeStaticsList(const std::string& file, bool check, bool keepGoing, int threads) {
+  LineReader input(file);
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+  std::set<std::string> ids;
+  std::deque<StaticsLine> lines;  // places in it stay
+  const LineCounts counts =
+      workOffLines(input, threads, keepGoing, [&](const std::string& text, std::size_t number, const std::string& where) {
+        if (isBlankLine(text)) return LineJob{};
+        auto [line, sequence] = readLine(text, number, where, ids);
+        StaticsLine& known = lines.emplace_back();
+        known.number = number;
+        known.id = line.id;
+        known.expect = line.expect;
+        if (isClear(line)) known.clear = line.expect.at("stands").get<bool>();
+        if (sequence) known.sequence = sequence->expected;
+        return LineJob([line = std::move(line), sequence = std::move(sequence), &known] {
+          known.answer = solve(line, sequence);
+          return answerLine(known);
+        });
+      });
+  const bool judged = std::any_of(lines.begin(), lines.end(),
+                                  [](const StaticsLine& line) { return line.clear.has_value() || !line.sequence.empty(); });
+  if (check && !judged && !counts.interrupted) {
     throw InputError("--check: found no line with a clear expectation or stands_after, allowed is at least one");
   }
-  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
-  std::vector<Answer> answers(lines.lines.size());
-  tbb::parallel_for(std::size_t{0}, answers.size(), [&](std::size_t i) {
-    const auto sequence = lines.sequences.find(lines.lines[i].number);
-    answers[i] = solve(lines.lines[i], sequence == lines.sequences.end() ? nullptr : &sequence->second);
-  });
-  std::string output;
-  for (std::size_t i = 0; i < answers.size(); ++i) {
-    Json json = {{"id", lines.lines[i].id}};
-    json.update(restJson(answers[i].rest, answers[i].margin));
-    if (!answers[i].standsAfter.empty()) json["stands_after"] = answers[i].standsAfter;
-    if (!lines.lines[i].expect.is_null()) json["expect"] = lines.lines[i].expect;
-    output += json.dump() + '\n';
-  }
-  std::cout << output << std::flush;
-  return check && !printAgreement(lines, answers) ? 1 : 0;
+  return exitCodeOf(counts, check && !printAgreement(lines) ? 1 : 0);
 }
 
 }  // namespace springtower

@@ -67,9 +67,9 @@ void printBlocks(const Scene& scene, const StaticsAnswer& answer) {
       fmt::print("{:>10.4f}{:>10.4f}{:>10.4f}{:>10}   {:<14}", load.weight_n, load.above_n, load.leastAbove_n, greatest, above);
     }
     if (removals) {
-      const Removal& removal = answer.removals[b];
-      fmt::print("   {:<22}", nameOf(removal.rest));
-      if (removal.margin) fmt::print("{:>9.2f}{:>9.0f}", removal.margin->tilt_deg, removal.margin->direction_deg);
+      const std::optional<Removal>& removal = answer.removals[b];
+      fmt::print("   {:<22}", removal ? nameOf(removal->rest) : "not known");
+      if (removal && removal->margin) fmt::print("{:>9.2f}{:>9.0f}", removal->margin->tilt_deg, removal->margin->direction_deg);
     }
     fmt::print("\n");
   }
@@ -118,9 +118,10 @@ Json staticsJson(const Scene& scene, const StaticsAnswer& answer) {
   json["gravity_direction_deg"] = scene.gravity.direction_deg;
   json.update(restJson(answer.statics.rest, answer.margin));
   json["settlement_mm"] = kMillimetres * answer.statics.settlement_m;
-  json["forces_are"] = answer.statics.rest == Rest::falls ? Json(nullptr)
-                       : answer.loads.anyOfMany           ? Json("any that balance")
-                                                          : Json("least squares");
+  json["interrupted"] = answer.interrupted;
+  json["forces_are"] = answer.blocks.empty()    ? Json(nullptr)
+                       : answer.loads.anyOfMany ? Json("any that balance")
+                                                : Json("least squares");
   json["wall_s"] = answer.wall_s;
   Json blocks = Json::array();
   for (std::size_t b = 0; b < scene.blocks.size(); ++b) {
@@ -139,7 +140,8 @@ Json staticsJson(const Scene& scene, const StaticsAnswer& answer) {
       block["loose"] = load.loose;
       block["gap_mm"] = kMillimetres * load.gap_m;
     }
-    if (!answer.removals.empty()) block["removal"] = restJson(answer.removals[b].rest, answer.removals[b].margin);
+    if (!answer.removals.empty() && answer.removals[b])
+      block["removal"] = restJson(answer.removals[b]->rest, answer.removals[b]->margin);
     blocks.push_back(std::move(block));
   }
   json["blocks"] = std::move(blocks);

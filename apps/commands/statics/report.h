@@ -23,8 +23,9 @@ struct StaticsAnswer {
   std::optional<StabilityMargin> margin;
   ContactLoads loads;
   std::vector<BlockLoad> blocks;
-  std::vector<Removal> removals;
+  std::vector<std::optional<Removal>> removals;  ///< nothing for those that a signal came before
   std::vector<PullAnswer> pulls;
+  bool interrupted = false;  ///< by a signal, so that something is missing
   double wall_s = 0.0;
 };
 

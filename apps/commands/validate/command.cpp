@@ -1,8 +1,11 @@
 #include "apps/commands/validate/command.h"
 
+#include "apps/commands/validate/kept.h"
 #include "apps/commands/validate/page.h"
+#include "apps/common/interruption.h"
 #include "apps/common/options.h"
 #include "apps/common/output_file.h"
+#include "apps/common/program.h"
 #include "core/error.h"
 
 #include <CLI/CLI.hpp>
@@ -17,6 +20,7 @@
 namespace springtower {
 namespace {
 
+constexpr const char* kUnfinished = "validation.unfinished.json";
 constexpr Range kValidateThreads{1.0, 1024.0, ""};
 
 constexpr std::string_view kValidateExamples = R"help(examples:
@@ -24,7 +28,7 @@ constexpr std::string_view kValidateExamples = R"help(examples:
   springtower validate --out validation --full          every tower of every set
   springtower validate --out validation --only pull,tilt --check
 parts: verdicts, forces, pull, tilt, loose, scale, sleep, moves. A claim that fails is reported and is no error of the program; with
---check the exit code is then 1.)help";
+--check the exit code is then 1. A run that was broken off goes on where it was.)help";
 
 std::vector<ValidationPart> partsOf(const ValidateCommand& command) {
   std::string names;
@@ -52,6 +56,41 @@ void print(const ValidationSection& section) {
   std::fflush(stdout);
 }
 
+void checkFolders(const ValidationPlan& plan) {
+  if (!std::filesystem::is_regular_file(std::filesystem::path(plan.oracle) / "shift.jsonl")) {
+    throw InputError(fmt::format("--oracle: found {}, allowed is the folder that holds shift.jsonl", inQuotes(plan.oracle)));
+  }
+  if (!std::filesystem::is_regular_file(std::filesystem::path(plan.scenes) / "moves.toml")) {
+    throw InputError(fmt::format("--scenes: found {}, allowed is the folder that holds moves.toml", inQuotes(plan.scenes)));
+  }
+}
+
+// What an earlier run has left of a part, if its figures are still there; else null.
+const ValidationSection* keptSection(const std::vector<KeptPart>& kept, std::string_view name, const std::string& folder) {
+  const auto found = std::find_if(kept.begin(), kept.end(), [&](const KeptPart& part) { return part.name == name; });
+  if (found == kept.end()) return nullptr;
+  for (const ValidationFigure& figure : found->section.figures) {
+    for (const char* ending : {".svg", ".png"}) {
+      if (!std::filesystem::exists(std::filesystem::path(folder) / (figure.name + ending))) return nullptr;
+    }
+  }
+  return &found->section;
+}
+
+// Measures a part and writes its figures.
+ValidationSection measured(const ValidationPart& part, const ValidationPlan& plan, const Provenance& provenance,
+                           const std::string& folder) {
+  const auto start = std::chrono::steady_clock::now();
+  ValidationSection section = part.run(plan);
+  section.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  for (ValidationFigure& figure : section.figures) {
+    figure.plot.footnote = footnote(provenance);
+    writeOutputFile(folder, figure.name + ".svg", [&](std::ostream& stream) { writeSvg(stream, figure.plot); });
+    writeOutputFile(folder, figure.name + ".png", [&](std::ostream& stream) { writePng(stream, figure.plot); });
+  }
+  return section;
+}
+
 }  // namespace
 
 const std::vector<ValidationPart>& validationParts() {
@@ -73,6 +112,7 @@ CLI::App* defineValidate(CLI::App& program, ValidateCommand& command) {
   validate->add_option("--oracle", command.oracle, "folder of the reference sets (default tests/data/oracle)")->type_name("DIR");
   validate->add_option("--scenes", command.scenes, "folder of the scene files (default scenes)")->type_name("DIR");
   validate->add_flag("--check", command.check, "exit code 1 if a claim fails");
+  validate->add_flag("--fresh", command.fresh, "measures all parts again, also those that a run that was broken off has left");
   addWholeNumber(*validate, "--threads", command.threads, kValidateThreads, "threads to use (default: one for each processor)");
   wrapDescriptions(*validate);
   validate->footer(std::string(kValidateExamples));
@@ -82,35 +122,39 @@ CLI::App* defineValidate(CLI::App& program, ValidateCommand& command) {
 int executeValidate(const ValidateCommand& command) {
   const std::vector<ValidationPart> parts = partsOf(command);
   const ValidationPlan plan{command.longForm, command.oracle, command.scenes};
-  if (!std::filesystem::is_regular_file(std::filesystem::path(plan.oracle) / "shift.jsonl")) {
-    throw InputError(fmt::format("--oracle: found {}, allowed is the folder that holds shift.jsonl", inQuotes(plan.oracle)));
-  }
-  if (!std::filesystem::is_regular_file(std::filesystem::path(plan.scenes) / "moves.toml")) {
-    throw InputError(fmt::format("--scenes: found {}, allowed is the folder that holds moves.toml", inQuotes(plan.scenes)));
-  }
+  checkFolders(plan);
   makeOutputFolder(command.out);
   PhysicsOptions options;
   options.threads = command.threads;
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threadCount(options)));
-  std::vector<ValidationSection> sections;
-  for (const ValidationPart& part : parts) {
-    const auto start = std::chrono::steady_clock::now();
-    sections.push_back(part.run(plan));
-    sections.back().wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    print(sections.back());
-  }
   const Provenance provenance = provenanceNow();
-  for (ValidationSection& section : sections) {
-    for (ValidationFigure& figure : section.figures) {
-      figure.plot.footnote = footnote(provenance);
-      writeOutputFile(command.out, figure.name + ".svg", [&](std::ostream& stream) { writeSvg(stream, figure.plot); });
-      writeOutputFile(command.out, figure.name + ".png", [&](std::ostream& stream) { writePng(stream, figure.plot); });
+  const std::string unfinished = (std::filesystem::path(command.out) / kUnfinished).string();
+  std::vector<KeptPart> kept;
+  if (!command.fresh) kept = readKeptParts(unfinished, plan, provenance);
+  std::vector<ValidationSection> sections;
+  try {
+    for (const ValidationPart& part : parts) {
+      const ValidationSection* done = keptSection(kept, part.name, command.out);
+      if (done == nullptr) {
+        std::erase_if(kept, [&](const KeptPart& old) { return old.name == part.name; });
+        kept.push_back({std::string(part.name), measured(part, plan, provenance, command.out)});
+        writeOutputFile(command.out, kUnfinished, [&](std::ostream& stream) { writeKeptParts(stream, kept, plan, provenance); });
+        done = &kept.back().section;
+      }
+      sections.push_back(*done);
+      print(sections.back());
     }
+  } catch (const Interrupted&) {
+    complain("springtower",
+             fmt::format("interrupted; {} of {} parts are done and kept in {}", sections.size(), parts.size(), unfinished));
+    throw;
   }
   writeOutputFile(command.out, "validation.md",
                   [&](std::ostream& stream) { writeValidationPage(stream, sections, plan, provenance); });
   writeOutputFile(command.out, "validation.json",
                   [&](std::ostream& stream) { writeValidationJson(stream, sections, plan, provenance); });
+  // Parts of a run of more parts stay for that.
+  if (kept.size() <= parts.size()) std::filesystem::remove(unfinished);
   const ClaimCounts counts = countClaims(sections);
   fmt::print("{} claims hold, {} fail, {} figures are only reported; validation.md in {}\n", counts.passed, counts.failed,
              counts.reported, onOneLine(command.out));

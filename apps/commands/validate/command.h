@@ -20,13 +20,16 @@ struct ValidateCommand {
   std::optional<std::int64_t> threads;
   bool longForm = false;
   bool check = false;
+  bool fresh = false;
 };
 
 /// Adds the command to the program.
 CLI::App* defineValidate(CLI::App& program, ValidateCommand& command);
 
-/// Measures, prints a line a claim, writes the page and its figures. Returns the exit code: 1 where --check found a claim that
-/// fails. Throws InputError before anything is measured.
+/// Measures, prints a line a claim, writes the page and its figures. Parts that are done are kept beside the page, in
+/// validation.unfinished.json, until all are: a run that was broken off is gone on with, one of another build, machine, form or
+/// reference sets is refused unless `--fresh`. Returns the exit code: 1 where --check found a claim that fails. Throws InputError
+/// before anything is measured, and Interrupted when a signal has come.
 int executeValidate(const ValidateCommand& command);
 
 }  // namespace springtower

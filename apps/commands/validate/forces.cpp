@@ -1,5 +1,7 @@
 #include "apps/commands/run/forces_report.h"
+#include "apps/commands/validate/frames.h"
 #include "apps/commands/validate/validate.h"
+#include "apps/common/interruption.h"
 #include "solver/runner/run.h"
 #include "solver/runner/trials.h"
 #include "solver/statics/statics.h"
@@ -152,7 +154,7 @@ ValidationSection validateForces(const ValidationPlan& plan) {
   tbb::parallel_for(std::size_t{0}, scenes.size(), [&](std::size_t i) {
     tbb::this_task_arena::isolate([&] {
       Simulation simulation(scenes[i].scene);
-      while (simulation.time_s < scenes[i].seconds) stepFrame(simulation);
+      while (simulation.time_s < scenes[i].seconds) stepFrameOrEnd(simulation);
       balances[i] = balanceOf(Json::parse(forcesJson(simulation).dump()));
     });
   });
@@ -186,8 +188,8 @@ ValidationSection validatePulls(const ValidationPlan& plan) {
   tbb::parallel_for(std::size_t{0}, pulled.size(), [&](std::size_t i) {
     tbb::this_task_arena::isolate([&] {
       Simulation simulation(pulled[i].scene);
-      while (simulation.time_s < pulled[i].settle_s) stepFrame(simulation);
-      trials[i] = pullUntilSlip(simulation, pulled[i].block, pulled[i].towards);
+      while (simulation.time_s < pulled[i].settle_s) stepFrameOrEnd(simulation);
+      trials[i] = pullUntilSlip(simulation, pulled[i].block, pulled[i].towards, endIfInterrupted);
       limits_n[i] = pullLimit(staticScene(pulled[i].scene), blockId(pulled[i].block), pulled[i].towards).value_or(0.0);
     });
   });

@@ -1,3 +1,4 @@
+#include "apps/commands/validate/frames.h"
 #include "apps/commands/validate/validate.h"
 #include "solver/metrics/penetration.h"
 #include "solver/runner/trials.h"
@@ -45,7 +46,7 @@ void solve(int rows, UnevenTower& tower) {
   const std::vector<BlockLoad> loads =
       statics.rest == Rest::falls ? std::vector<BlockLoad>{} : blockLoads(statics, contactLoads(statics));
   Simulation simulation(scene);
-  while (!atRest(simulation) && simulation.time_s < kLongestLooseSettling_s) stepFrame(simulation);
+  while (!atRest(simulation) && simulation.time_s < kLongestLooseSettling_s) stepFrameOrEnd(simulation);
   tower.rested = atRest(simulation);
   PenetrationWorkspace workspace;
   tower.penetration_m = maxPenetration(simulation.state.position, true, workspace).depth;

@@ -1,4 +1,5 @@
 #include "apps/commands/run/moves_report.h"
+#include "apps/commands/validate/frames.h"
 #include "apps/commands/validate/validate.h"
 #include "core/error.h"
 #include "solver/statics/statics.h"
@@ -32,7 +33,7 @@ Played play(const Scene& scene) {
   options.seconds = kLongest_s;
   options.measureEveryFrame = false;
   Simulation simulation(scene);
-  Played played{runScene(simulation, options), {}};
+  Played played{runSceneOrEnd(simulation, options), {}};
   for (std::size_t b = 0; b < scene.blocks.size(); ++b) played.places.push_back(centre(simulation.state.position, b));
   return played;
 }

@@ -46,6 +46,17 @@ std::string_view resultOf(const Claim& claim) {
   return !claim.passed ? "-" : *claim.passed ? "pass" : "fail";
 }
 
+nlohmann::ordered_json claimsJson(const ValidationSection& section) {
+  Json claims = Json::array();
+  for (const Claim& claim : section.claims) {
+    claims.push_back({{"claim", claim.what},
+                      {"tolerance", claim.tolerance},
+                      {"measured", claim.measured},
+                      {"passed", claim.passed ? Json(*claim.passed) : Json(nullptr)}});
+  }
+  return claims;
+}
+
 void writeValidationPage(std::ostream& stream, std::span<const ValidationSection> sections, const ValidationPlan& plan,
                          const Provenance& provenance) {
   const ClaimCounts counts = countClaims(sections);
@@ -90,15 +101,8 @@ void writeValidationJson(std::ostream& stream, std::span<const ValidationSection
   json["reported"] = counts.reported;
   json["sections"] = Json::array();
   for (const ValidationSection& section : sections) {
-    Json claims = Json::array();
-    for (const Claim& claim : section.claims) {
-      claims.push_back({{"claim", claim.what},
-                        {"tolerance", claim.tolerance},
-                        {"measured", claim.measured},
-                        {"passed", claim.passed ? Json(*claim.passed) : Json(nullptr)}});
-    }
     json["sections"].push_back(
-        {{"title", section.title}, {"wall_s", section.wall_s}, {"claims", claims}, {"notes", section.notes}});
+        {{"title", section.title}, {"wall_s", section.wall_s}, {"claims", claimsJson(section)}, {"notes", section.notes}});
   }
   stream << json.dump(2) << '\n';
 }

@@ -1,3 +1,4 @@
+#include "apps/commands/validate/frames.h"
 #include "apps/commands/validate/validate.h"
 #include "core/error.h"
 #include "scenarios/towers.h"
@@ -35,7 +36,7 @@ RunResult runOf(const Scene& scene, double seconds) {
   options.seconds = seconds;
   options.stopWhenFallen = true;
   Simulation simulation(scene);
-  return runScene(simulation, options);
+  return runSceneOrEnd(simulation, options);
 }
 
 Outcome outcomeOf(const Variant& variant, const std::vector<Scene>& judged) {
@@ -53,7 +54,7 @@ Outcome outcomeOf(const Variant& variant, const std::vector<Scene>& judged) {
   RunOptions options;
   options.seconds = 5.0 * time;
   options.measureEveryFrame = false;
-  const RunResult result = runScene(simulation, options);
+  const RunResult result = runSceneOrEnd(simulation, options);
   PenetrationWorkspace workspace;
   const double height = simulation.lengths.blockHeight_m;
   outcome.penetration = maxPenetration(simulation.state.position, true, workspace).depth / height;

@@ -1,3 +1,4 @@
+#include "apps/commands/validate/frames.h"
 #include "apps/commands/validate/validate.h"
 #include "solver/hand/grip.h"
 #include "solver/runner/run.h"
@@ -54,7 +55,7 @@ DrawnOut drawOut(Scene scene, int row, Sleep sleep) {
   scene.settings.sleep = sleep;
   Simulation simulation(scene);
   while (!(sleep == Sleep::off ? atRest(simulation) : awakeBlocks(simulation) == 0) && simulation.time_s < kLongestSettling_s) {
-    stepFrame(simulation);
+    stepFrameOrEnd(simulation);
   }
   drawn.slept = awakeBlocks(simulation) == 0;
   std::size_t block = 0;
@@ -68,7 +69,7 @@ DrawnOut drawOut(Scene scene, int row, Sleep sleep) {
   const double begin_s = simulation.time_s;
   while (!drawn.freed && simulation.time_s < begin_s + kLongestPull_s) {
     advancePull(draw, contactForcesOn(simulation, blockId(block)), simulation);
-    stepFrame(simulation);
+    stepFrameOrEnd(simulation);
     const double moved = (centre(simulation.state.position, block) - before).dot(direction);
     if (moved < kSlides_m) continue;
     drawn.awake.push_back(static_cast<double>(awakeBlocks(simulation)));
@@ -79,7 +80,7 @@ DrawnOut drawOut(Scene scene, int row, Sleep sleep) {
   draw.hand.line = Vec3::Zero();
   while (drawn.freed && simulation.time_s < end_s) {
     hold(draw.hand, contactForcesOn(simulation, blockId(block)), draw.grip, simulation);
-    stepFrame(simulation);
+    stepFrameOrEnd(simulation);
   }
   drawn.stands = standing(simulation.model, start, simulation.state.position, leftOut).stands;
   return drawn;
@@ -113,7 +114,7 @@ void addOverhang(ValidationSection& section) {
   std::vector<RunResult> results;
   for (const Sleep sleep : {Sleep::on, Sleep::off}) {
     Simulation simulation(overhanging(kOverhang_m, sleep));
-    results.push_back(runScene(simulation, options));
+    results.push_back(runSceneOrEnd(simulation, options));
   }
   const auto words = [](const RunResult& result) {
     return result.fallTime_s ? fmt::format("falls at {:.3f} s", *result.fallTime_s) : std::string("stands for 20 s");

@@ -1,5 +1,6 @@
 #include "apps/commands/validate/validate.h"
 #include "apps/commands/verdict/verdict.h"
+#include "apps/common/interruption.h"
 #include "core/error.h"
 #include "solver/runner/trials.h"
 #include "solver/statics/statics.h"
@@ -50,7 +51,8 @@ TiltTrial trialOf(const Tilted& tower, std::optional<double> tolerance_m) {
   Scene scene = tower.scene;
   scene.settings.tolerance_m = tolerance_m;
   const double start_deg = std::max(0.0, tower.margin_deg - (tolerance_m ? kAhead_deg : kSoftAhead_deg));
-  return tiltUntilFall(scene, {tower.direction_deg, start_deg, 2.0, 1.0, 0.1, tower.margin_deg + kBeyondMargin_deg});
+  return tiltUntilFall(scene, {tower.direction_deg, start_deg, 2.0, 1.0, 0.1, tower.margin_deg + kBeyondMargin_deg},
+                       endIfInterrupted);
 }
 
 std::string wordsFor(const Tilted& tower, const TiltTrial& trial) {

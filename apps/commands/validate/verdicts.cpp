@@ -1,3 +1,4 @@
+#include "apps/commands/validate/frames.h"
 #include "apps/commands/validate/validate.h"
 #include "apps/commands/verdict/verdict.h"
 #include "core/error.h"
@@ -49,7 +50,7 @@ Fate fateOf(Scene scene, Sleep sleep) {
   Fate fate;
   try {
     Simulation simulation(scene);
-    const RunResult result = runScene(simulation, options);
+    const RunResult result = runSceneOrEnd(simulation, options);
     fate.standing = result.standing;
     fate.fall_s = result.fallTime_s.value_or(0.0);
     fate.end = simulation.state.position;

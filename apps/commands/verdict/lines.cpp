@@ -125,18 +125,22 @@ VerdictLine readLine(const Json& json, const std::string& where) {
 
 }  // namespace
 
+VerdictLine readVerdictLine(const std::string& text, std::size_t number, const std::string& where, std::set<std::string>& ids) {
+  VerdictLine line = readLine(parseVerdictLine(text, where), where);
+  line.number = number;
+  if (!ids.insert(line.id).second) {
+    throw InputError(fmt::format("{}: id: found {} for the second time, allowed is once", where, inQuotes(line.id)));
+  }
+  return line;
+}
+
 std::vector<VerdictLine> readVerdictLines(std::istream& input, const std::string& source) {
   std::vector<VerdictLine> lines;
   std::set<std::string> ids;
   std::string text;
   for (std::size_t number = 1; std::getline(input, text); ++number) {
     if (isBlankLine(text)) continue;
-    const std::string where = fmt::format("{}: line {}", source, number);
-    lines.push_back(readLine(parseVerdictLine(text, where), where));
-    lines.back().number = number;
-    if (!ids.insert(lines.back().id).second) {
-      throw InputError(fmt::format("{}: id: found {} for the second time, allowed is once", where, inQuotes(lines.back().id)));
-    }
+    lines.push_back(readVerdictLine(text, number, fmt::format("{}: line {}", source, number), ids));
   }
   if (input.bad()) throw InputError(fmt::format("{}: reading failed", source));
   return lines;

@@ -1,19 +1,21 @@
 #include "apps/commands/verdict/verdict.h"
 
+#include "apps/commands/verdict/json.h"
+#include "apps/common/interruption.h"
 #include "apps/common/json_values.h"
-#include "apps/common/progress.h"
+#include "apps/common/line_jobs.h"
+#include "apps/common/line_reader.h"
+#include "apps/common/program.h"
 #include "core/error.h"
 #include "solver/runner/run.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <deque>
 #include <fmt/format.h>
-#include <fstream>
-#include <iostream>
-#include <mutex>
 #include <nlohmann/json.hpp>
 #include <oneapi/tbb/global_control.h>
-#include <oneapi/tbb/parallel_for.h>
-#include <oneapi/tbb/task_arena.h>
+#include <set>
 #include <string_view>
 
 namespace springtower {
@@ -36,6 +38,7 @@ a line of the output:
   max_penetration_mm, creep_mm  the largest since it was at rest, or since 5 s; null if it ended before
   diverged                      only where the simulation diverged, says how: stands is null, time_s is when that was,
                                 steps are those of the whole frames until then
+  A line is printed as soon as it and all before it are done. A bad line ends the program when those before it are printed.
 examples:
   springtower verdict towers.jsonl > verdicts.jsonl
   echo '{"id": "a", "config": "(010)-(100)"}' | springtower verdict -
@@ -48,7 +51,17 @@ struct Verdict {
   std::string divergence;        // empty unless the scene diverged
 };
 
-Verdict judge(const VerdictLine& line, double seconds) {
+// What is known of a line in the end, when its scene is gone.
+struct JudgedLine {
+  std::size_t number = 0;
+  std::string id;
+  std::optional<bool> expected;  // where that is clear
+  bool done = false;
+  bool stands = false;
+  std::string divergence;
+};
+
+Verdict judge(const VerdictLine& line, double seconds, const std::string& where) {
   RunOptions options;
   options.seconds = seconds;
   options.stopWhenFallen = true;
@@ -58,30 +71,16 @@ Verdict judge(const VerdictLine& line, double seconds) {
   std::optional<Simulation> simulation;
   try {
     simulation.emplace(line.scene);
-    verdict.result = runScene(*simulation, options);
+    verdict.result = runScene(*simulation, options, [](const Simulation&) { endIfInterrupted(); });
     verdict.time_s = verdict.result.standing.stands ? verdict.result.restTime_s : verdict.result.fallTime_s;
   } catch (const DivergenceError& error) {
     if (simulation) verdict.result.counters = simulation->counters;
     verdict.time_s = error.time_s;
     verdict.divergence = error.what();
   } catch (const InputError& error) {
-    throw InputError(fmt::format("line {}: {}", line.number, error.what()));
+    throw InputError(fmt::format("{}: {}", where, error.what()));
   }
   return verdict;
-}
-
-std::vector<Verdict> judgeAll(const std::vector<VerdictLine>& lines, double seconds) {
-  std::vector<Verdict> verdicts(lines.size());
-  Progress progress(static_cast<double>(lines.size()), "scenes");
-  std::size_t done = 0;
-  std::mutex progressMutex;
-  tbb::parallel_for(std::size_t{0}, lines.size(), [&](std::size_t i) {
-    // Isolated, so that a thread waiting inside one scene does not start another on top of it.
-    tbb::this_task_arena::isolate([&] { verdicts[i] = judge(lines[i], seconds); });
-    const std::lock_guard lock(progressMutex);
-    progress.update(static_cast<double>(++done));
-  });
-  return verdicts;
 }
 
 Json verdictJson(const VerdictLine& line, const Verdict& verdict) {
@@ -103,7 +102,7 @@ Json verdictJson(const VerdictLine& line, const Verdict& verdict) {
 }
 
 // Prints how many clear lines agree; returns whether all do.
-bool printVerdictAgreement(const std::vector<VerdictLine>& lines, const std::vector<Verdict>& verdicts) {
+bool printVerdictAgreement(const std::deque<JudgedLine>& lines) {
   struct Count {
     std::size_t clear = 0;
     std::size_t agree = 0;
@@ -111,17 +110,17 @@ bool printVerdictAgreement(const std::vector<VerdictLine>& lines, const std::vec
   Count stands;
   Count falls;
   std::string differing;
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    if (!isClear(lines[i])) continue;
-    const bool expected = lines[i].expect.at("stands").get<bool>();
+  for (const JudgedLine& line : lines) {
+    if (!line.done || !line.expected) continue;
+    const bool expected = *line.expected;
     Count& count = expected ? stands : falls;
     ++count.clear;
-    const bool diverged = !verdicts[i].divergence.empty();
-    if (!diverged && verdicts[i].result.standing.stands == expected) {
+    const bool diverged = !line.divergence.empty();
+    if (!diverged && line.stands == expected) {
       ++count.agree;
       continue;
     }
-    differing += fmt::format("  line {}: {} {}, expected that it {}\n", lines[i].number, onOneLine(lines[i].id),
+    differing += fmt::format("  line {}: {} {}, expected that it {}\n", line.number, onOneLine(line.id),
                              diverged   ? "diverged"
                              : expected ? "falls"
                                         : "stands",
@@ -135,13 +134,6 @@ bool printVerdictAgreement(const std::vector<VerdictLine>& lines, const std::vec
   return differing.empty();
 }
 
-std::vector<VerdictLine> readVerdictFile(const std::string& file) {
-  if (file == "-") return readVerdictLines(std::cin, "standard input");
-  std::ifstream stream(file);
-  if (!stream) throw InputError(fmt::format("{}: cannot be read", onOneLine(file)));
-  return readVerdictLines(stream, onOneLine(file));
-}
-
 }  // namespace
 
 CLI::App* defineVerdict(CLI::App& program, VerdictCommand& command) {
@@ -153,32 +145,50 @@ CLI::App* defineVerdict(CLI::App& program, VerdictCommand& command) {
   verdict->add_flag(
       "--check", command.check,
       "prints on standard error how many verdicts agree with expect where that is clear; exit code 1 if one differs");
+  verdict->add_flag("--keep-going", command.keepGoing,
+                    "tells a bad line on standard error, leaves it out and goes on; exit code 2 at the end");
   wrapDescriptions(*verdict);
   verdict->footer(std::string(kVerdictExamples));
   return verdict;
 }
 
 int executeVerdict(const VerdictCommand& command) {
-  std::vector<VerdictLine> lines = readVerdictFile(command.file);
-  for (VerdictLine& line : lines) applyPhysicsOptions(command.physics, line.scene.settings);
-  if (command.check && std::none_of(lines.begin(), lines.end(), isClear)) {
+  LineReader input(command.file);
+  const int threads = threadCount(command.physics);
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+  const double seconds = command.seconds.value_or(kVerdictSeconds);
+  std::set<std::string> ids;
+  std::deque<JudgedLine> judged;  // places in it stay
+  const LineCounts counts =
+      workOffLines(input, threads, command.keepGoing, [&](const std::string& text, std::size_t number, const std::string& where) {
+        if (isBlankLine(text)) return LineJob{};
+        VerdictLine line = readVerdictLine(text, number, where, ids);
+        applyPhysicsOptions(command.physics, line.scene.settings);
+        JudgedLine& known = judged.emplace_back();
+        known.number = number;
+        known.id = line.id;
+        if (isClear(line)) known.expected = line.expect.at("stands").get<bool>();
+        return LineJob([line = std::move(line), where, seconds, &known] {
+          const Verdict verdict = judge(line, seconds, where);
+          known.stands = verdict.result.standing.stands;
+          known.divergence = verdict.divergence;
+          known.done = true;
+          return verdictJson(line, verdict).dump() + '\n';
+        });
+      });
+  int exitCode = 0;
+  const bool anyClear =
+      std::any_of(judged.begin(), judged.end(), [](const JudgedLine& line) { return line.expected.has_value(); });
+  if (command.check && !anyClear && !counts.interrupted) {
     throw InputError("--check: found no line with a clear expectation, allowed is at least one");
   }
-  const auto threads = static_cast<std::size_t>(threadCount(command.physics));
-  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-  const std::vector<Verdict> verdicts = judgeAll(lines, command.seconds.value_or(kVerdictSeconds));
-
-  std::string output;
-  for (std::size_t i = 0; i < lines.size(); ++i) output += verdictJson(lines[i], verdicts[i]).dump() + '\n';
-  std::cout << output << std::flush;
-  int exitCode = 0;
-  if (command.check && !printVerdictAgreement(lines, verdicts)) exitCode = 1;
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    if (verdicts[i].divergence.empty()) continue;
-    fmt::print(stderr, "springtower: line {}, {}: {}\n", lines[i].number, onOneLine(lines[i].id), verdicts[i].divergence);
-    exitCode = 3;
+  if (command.check && !printVerdictAgreement(judged)) exitCode = 1;
+  for (const JudgedLine& line : judged) {
+    if (line.divergence.empty()) continue;
+    complain("springtower", fmt::format("line {}, {}: {}", line.number, line.id, line.divergence));
+    exitCode = kDiverged;
   }
-  return exitCode;
+  return exitCodeOf(counts, exitCode);
 }
 
 }  // namespace springtower

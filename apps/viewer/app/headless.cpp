@@ -1,4 +1,5 @@
 // The part of window.h that needs no window.
+#include "apps/common/interruption.h"
 #include "apps/viewer/app/window.h"
 #include "apps/viewer/io/output.h"
 
@@ -24,15 +25,19 @@ void runHeadless(Viewer& viewer, const ViewerFiles& files, const Viewport& size,
     viewer.paused = true;  // frames by number, not by time
     viewer.once = true;
     advance(viewer, 0.0);
-    const bool wanted = i % run.every == 0 || i == run.frames;
-    if (!wanted || (!run.folder && !film)) continue;
-    frame.bind();
-    renderer.draw(pictureOf(viewer), viewer.controls.camera, size);
-    const Image image = frame.read();
-    if (++viewer.watch.pictures == 1)
-      viewer.watch.firstPicture_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
-    if (run.folder) writePng(fmt::format("{}/frame-{:05}.png", *run.folder, i), "--png", image);
-    if (film) film->add(image);
+    if (files.recorder != nullptr) files.recorder->follow(viewer.choice, viewer.session);
+    viewer.watch.interrupted = i < run.frames && interrupted();
+    const bool last = i == run.frames || viewer.watch.interrupted;
+    if ((i % run.every == 0 || last) && (run.folder || film)) {
+      frame.bind();
+      renderer.draw(pictureOf(viewer), viewer.controls.camera, size);
+      const Image image = frame.read();
+      if (++viewer.watch.pictures == 1)
+        viewer.watch.firstPicture_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
+      if (run.folder) writePng(fmt::format("{}/frame-{:05}.png", *run.folder, i), "--png", image);
+      if (film) film->add(image);
+    }
+    if (last) break;
   }
   if (film) film->finish();
 }

@@ -1,8 +1,10 @@
-// The viewer: a window with the tower, a hand, and panels; or, with --headless, pictures of a scene. Exit codes: 0 done, 1 a
-// replay differs, 2 bad input or no display, 3 diverged (without a window), 70 an error of the program itself.
+// The viewer: a window with the tower, a hand, and panels; or, with --headless, pictures of a scene. Exit codes are those of
+// apps/common/program.h, and 1 where a replay differs; divergence counts without a window only.
+#include "apps/common/interruption.h"
 #include "apps/common/options.h"
 #include "apps/common/output_file.h"
 #include "apps/common/poses.h"
+#include "apps/common/program.h"
 #include "apps/viewer/app/window.h"
 #include "core/error.h"
 #include "core/limits.h"
@@ -12,7 +14,6 @@
 #include <CLI/CLI.hpp>
 #include <charconv>
 #include <chrono>
-#include <exception>
 #include <fmt/format.h>
 #include <numbers>
 #include <oneapi/tbb/global_control.h>
@@ -21,9 +22,6 @@ namespace springtower {
 namespace {
 
 constexpr int kReplayDiffers = 1;
-constexpr int kBadInput = 2;
-constexpr int kDiverged = 3;
-constexpr int kProgramError = 70;
 
 constexpr std::string_view kFooter = R"help(examples:
   springtower-viewer                                 the tower of 18 rows, heights varying by 0.2 mm
@@ -33,7 +31,9 @@ constexpr std::string_view kFooter = R"help(examples:
 mouse: left drag moves a block in the plane of the screen, right drag along the view; beside the blocks it goes round.
        Wheel and Q E W S A D turn the held block; shift looks round while the hand keeps it.
 keys:  space pause, n one frame, r reset, t slow motion, backspace undo, [ ] back and forth, o colour by, f contact forces,
-       tab panels, p screenshot, v record video, i writes what is seen and all poses, escape ends)help";
+       tab panels, p screenshot, v record video, i writes what is seen and all poses, escape ends
+A signal (Ctrl-C) ends it as escape does, with exit code 130 or 143. A recording that a killed viewer leaves, FILE.partial, can be
+replayed.)help";
 
 struct Command {
   std::string scene = "tower:18";
@@ -91,7 +91,7 @@ void define(CLI::App& app, Command& c) {
   addWholeNumber(app, "--png-every", c.every, {1, 1e7, ""}, "writes every Nth frame, and the last (default 1)");
   app.add_option("--png", c.png, "folder for pictures frame-00001.png ...")->type_name("DIR");
   app.add_option("--video", c.files.film, "records a video, a file .mp4 or .gif (needs ffmpeg)")->type_name("FILE");
-  app.add_option("--record", c.files.record, "writes the input of all frames at the end")->type_name("FILE");
+  app.add_option("--record", c.files.record, "writes the input of all frames, as they pass")->type_name("FILE");
   app.add_option("--replay", c.replay, "plays a recording, and says in which frame its states differ")->type_name("FILE");
   app.add_option("--report", c.files.report, "writes at the end what happened, as JSON; measures penetration")->type_name("FILE");
   app.add_option("--poses", c.files.poses, "writes the poses at the end, as `springtower run --poses`")->type_name("FILE");
@@ -158,6 +158,10 @@ Viewer viewerOf(const Command& command) {
   if (command.replay) replay = Replay{readRecording(*command.replay), {}};
   const SceneChoice choice = replay ? replay->recording.choice : choiceOf(command);
   Viewer viewer(choice, replay ? tuningOf(sceneOf(choice)) : tuningOf(command, choice));
+  if (replay && !replay->recording.missing.empty()) {
+    viewer.message = replay->recording.missing;
+    complain("springtower-viewer", viewer.message);
+  }
   viewer.replay = std::move(replay);
   viewer.overlay = overlayFromName(command.overlay);
   viewer.arrows = command.arrows;
@@ -173,6 +177,20 @@ std::unique_ptr<OutputFile> opened(const std::optional<std::string>& path, const
   return path ? std::make_unique<OutputFile>(*path, option) : nullptr;
 }
 
+// The exit code, said in words where it is none of done.
+int outcomeOf(const Viewer& viewer, bool headless) {
+  if (viewer.watch.interrupted) return interruptionExitCode();
+  if (viewer.replay && viewer.replay->differs) {
+    fmt::print("the replay differs first in frame {}\n", *viewer.replay->differs);
+    return kReplayDiffers;
+  }
+  if (headless && !viewer.session.failure.empty()) {
+    complain("springtower-viewer", viewer.session.failure);
+    return kDiverged;
+  }
+  return 0;
+}
+
 int runViewer(const Command& command, std::chrono::steady_clock::time_point started) {
   const Viewport size = sizeOf(command);
   if (!command.headless && (command.frames || command.png || command.every)) {
@@ -184,14 +202,18 @@ int runViewer(const Command& command, std::chrono::steady_clock::time_point star
   const auto report = opened(command.files.report, "--report");
   const auto poses = opened(command.files.poses, "--poses");
   const auto record = opened(command.files.record, "--record");
+  std::optional<RecordingWriter> recorder;
+  if (record) recorder.emplace(*record);
+  ViewerFiles files = command.files;
+  files.recorder = recorder ? &*recorder : nullptr;
   if (command.headless) {
     const std::size_t recorded = viewer.replay ? viewer.replay->recording.frames.size() : 60;
-    runHeadless(viewer, command.files, size,
+    runHeadless(viewer, files, size,
                 {static_cast<int>(command.frames.value_or(static_cast<std::int64_t>(recorded))),
                  static_cast<int>(command.every.value_or(1)), command.png},
                 started);
   } else {
-    runWindow(viewer, command.files, size, started);
+    runWindow(viewer, files, size, started);
   }
   if (report) {
     writeViewerReport(report->stream(), viewer);
@@ -202,25 +224,8 @@ int runViewer(const Command& command, std::chrono::steady_clock::time_point star
     PoseWriter(poses->stream(), frame_s, frame_s).frame(viewer.session.simulation);
     poses->commit();
   }
-  if (record) {
-    const auto frames = static_cast<std::ptrdiff_t>(std::min<std::size_t>(viewer.session.frame, viewer.session.log.size()));
-    writeRecording(record->stream(), {viewer.choice, {viewer.session.log.begin(), viewer.session.log.begin() + frames}});
-    record->commit();
-  }
-  if (viewer.replay && viewer.replay->differs) {
-    fmt::print("the replay differs first in frame {}\n", *viewer.replay->differs);
-    return kReplayDiffers;
-  }
-  if (command.headless && !viewer.session.failure.empty()) {
-    fmt::print(stderr, "springtower-viewer: {}\n", onOneLine(viewer.session.failure));
-    return kDiverged;
-  }
-  return 0;
-}
-
-int complain(const std::string& message, int code) {
-  fmt::print(stderr, "springtower-viewer: {}\n", onOneLine(message));
-  return code;
+  if (recorder) recorder->finish(viewer.choice, viewer.session);
+  return outcomeOf(viewer, command.headless);
 }
 
 int run(int argc, char** argv, std::chrono::steady_clock::time_point started) {
@@ -237,7 +242,7 @@ int run(int argc, char** argv, std::chrono::steady_clock::time_point started) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);
-    complain(error.what(), kBadInput);
+    complain("springtower-viewer", error.what());
     fmt::print(stderr, "Try 'springtower-viewer --help'.\n");
     return kBadInput;
   }
@@ -248,13 +253,6 @@ int run(int argc, char** argv, std::chrono::steady_clock::time_point started) {
 }  // namespace springtower
 
 int main(int argc, char** argv) {
-  using springtower::complain;
   const auto started = std::chrono::steady_clock::now();
-  try {
-    return springtower::run(argc, argv, started);
-  } catch (const springtower::InputError& error) {
-    return complain(error.what(), springtower::kBadInput);
-  } catch (const std::exception& error) {
-    return complain(error.what(), springtower::kProgramError);
-  }
+  return springtower::exitCodeOf("springtower-viewer", [&] { return springtower::run(argc, argv, started); });
 }

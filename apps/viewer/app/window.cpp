@@ -1,5 +1,6 @@
 #include "apps/viewer/app/window.h"
 
+#include "apps/common/interruption.h"
 #include "apps/common/output_file.h"
 #include "apps/common/poses.h"
 #include "apps/viewer/ui/panels.h"
@@ -211,7 +212,7 @@ void saveRecording(Desk& desk) {
   OutputFile file(path, "recording");
   const Session& session = desk.viewer.session;
   const auto end = session.log.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(session.frame, session.log.size()));
-  writeRecording(file.stream(), {desk.viewer.choice, {session.log.begin(), end}});
+  writeRecording(file.stream(), {desk.viewer.choice, {session.log.begin(), end}, {}});
   file.commit();
   desk.viewer.message = "written: " + path;
 }
@@ -337,16 +338,18 @@ void runWindow(Viewer& viewer, const ViewerFiles& files, const Viewport& size, C
   if (files.film) tell(desk, [&] { toggleFilm(desk); });
 
   Clock::time_point last = Clock::now();
-  while (glfwWindowShouldClose(desk.window) == GLFW_FALSE) {
+  while (glfwWindowShouldClose(desk.window) == GLFW_FALSE && !interrupted()) {
     glfwPollEvents();
     boundPointer(desk);
     advance(viewer, std::chrono::duration<double>(Clock::now() - std::exchange(last, Clock::now())).count());
+    if (files.recorder != nullptr) tell(desk, [&] { files.recorder->follow(viewer.choice, viewer.session); });
     drawWindow(desk);
     if (++viewer.watch.pictures > 1) continue;
     viewer.watch.firstPicture_s = secondsSince(started);
     fmt::print("first picture after {:.3f} s\n", viewer.watch.firstPicture_s);
     std::fflush(stdout);
   }
+  viewer.watch.interrupted = interrupted();
   if (desk.film) desk.film->finish();
   desk.renderer.reset();
 }

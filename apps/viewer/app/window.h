@@ -17,13 +17,15 @@ struct ViewerFiles {
   std::optional<std::string> record;
   std::optional<std::string> report;
   std::optional<std::string> poses;
+  RecordingWriter* recorder = nullptr;  ///< follows the session from frame to frame, when it is recorded
 };
 
-/// Opens a window of this size and runs the viewer in it until the user closes it. `started`: when the program began. Throws
-/// InputError when there is no display.
+/// Opens a window of this size and runs the viewer in it until the user closes it or a signal comes. `started`: when the program
+/// began. Throws InputError when there is no display.
 void runWindow(Viewer& viewer, const ViewerFiles& files, const Viewport& size, std::chrono::steady_clock::time_point started);
 
-/// Steps a number of frames without a window and writes every `every`th picture as frame-00001.png ... into a folder.
+/// Steps a number of frames, or up to a signal, without a window and writes every `every`th picture and the last as
+/// frame-00001.png ... into a folder.
 struct HeadlessRun {
   int frames = 60;
   int every = 1;

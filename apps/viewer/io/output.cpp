@@ -6,7 +6,6 @@
 
 #include <cairo.h>
 #include <cerrno>
-#include <csignal>
 #include <cstdlib>
 #include <cstring>
 #include <fcntl.h>
@@ -36,6 +35,15 @@ std::string findProgram(const std::string& name) {
     if (access(program.c_str(), X_OK) == 0) return program;
   }
   return {};
+}
+
+// The name of a film, where one can be made. Throws InputError.
+const std::string& checkedFilm(const std::string& path) {
+  if (!path.ends_with(".mp4") && !path.ends_with(".gif")) {
+    throw InputError(fmt::format("--video: found {}, allowed is a name that ends with .mp4 or .gif", inQuotes(path)));
+  }
+  if (findProgram("ffmpeg").empty()) throw InputError("--video: ffmpeg is not installed; apt-get install ffmpeg");
+  return path;
 }
 
 }  // namespace
@@ -75,21 +83,19 @@ bool ffmpegInstalled() {
   return !findProgram("ffmpeg").empty();
 }
 
-Film::Film(const std::string& path, const Viewport& viewport, int framesPerSecond) : path_(path), viewport_(viewport) {
-  if (!path.ends_with(".mp4") && !path.ends_with(".gif")) {
-    throw InputError(fmt::format("--video: found {}, allowed is a name that ends with .mp4 or .gif", inQuotes(path)));
-  }
+Film::Film(const std::string& path, const Viewport& viewport, int framesPerSecond)
+    : file_(checkedFilm(path), "--video"), path_(path), viewport_(viewport) {
   const std::string program = findProgram("ffmpeg");
-  if (program.empty()) throw InputError("--video: ffmpeg is not installed; apt-get install ffmpeg");
-  { OutputFile(path, "--video"); }  // a name that cannot be written is known now
   const std::string size = fmt::format("{}x{}", viewport.width, viewport.height);
   const std::string rate = std::to_string(framesPerSecond);
   // A GIF takes at most 50 pictures a second and needs a palette of its own; most players of MP4 need even sizes.
   const std::string filter = path.ends_with(".gif") ? "fps=25,split[a][b];[a]palettegen[p];[b][p]paletteuse"
                                                     : "scale=trunc(iw/2)*2:trunc(ih/2)*2,format=yuv420p";
-  std::vector<std::string> words = {"ffmpeg", "-loglevel", "error", "-y", "-f", "rawvideo", "-pix_fmt", "rgb24", "-s",
-                                    size,     "-r",        rate,    "-i", "-",  "-vf",      filter,     path};
-  if (path.starts_with('-')) words.back() = "./" + path;  // not an option
+  const std::string format = path.ends_with(".gif") ? "gif" : "mp4";
+  std::vector<std::string> words = {
+      "ffmpeg", "-loglevel", "error", "-y",   "-f", "rawvideo", "-pix_fmt",         "rgb24", "-s", size, "-r", rate,
+      "-i",     "-",         "-vf",   filter, "-f", format,     file_.writtenPath()};
+  if (words.back().starts_with('-')) words.back() = "./" + words.back();  // not an option
   std::vector<char*> arguments;
   arguments.reserve(words.size() + 1);
   for (std::string& word : words) arguments.push_back(word.data());
@@ -98,13 +104,13 @@ Film::Film(const std::string& path, const Viewport& viewport, int framesPerSecon
   if (pipe2(ends, O_CLOEXEC) != 0) throw InputError(std::string("--video: no pipe: ") + std::strerror(errno));
   process_ = fork();
   if (process_ == 0) {
+    setpgid(0, 0);  // the terminal's Ctrl-C is answered here, and the film ends with its last picture
     dup2(ends[0], STDIN_FILENO);
     execv(program.c_str(), arguments.data());
     _exit(127);
   }
   close(ends[0]);
   pipe_ = fdopen(ends[1], "wb");
-  std::signal(SIGPIPE, SIG_IGN);  // an ffmpeg that ended shows when the video is finished
 }
 
 Film::~Film() {
@@ -126,6 +132,7 @@ void Film::finish() {
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) {
     throw InputError(fmt::format("--video: ffmpeg could not write {}", inQuotes(path_)));
   }
+  file_.commit();
 }
 
 }  // namespace springtower

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "apps/viewer/render/render.h"
+#include "core/output_file.h"
 
 #include <cstdint>
 #include <cstdio>
@@ -19,7 +20,8 @@ void writeBlocksSeen(const std::string& path, const std::string& option, std::sp
 /// Whether the program ffmpeg is installed.
 bool ffmpegInstalled();
 
-/// A video that ffmpeg makes of images of one size: MP4 or GIF, by the name's ending.
+/// A video that ffmpeg makes of images of one size: MP4 or GIF, by the name's ending. It has its name when it is finished, as any
+/// OutputFile.
 class Film {
  public:
   /// Starts ffmpeg. Throws InputError when it is not installed or the name has another ending.
@@ -33,6 +35,7 @@ class Film {
   void finish();
 
  private:
+  OutputFile file_;  // locks the name; ffmpeg writes it
   std::string path_;
   Viewport viewport_;
   std::FILE* pipe_ = nullptr;

@@ -1,5 +1,6 @@
 #include "apps/viewer/session/recording.h"
 
+#include "apps/common/json_values.h"
 #include "core/error.h"
 #include "core/limits.h"
 #include "core/version.h"
@@ -70,6 +71,8 @@ std::optional<T> maybe(const Json& json, const char* key) {
 
 Json json(const SceneChoice& choice) {
   Json json = {{"springtower_recording", kFormat}, {"version", kVersion}, {"scene", choice.name}, {"players", choice.players}};
+  // JSON holds no bytes that are not UTF-8, and the file has to be found again.
+  if (!isUtf8(choice.name)) json["scene_bytes"] = std::vector<std::uint8_t>(choice.name.begin(), choice.name.end());
   put(json, "heights_sigma_m", choice.options.heightsSigma_m);
   put(json, "mass_sigma_kg", choice.options.massSigma_kg);
   put(json, "seed", choice.options.seed);
@@ -81,6 +84,10 @@ SceneChoice choiceFrom(const Json& json, const std::string& where) {
   if (json.value("springtower_recording", 0) != kFormat) throw InputError(where + ": this is no recording of the viewer");
   SceneChoice choice;
   choice.name = json.at("scene").get<std::string>();
+  if (json.contains("scene_bytes")) {
+    const auto bytes = json.at("scene_bytes").get<std::vector<std::uint8_t>>();
+    choice.name.assign(bytes.begin(), bytes.end());
+  }
   choice.players = json.at("players").get<int>();
   choice.options.heightsSigma_m = maybe<double>(json, "heights_sigma_m");
   choice.options.massSigma_kg = maybe<double>(json, "mass_sigma_kg");
@@ -98,6 +105,19 @@ std::uint64_t hashFrom(const std::string& text, const std::string& where) {
   return hash;
 }
 
+std::string headerLine(const SceneChoice& choice) {
+  return jsonText(json(choice)) + '\n';
+}
+
+// One frame of a log. The tuning goes with it where it is another than in the frame before.
+std::string frameLine(const std::vector<LoggedFrame>& frames, std::size_t i) {
+  const LoggedFrame& frame = frames[i];
+  Json line = {{"hash", fmt::format("{:016x}", frame.hash)}};
+  if (i == 0 || !(frames[i - 1].input.tuning == frame.input.tuning)) line["tuning"] = json(frame.input.tuning);
+  if (frame.input.hand.block != kFloor) line["hand"] = json(frame.input.hand);
+  return jsonText(line) + '\n';
+}
+
 }  // namespace
 
 Scene sceneOf(const SceneChoice& choice) {
@@ -107,15 +127,44 @@ Scene sceneOf(const SceneChoice& choice) {
 }
 
 void writeRecording(std::ostream& stream, const Recording& recording) {
-  stream << json(recording.choice) << '\n';
-  std::optional<Tuning> last;
-  for (const LoggedFrame& frame : recording.frames) {
-    Json line = {{"hash", fmt::format("{:016x}", frame.hash)}};
-    if (!last || !(*last == frame.input.tuning)) line["tuning"] = json(frame.input.tuning);
-    last = frame.input.tuning;
-    if (frame.input.hand.block != kFloor) line["hand"] = json(frame.input.hand);
-    stream << line << '\n';
+  stream << headerLine(recording.choice);
+  for (std::size_t i = 0; i < recording.frames.size(); ++i) stream << frameLine(recording.frames, i);
+}
+
+void RecordingWriter::follow(const SceneChoice& choice, Session& session) {
+  if (!file_.canCut()) return;
+  const std::string header = headerLine(choice);
+  if (header != header_) {
+    if (!ends_.empty()) file_.cutTo(0);
+    file_.stream() << header;
+    header_ = header;
+    ends_ = {header.size()};
+  } else if (ends_.size() - 1 > session.logKept) {
+    ends_.resize(session.logKept + 1);
+    file_.cutTo(ends_.back());
   }
+  for (std::size_t i = ends_.size() - 1; i < session.log.size(); ++i) {
+    const std::string line = frameLine(session.log, i);
+    file_.stream() << line;
+    ends_.push_back(ends_.back() + line.size());
+  }
+  session.logKept = session.log.size();
+  file_.flushEverySecond();
+}
+
+void RecordingWriter::finish(const SceneChoice& choice, Session& session) {
+  const std::size_t frames = std::min<std::size_t>(session.frame, session.log.size());
+  if (file_.canCut()) {
+    follow(choice, session);
+    if (frames + 1 < ends_.size()) {
+      ends_.resize(frames + 1);
+      file_.cutTo(ends_.back());
+    }
+  } else {
+    writeRecording(file_.stream(),
+                   {choice, {session.log.begin(), session.log.begin() + static_cast<std::ptrdiff_t>(frames)}, {}});
+  }
+  file_.commit();
 }
 
 Recording readRecording(const std::string& path) {
@@ -141,6 +190,12 @@ Recording readRecording(const std::string& path) {
       frame.hash = hashFrom(line.at("hash").get<std::string>(), where);
       if (line.contains("hand")) frame.input.hand = handFrom(line.at("hand"), blocks, where);
       recording.frames.push_back(frame);
+    } catch (const Json::parse_error& error) {
+      // No end of line, and JSON that lacks its end: the text stops where it was last written.
+      const bool brokenOff = stream.eof() && number > 1 && error.byte > text.size();
+      if (!brokenOff) throw InputError(fmt::format("{}: {}", where, onOneLine(error.what())));
+      recording.missing =
+          fmt::format("{}: the line is cut off; the {} frames before it are played", where, recording.frames.size());
     } catch (const Json::exception& error) {
       throw InputError(fmt::format("{}: {}", where, onOneLine(error.what())));
     }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "apps/viewer/session/session.h"
+#include "core/output_file.h"
 #include "core/scene/scene.h"
 
 #include <iosfwd>
@@ -26,13 +27,37 @@ Scene sceneOf(const SceneChoice& choice);
 struct Recording {
   SceneChoice choice;
   std::vector<LoggedFrame> frames;
+  std::string missing = {};  ///< what a file that was broken off lacks, in a line; empty for a whole one
 };
 
 /// Writes a recording, one JSON object a line: first the scene, then each frame with the hash of the state it led to, the hand
 /// where it holds a block, and the tuning where it changed. Numbers are written so that they read back as they were.
 void writeRecording(std::ostream& stream, const Recording& recording);
 
-/// Reads one. Throws InputError naming the file and the line.
+/// Writes the recording of a session while it goes on, so that a game that is cut short can be played again up to there.
+class RecordingWriter {
+ public:
+  /// The file outlives the writer.
+  explicit RecordingWriter(OutputFile& file) : file_(file) {}
+  RecordingWriter(const RecordingWriter&) = delete;
+  RecordingWriter& operator=(const RecordingWriter&) = delete;
+
+  /// Writes what is new since the last call: call it after every frame. What the session has gone back from and stepped anew is
+  /// taken back in the file, and all of it when the scene was chosen anew. A file that cannot be cut is written by `finish`
+  /// alone. Throws InputError when the disk is full.
+  void follow(const SceneChoice& choice, Session& session);
+
+  /// Leaves the frames up to the session's present one, and gives the file its name. Throws InputError.
+  void finish(const SceneChoice& choice, Session& session);
+
+ private:
+  OutputFile& file_;
+  std::string header_;
+  std::vector<std::uintmax_t> ends_;  // bytes of the file up to the end of the header, and of each frame
+};
+
+/// Reads one. Of a file that was broken off in the middle of a line, as a process that is killed leaves it, the whole lines are
+/// read, and `missing` says so. Throws InputError naming the file and the line.
 Recording readRecording(const std::string& path);
 
 /// Steps a session through a recording, frame by frame.

@@ -139,6 +139,7 @@ void step(Session& session, const FrameInput& input) {
   }
   // A future that was gone back from ends here.
   session.log.resize(session.frame);
+  session.logKept = std::min(session.logKept, session.frame - 1);
   session.log.back() = {input, stateHash(session.simulation)};
 }
 

@@ -60,6 +60,7 @@ struct Session {
   Hold hold = Hold::none;
   Game game;
   std::vector<LoggedFrame> log;    ///< [frame]; longer than `frame` after going back
+  std::uint64_t logKept = 0;       ///< so many of its frames are as they were when this was last set: by who writes it down
   std::deque<Keyframe> keyframes;  ///< ascending
   double frame_ms = 0.0;           ///< what the last frame took
   std::string failure;             ///< why the simulation ended; empty while it goes on

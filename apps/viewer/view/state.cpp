@@ -1,5 +1,6 @@
 #include "apps/viewer/view/state.h"
 
+#include "apps/common/json_values.h"
 #include "core/error.h"
 #include "core/version.h"
 #include "solver/metrics/measures.h"
@@ -179,6 +180,7 @@ void writeViewerReport(std::ostream& stream, const Viewer& viewer) {
                {"first_picture_s", watch.firstPicture_s},
                {"finite", finite},
                {"divergences", watch.failures},
+               {"interrupted", watch.interrupted},
                {"max_penetration_all_mm", 1e3 * watch.deepest.depth},
                {"max_penetration_time_s", watch.deepestTime_s},
                {"most_move_mm", 1e3 * std::max(watch.mostMove_m, largestCornerMove(viewer.start, position))},
@@ -194,7 +196,7 @@ void writeViewerReport(std::ostream& stream, const Viewer& viewer) {
                  {"field_of_view", camera.fieldOfView}}},
                {"state_hash", fmt::format("{:016x}", stateHash(session.simulation))}};
   json["replay_differs_in_frame"] = viewer.replay && viewer.replay->differs ? Json(*viewer.replay->differs) : Json(nullptr);
-  stream << json.dump(2) << '\n';
+  stream << jsonText(json, 2) << '\n';
 }
 
 }  // namespace springtower

@@ -30,6 +30,7 @@ struct Watch {
   std::uint64_t pictures = 0;
   double firstPicture_s = 0.0;  ///< from the program's start
   int failures = 0;             ///< divergences
+  bool interrupted = false;     ///< a signal has ended it
 };
 
 /// A viewer: a session, the user's hand and view, and what is shown. Independent of windows and OpenGL.

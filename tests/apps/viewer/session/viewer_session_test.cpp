@@ -9,6 +9,7 @@
 #include <fstream>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sstream>
 
 namespace springtower {
 namespace {
@@ -202,6 +203,61 @@ TEST(ViewerRecording, BrokenFilesNameTheLine) {
     }
   }
   EXPECT_THROW(readRecording(scratch.file("none")), InputError);
+}
+
+// What a file holds while a game goes on is at any time the game so far, also after ways back and a new begin.
+TEST(ViewerRecording, FollowsASessionBackAndForth) {
+  const ScratchFolder scratch;
+  OutputFile file(scratch.file("game"), "--record");
+  RecordingWriter writer(file);
+  SceneChoice choice;
+  choice.name = kLooseTower;
+  Session session = playedSession(0);
+  const auto play = [&](int frames, double friction) {
+    Tuning tuning = session.tuning;
+    tuning.friction = friction;
+    for (int i = 0; i < frames; ++i) {
+      step(session, {Hand{}, tuning});
+      writer.follow(choice, session);
+    }
+  };
+  const auto written = [&] {
+    file.stream().flush();
+    return contentOf(scratch.file("game.partial"));
+  };
+  const auto expected = [&](std::size_t frames) {
+    std::ostringstream text;
+    writeRecording(text, {choice, {session.log.begin(), session.log.begin() + static_cast<std::ptrdiff_t>(frames)}, {}});
+    return text.str();
+  };
+  play(30, 0.4);
+  EXPECT_EQ(written(), expected(30));
+  goTo(session, 10);
+  writer.follow(choice, session);
+  EXPECT_EQ(written(), expected(30)) << "one may go forth again";
+  play(5, 0.3);
+  EXPECT_EQ(written(), expected(15));
+  session = playedSession(0);
+  play(8, 0.5);
+  EXPECT_EQ(written(), expected(8));
+  choice.players = 2;
+  writer.follow(choice, session);
+  EXPECT_EQ(written(), expected(8));
+  goTo(session, 6);
+  writer.finish(choice, session);
+  EXPECT_EQ(contentOf(scratch.file("game")), expected(6));
+}
+
+TEST(ViewerRecording, OfABrokenOffFileIsReadUpToThere) {
+  const ScratchFolder scratch;
+  const std::string path = scratch.file("recording.jsonl");
+  std::ofstream(path)
+      << R"({"springtower_recording":1,"scene":"tower:1","players":0})"
+      << "\n{\"hash\":\"1\",\"tuning\":{\"method\":\"implicit\",\"sleep\":\"on\",\"tolerance_m\":1e-5,\"friction\":0.4}}\n"
+      << "{\"hash\":\"2\"}\n{\"hash\":";
+  const Recording recording = readRecording(path);
+  EXPECT_EQ(recording.frames.size(), 2U);
+  EXPECT_THAT(recording.missing, HasSubstr("line 4: the line is cut off; the 2 frames before it"));
 }
 
 }  // namespace

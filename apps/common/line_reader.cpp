@@ -1,0 +1,72 @@
+#include "apps/common/line_reader.h"
+
+#include "apps/common/interruption.h"
+#include "core/error.h"
+#include "core/limits.h"
+
+#include <cerrno>
+#include <cstring>
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <poll.h>
+#include <unistd.h>
+
+namespace springtower {
+namespace {
+
+constexpr int kLookUp_ms = 100;  // the signal may have come to another thread, which wakes nobody here
+constexpr std::size_t kChunk = 1U << 16U;
+
+}  // namespace
+
+LineReader::LineReader(const std::string& path) : source_(path == "-" ? "standard input" : onOneLine(path)) {
+  file_ = path == "-" ? fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, 0) : open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file_ < 0) throw InputError(fmt::format("{}: cannot be read", source_));
+}
+
+LineReader::~LineReader() {
+  close(file_);
+}
+
+bool LineReader::next(std::string& line) {
+  ++number_;
+  std::size_t searched = begin_;
+  std::size_t end = buffer_.find('\n', searched);
+  while (end == std::string::npos) {
+    if (buffer_.size() - begin_ > kMaxLine) {
+      throw InputError(
+          fmt::format("{}: line {}: found more than {} MB in a line, allowed is less", source_, number_, kMaxLine >> 20U));
+    }
+    buffer_.erase(0, begin_);
+    begin_ = 0;
+    searched = buffer_.size();
+    if (!fill()) break;
+    end = buffer_.find('\n', searched);
+  }
+  if (!ended_ && end == std::string::npos) return false;  // interrupted
+  if (end == std::string::npos && begin_ == buffer_.size()) return false;
+  line = buffer_.substr(begin_, end - begin_);
+  begin_ = end == std::string::npos ? buffer_.size() : end + 1;
+  return true;
+}
+
+// Appends what there is. Returns false at the end of the input, and when a signal has come.
+bool LineReader::fill() {
+  while (!ended_) {
+    if (interrupted()) return false;
+    pollfd waiting{file_, POLLIN, 0};
+    const int ready = poll(&waiting, 1, kLookUp_ms);
+    if (ready == 0 || (ready < 0 && errno == EINTR)) continue;  // to read now would be to wait
+    const std::size_t before = buffer_.size();
+    buffer_.resize(before + kChunk);
+    const ssize_t count = read(file_, buffer_.data() + before, kChunk);
+    buffer_.resize(before + static_cast<std::size_t>(count > 0 ? count : 0));
+    if (count > 0) return true;
+    if (count < 0 && (errno == EINTR || errno == EAGAIN)) continue;
+    if (count < 0) throw InputError(fmt::format("{}: cannot be read: {}", source_, std::strerror(errno)));
+    ended_ = true;
+  }
+  return false;
+}
+
+}  // namespace springtower

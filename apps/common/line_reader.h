@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+namespace springtower {
+
+/// Reads a file or standard input line by line, as its lines come: of a pipe the first lines can be had before the last are
+/// written. For one thread at a time.
+class LineReader {
+ public:
+  /// `path` - is standard input. Throws InputError for what cannot be read.
+  explicit LineReader(const std::string& path);
+  LineReader(const LineReader&) = delete;
+  LineReader& operator=(const LineReader&) = delete;
+  ~LineReader();
+
+  /// How messages name the input: the path, or "standard input".
+  [[nodiscard]] const std::string& source() const { return source_; }
+
+  /// The next line without its end. Returns false at the end of the input, and when a signal has come while it waited for more
+  /// (interruption.h). Throws InputError when reading fails, and for a line of more than kMaxLine bytes.
+  bool next(std::string& line);
+
+  static constexpr std::size_t kMaxLine = std::size_t{64} << 20U;  ///< bytes: 64 MB, the longest line that is kept in memory
+
+ private:
+  bool fill();
+
+  std::string source_;
+  int file_ = -1;
+  std::string buffer_;
+  std::size_t begin_ = 0;  // of what is not handed out yet
+  std::size_t number_ = 0;
+  bool ended_ = false;
+};
+
+}  // namespace springtower

@@ -1,0 +1,128 @@
+// Commands that measure many cases go on where a signal has ended them, with what is of the same build, machine and options.
+#include "tests/support/running_program.h"
+
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+namespace springtower {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::SizeIs;
+using Json = nlohmann::ordered_json;
+
+Json jsonOf(const std::string& path) {
+  return Json::parse(contentOf(path));
+}
+
+// As if another build had written it.
+void forge(const std::string& path) {
+  Json json = jsonOf(path);
+  json["commit"] = "another";
+  std::ofstream(path) << json.dump();
+}
+
+// Runs a command until a file is there, and ends it then. Returns the exit code.
+int brokenOff(const std::vector<std::string>& arguments, const std::string& file, int signal) {
+  RunningProgram program("springtower", arguments);
+  program.waitForFile(file);
+  program.send(signal);
+  return program.wait().exitCode;
+}
+
+ProgramResult run(std::vector<std::string> arguments, const std::vector<std::string>& more = {}) {
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return runProgram("springtower", arguments);
+}
+
+TEST(Resume, ProfileKeepsTheScenesThatAreDone) {
+  const ScratchFolder scratch;
+  const std::string kept = scratch.file("out/profile.unfinished.json");
+  const std::vector<std::string> profile = {"profile",   "--scenes", "rest,collapse",    "--rows", "2,6",
+                                            "--methods", "implicit", "--settle",         "0.5",    "--samples",
+                                            "40",        "--out",    scratch.file("out")};
+  ASSERT_EQ(brokenOff(profile, kept, SIGINT), 130);
+  const Json then = jsonOf(kept);
+  ASSERT_THAT(then.at("cases"), SizeIs(2));
+  EXPECT_FALSE(std::filesystem::exists(scratch.file("out/profile.json")));
+
+  const ProgramResult again = run(profile);
+  ASSERT_EQ(again.exitCode, 0) << again.error;
+  const Json now = jsonOf(scratch.file("out/profile.json"));
+  ASSERT_THAT(now.at("cases"), SizeIs(4));
+  for (std::size_t i = 0; i < 2; ++i) EXPECT_EQ(now.at("cases")[i], then.at("cases")[i]) << "not timed again";
+  EXPECT_FALSE(std::filesystem::exists(kept));
+
+  std::ofstream(kept) << then.dump();
+  forge(kept);
+  const ProgramResult stale = run(profile);
+  EXPECT_EQ(stale.exitCode, 2);
+  EXPECT_THAT(stale.error, HasSubstr("another build"));
+  EXPECT_THAT(stale.error, HasSubstr("--fresh"));
+  std::ofstream(kept) << then.dump();
+  EXPECT_EQ(run(profile, {"--samples", "1"}).exitCode, 2) << "other limits";
+}
+
+TEST(Resume, ValidateKeepsThePartsThatAreDone) {
+  const ScratchFolder scratch;
+  const std::string kept = scratch.file("out/validation.unfinished.json");
+  const std::vector<std::string> validate = {"validate",
+                                             "--oracle",
+                                             std::string(SPRINGTOWER_TEST_DATA_DIR) + "/oracle",
+                                             "--scenes",
+                                             std::string(SPRINGTOWER_SOURCE_DIR) + "/scenes",
+                                             "--only",
+                                             "forces,pull",
+                                             "--out",
+                                             scratch.file("out")};
+  ASSERT_EQ(brokenOff(validate, kept, SIGTERM), 143);
+  const Json then = jsonOf(kept);
+  ASSERT_THAT(then.at("parts"), SizeIs(1));
+
+  forge(kept);
+  EXPECT_EQ(run(validate).exitCode, 2);
+  std::ofstream(kept) << then.dump();
+  EXPECT_EQ(run(validate, {"--long"}).exitCode, 2) << "the long form is another";
+
+  const ProgramResult again = run(validate);
+  ASSERT_EQ(again.exitCode, 0) << again.error;
+  const Json sections = jsonOf(scratch.file("out/validation.json")).at("sections");
+  ASSERT_THAT(sections, SizeIs(2));
+  EXPECT_EQ(sections[0].at("wall_s"), then.at("parts")[0].at("wall_s")) << "not measured again";
+  EXPECT_EQ(sections[0].at("claims"), then.at("parts")[0].at("claims"));
+  EXPECT_TRUE(std::filesystem::exists(scratch.file("out/pull.svg")));
+  EXPECT_FALSE(std::filesystem::exists(kept));
+}
+
+TEST(Resume, ChartKeepsTheScenesThatAreDone) {
+  const ScratchFolder scratch;
+  const std::vector<std::string> chart = {
+      "chart",    "--quick", "--rows",           "3", "--scenes", "uniform,heights,heavy-light", "--methods",
+      "implicit", "--out",   scratch.file("out")};
+  ASSERT_EQ(brokenOff(chart, scratch.file("out/chart.json"), SIGINT), 130);
+  const Json then = jsonOf(scratch.file("out/chart.json"));
+  const ProgramResult again = run(chart);
+  ASSERT_EQ(again.exitCode, 0) << again.error;
+  const Json now = jsonOf(scratch.file("out/chart.json"));
+  ASSERT_GT(now.at("cases").size(), then.at("cases").size());
+  for (std::size_t i = 0; i < then.at("cases").size(); ++i) EXPECT_EQ(now.at("cases")[i], then.at("cases")[i]);
+}
+
+TEST(Resume, FreshBeginsAnew) {
+  const ScratchFolder scratch;
+  std::filesystem::create_directories(scratch.file("out"));
+  const std::vector<std::string> profile = {"profile",   "--scenes", "rest",      "--rows", "1",
+                                            "--methods", "implicit", "--samples", "1",      "--frames",
+                                            "2",         "--settle", "0.1",       "--out",  scratch.file("out")};
+  std::ofstream(scratch.file("out/profile.unfinished.json")) << "{}";
+  EXPECT_EQ(run(profile).exitCode, 2);
+  EXPECT_EQ(run(profile, {"--fresh"}).exitCode, 0);
+  EXPECT_FALSE(std::filesystem::exists(scratch.file("out/profile.unfinished.json")));
+}
+
+}  // namespace
+}  // namespace springtower

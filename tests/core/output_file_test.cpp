@@ -1,0 +1,97 @@
+#include "core/output_file.h"
+
+#include "core/error.h"
+#include "tests/support/program.h"
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <optional>
+#include <thread>
+
+namespace springtower {
+namespace {
+
+std::ptrdiff_t filesIn(const ScratchFolder& folder) {
+  return std::distance(std::filesystem::directory_iterator(folder.path()), {});
+}
+
+TEST(OutputFile, HasItsNameWhenItIsWhole) {
+  const ScratchFolder scratch;
+  std::ofstream(scratch.file("a")) << "old";
+  {
+    OutputFile file(scratch.file("a"), "--out");
+    file.stream() << "new";
+    EXPECT_EQ(contentOf(scratch.file("a")), "old");
+    EXPECT_TRUE(std::filesystem::exists(scratch.file("a.partial")));
+    file.commit();
+    EXPECT_EQ(contentOf(scratch.file("a")), "new");
+  }
+  { OutputFile(scratch.file("a"), "--out").stream() << "never committed"; }
+  EXPECT_EQ(contentOf(scratch.file("a")), "new");
+  EXPECT_EQ(filesIn(scratch), 1);
+}
+
+TEST(OutputFile, IsFlushedAfterASecond) {
+  const ScratchFolder scratch;
+  OutputFile file(scratch.file("a"), "--out");
+  file.stream() << "a line\n";
+  file.flushEverySecond();
+  EXPECT_EQ(contentOf(scratch.file("a.partial")), "") << "not at every call";
+  std::this_thread::sleep_for(std::chrono::milliseconds(1050));
+  file.flushEverySecond();
+  EXPECT_EQ(contentOf(scratch.file("a.partial")), "a line\n");
+}
+
+// Each has a file of its own, whole in the end, and the last one that finishes has the name.
+TEST(OutputFile, IsWrittenByTwoAtOnce) {
+  const ScratchFolder scratch;
+  std::optional<OutputFile> first(std::in_place, scratch.file("a"), "--out");
+  std::optional<OutputFile> second(std::in_place, scratch.file("a"), "--out");
+  EXPECT_NE(first->writtenPath(), second->writtenPath());
+  first->stream() << "the first one's";
+  second->stream() << "the second one's";
+  second->commit();
+  EXPECT_EQ(contentOf(scratch.file("a")), "the second one's");
+  second.reset();
+  first->commit();
+  first.reset();
+  EXPECT_EQ(contentOf(scratch.file("a")), "the first one's");
+  EXPECT_EQ(filesIn(scratch), 1);
+}
+
+TEST(OutputFile, TakesThePlaceOfWhatAKilledProcessLeft) {
+  const ScratchFolder scratch;
+  std::ofstream(scratch.file("a.partial")) << "what was longer than what comes";
+  OutputFile file(scratch.file("a"), "--out");
+  EXPECT_EQ(file.writtenPath(), scratch.file("a.partial"));
+  file.stream() << "new";
+  file.commit();
+  EXPECT_EQ(contentOf(scratch.file("a")), "new");
+  EXPECT_EQ(filesIn(scratch), 1);
+}
+
+TEST(OutputFile, CanBeCut) {
+  const ScratchFolder scratch;
+  OutputFile file(scratch.file("a"), "--out");
+  file.stream() << "one two three";
+  ASSERT_TRUE(file.canCut());
+  file.cutTo(4);
+  EXPECT_EQ(contentOf(scratch.file("a.partial")), "one ");
+  file.stream() << "more";
+  file.commit();
+  EXPECT_EQ(contentOf(scratch.file("a")), "one more");
+}
+
+TEST(OutputFile, SaysSoonThatTheDiskIsFull) {
+  OutputFile file("/dev/full", "--out");
+  EXPECT_FALSE(file.canCut());
+  std::this_thread::sleep_for(std::chrono::milliseconds(1050));
+  file.stream() << "a line";
+  EXPECT_THROW(file.flushEverySecond(), InputError);
+}
+
+}  // namespace
+}  // namespace springtower
