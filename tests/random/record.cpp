@@ -147,7 +147,7 @@ std::string describe(const Record& record, Fault fault) {
       case Fault::diverged:
         return record.diverged;
       case Fault::hung:
-        return "the first frame that was not done in the processor time allowed";
+        return "a frame took more than a second over the processor time allowed for all";
       case Fault::slow:
         return fmt::format("{:.3g} s of processor time for {:.3g} s", record.processor_s, record.simulated_s);
       case Fault::deep:
