@@ -1,5 +1,6 @@
 #include "core/error.h"
 #include "core/limits.h"
+#include "core/scene/rotation.h"
 #include "core/scene/scene.h"
 #include "core/scene/toml_keys.h"
 #include "core/scene/toml_moves.h"
@@ -12,7 +13,6 @@
 #include <fmt/format.h>
 #include <fstream>
 #include <limits>
-#include <numbers>
 #include <toml++/toml.h>
 #include <utility>
 
@@ -32,9 +32,7 @@ BlockSpec readBlock(const Table& table) {
   table.read("spin_rad_s", block.spin, kSpinRange);
   Vec3 rotation_deg = Vec3::Zero();
   table.read("rotation_deg", rotation_deg, kDirectionRange);
-  const Vec3 rotation = rotation_deg * (std::numbers::pi / 180.0);
-  const double angle = rotation.norm();
-  if (angle > 0.0) block.orientation = Eigen::AngleAxisd(angle, rotation / angle);
+  block.orientation = orientationOfRotation(rotation_deg);
   return block;
 }
 

@@ -1,0 +1,249 @@
+#include "tests/random/judge.h"
+
+#include "scenarios/random_scene.h"
+#include "solver/block/inertia.h"
+#include "solver/hand/grip.h"
+#include "solver/metrics/penetration.h"
+#include "tests/random/course.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <limits>
+
+namespace springtower {
+namespace {
+
+constexpr std::uint64_t kFramesToAMomentum = 5;
+constexpr double kThreadsShare = 0.25;  // of the limit, for the run on two threads
+
+// Sum of what the blocks have at the start: kinetic energy, and potential energy above the floor, for which a block that lies on
+// it still has half its side. In space at rest there is none: then what one contact of the tolerance's depth would store.
+double energyScale_j(const Simulation& simulation, const Energy& start) {
+  double scale_j = start.kinetic;
+  for (std::size_t b = 0; b < simulation.model.blockCount(); ++b) {
+    const double least = 0.5 * simulation.model.dimensions[b].minCoeff();
+    const double height = simulation.scene.floor ? std::max(least, centre(simulation.state.position, b).z()) : 0.0;
+    scale_j += simulation.model.mass[b] * simulation.scene.gravity.magnitude * height;
+  }
+  return std::max(scale_j, 0.5 * simulation.contactStiffness_n_m * simulation.tolerance_m * simulation.tolerance_m);
+}
+
+// What the hand and the scene's forces do to their blocks: the work of a frame is the mean of their forces at both ends times the
+// way.
+class Work {
+ public:
+  void beforeFrame(const Simulation& simulation) {
+    hand_ = gripForce(simulation);
+    if (simulation.tether.block != kFloor) {
+      place_ = centre(simulation.state.position, index(simulation.tether.block));
+      turn_ = orientationOf(simulation.state.position, index(simulation.tether.block));
+    }
+    places_.clear();
+    for (const UserForce& force : simulation.scene.forces) places_.push_back(placeOf(simulation, force));
+  }
+
+  void afterFrame(const Simulation& simulation) {
+    double done_j = 0.0;
+    if (simulation.tether.block != kFloor) {
+      const std::size_t b = index(simulation.tether.block);
+      const GripForce now = gripForce(simulation);
+      const Eigen::AngleAxisd turned(orientationOf(simulation.state.position, b) * turn_.conjugate());
+      done_j += 0.5 * (hand_.force + now.force).dot(centre(simulation.state.position, b) - place_);
+      done_j += 0.5 * (hand_.torque + now.torque).dot(turned.axis() * turned.angle());
+    }
+    const double frame_s = simulation.scene.settings.frame_s;
+    for (std::size_t f = 0; f < simulation.scene.forces.size(); ++f) {
+      const UserForce& force = simulation.scene.forces[f];
+      const double acts_s = std::min(force.end_s, simulation.time_s) - std::max(force.start_s, simulation.time_s - frame_s);
+      const double share = std::clamp(acts_s / frame_s, 0.0, 1.0);
+      done_j += share * force.force.dot(placeOf(simulation, force) - places_[f]);
+    }
+    sum_j += done_j;
+    put_j += std::abs(done_j);
+  }
+
+  double sum_j = 0.0;
+  double put_j = 0.0;  // without signs
+
+ private:
+  static Vec3 placeOf(const Simulation& simulation, const UserForce& force) {
+    const auto b = static_cast<std::size_t>(force.block);
+    if (force.corner < 0) return centre(simulation.state.position, b);
+    return simulation.state.position.at(b, static_cast<std::size_t>(force.corner));
+  }
+
+  GripForce hand_;
+  Vec3 place_ = Vec3::Zero();
+  Eigen::Quaterniond turn_ = Eigen::Quaterniond::Identity();
+  std::vector<Vec3> places_;
+};
+
+// Largest rise of the energy above its least value before, less work.
+class EnergyWatch {
+ public:
+  void atStart(const Simulation& simulation) {
+    least_ = energy(simulation);
+    scale_j_ = energyScale_j(simulation, least_);
+  }
+  void beforeFrame(const Simulation& simulation) { work_.beforeFrame(simulation); }
+  void afterFrame(const Simulation& simulation) {
+    work_.afterFrame(simulation);
+    Energy now = energy(simulation);
+    const double rise_j = energyRise(least_, now) - (work_.sum_j - workAtLeast_j_);
+    if (std::isfinite(rise_j)) most_j_ = std::max(most_j_, rise_j);
+    if (rise_j >= 0.0) return;
+    least_ = std::move(now);
+    workAtLeast_j_ = work_.sum_j;
+  }
+  [[nodiscard]] double gained() const { return most_j_ / (scale_j_ + work_.put_j); }
+
+ private:
+  Work work_;
+  Energy least_;
+  double workAtLeast_j_ = 0.0;
+  double scale_j_ = 0.0;
+  double most_j_ = 0.0;
+};
+
+struct Momenta {
+  Vec3 linear = Vec3::Zero();
+  Vec3 angular = Vec3::Zero();  // about the centre of mass at the start
+  double linearSum = 0.0;       // without directions
+  double angularSum = 0.0;
+};
+
+// With the mass matrix in force: the mean of a block's corners moves with the whole mass, what differs from it with m / own each.
+Momenta momentaOf(const Simulation& simulation, const Vec3& about) {
+  Momenta sum;
+  const double own = inverseMass(simulation.scene.settings.inertia).own;
+  for (std::size_t b = 0; b < simulation.model.blockCount(); ++b) {
+    const double mass = simulation.model.mass[b];
+    const Vec3 mean = centre(simulation.state.velocity, b);
+    sum.linear += mass * mean;
+    sum.linearSum += mass * mean.norm();
+    for (std::size_t c = 0; c < kCorners; ++c) {
+      const Vec3 part = mass / kCorners * mean + mass / own * (simulation.state.velocity.at(b, c) - mean);
+      const Vec3 arm = simulation.state.position.at(b, c) - about;
+      sum.angular += arm.cross(part);
+      sum.angularSum += arm.norm() * part.norm();
+    }
+  }
+  return sum;
+}
+
+Vec3 centreOfMass(const Simulation& simulation) {
+  Vec3 sum = Vec3::Zero();
+  double mass = 0.0;
+  for (std::size_t b = 0; b < simulation.model.blockCount(); ++b) {
+    sum += simulation.model.mass[b] * centre(simulation.state.position, b);
+    mass += simulation.model.mass[b];
+  }
+  return sum / mass;
+}
+
+class MomentumWatch {
+ public:
+  void atStart(const Simulation& simulation) {
+    about_ = centreOfMass(simulation);
+    start_ = momentaOf(simulation, about_);
+    applies_ = !simulation.scene.floor && simulation.scene.gravity.magnitude == 0.0 && simulation.scene.forces.empty() &&
+               simulation.scene.moves.empty() && start_.linearSum > 0.0;
+  }
+  void afterFrame(const Simulation& simulation) {
+    if (!applies_ || simulation.frame % kFramesToAMomentum != 0) return;
+    const Momenta now = momentaOf(simulation, about_);
+    linear_ = std::max(linear_, (now.linear - start_.linear).norm() / start_.linearSum);
+    angular_ = std::max(angular_, (now.angular - start_.angular).norm() / start_.angularSum);
+  }
+  [[nodiscard]] bool applies() const { return applies_; }
+  [[nodiscard]] double linearLost() const { return linear_; }
+  [[nodiscard]] double angularLost() const { return angular_; }
+
+ private:
+  Vec3 about_ = Vec3::Zero();
+  Momenta start_;
+  bool applies_ = false;
+  double linear_ = 0.0;
+  double angular_ = 0.0;
+};
+
+void copyCourse(const Course& course, Record& record) {
+  record.frames = course.frames;
+  record.simulated_s = course.simulated_s;
+  record.processor_s = course.processor_s;
+  record.cut = course.cut;
+  record.mostSubsteps = course.mostSubsteps;
+  record.tolerance_m = course.tolerance_m;
+  record.diverged = course.diverged;
+  record.notFinite = course.notFinite;
+  record.refused = course.refused;
+  record.movedMost = course.movedMost;
+  record.hash = fmt::format("{:016x}", course.hash);
+}
+
+Course playAndMeasure(const Scene& scene, double limit_s, Record& record) {
+  EnergyWatch energies;
+  MomentumWatch momenta;
+  PenetrationWorkspace workspace;
+  CourseWatch watch;
+  watch.atStart = [&](const Simulation& simulation) {
+    energies.atStart(simulation);
+    momenta.atStart(simulation);
+  };
+  watch.beforeFrame = [&](const Simulation& simulation) { energies.beforeFrame(simulation); };
+  watch.afterFrame = [&](const Simulation& simulation) {
+    energies.afterFrame(simulation);
+    momenta.afterFrame(simulation);
+    const double depth_m = maxPenetration(simulation.state.position, scene.floor, workspace).depth;
+    record.deepest_m = std::max(record.deepest_m, depth_m);
+  };
+  Course course = playScene(scene, 1, limit_s, watch);
+  copyCourse(course, record);
+  record.energyGained = course.frames > 0 ? energies.gained() : 0.0;
+  if (momenta.applies()) {
+    record.momentumLost = momenta.linearLost();
+    record.angularLost = momenta.angularLost();
+  }
+  return course;
+}
+
+}  // namespace
+
+Record judgeScene(const Scene& scene, const JudgeOptions& options) {
+  const auto begin = [&](double limit_s) {
+    if (options.beforeRun) options.beforeRun(limit_s);
+  };
+  Record record;
+  record.scene = scene.name;
+  record.method = nameOf(scene.settings.method);
+  record.blocks = scene.blocks.size();
+  record.massRatio = massRatioOf(scene);
+  record.leastSide_m = blockHeightOf(scene);
+  record.byHand = !scene.moves.empty();
+  const auto end = [&] {
+    if (options.afterRun) options.afterRun(record);
+  };
+  begin(options.limit_s);
+  const Course first = playAndMeasure(scene, options.limit_s, record);
+  end();
+  if (!first.refused.empty()) return record;
+  if (options.compareThreads) {
+    begin(kThreadsShare * options.limit_s);
+    record.sameOnTwoThreads = agree(first, playScene(scene, 2, kThreadsShare * options.limit_s));
+    end();
+  }
+  const bool whole = !first.cut && first.diverged.empty() && first.notFinite.empty();
+  if (!options.compareSleep || !whole) return record;
+  Scene other = scene;
+  other.settings.sleep = scene.settings.sleep == Sleep::off ? Sleep::on : Sleep::off;
+  begin(options.limit_s);
+  const Course second = playScene(other, 1, options.limit_s);
+  if (!second.cut && second.diverged.empty() && second.notFinite.empty()) {
+    record.sameVerdict = (first.movedMost > kMaxMove) == (second.movedMost > kMaxMove);
+  }
+  end();
+  return record;
+}
+
+}  // namespace springtower

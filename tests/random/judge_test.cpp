@@ -1,0 +1,147 @@
+// The judge of random scenes finds what is wrong, and nothing where nothing is.
+#include "tests/random/judge.h"
+
+#include "scenarios/loose.h"
+#include "tests/random/course.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace springtower {
+namespace {
+
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+
+constexpr double kPatience_s = 60.0;  // also where sanitizers slow everything down
+
+JudgeOptions patient() {
+  JudgeOptions options;
+  options.limit_s = kPatience_s;
+  return options;
+}
+
+Scene fileScene(const std::string& name) {
+  return sceneFromToml(SPRINGTOWER_TEST_DATA_DIR "/random/" + name + ".toml");
+}
+
+TEST(RandomJudge, FindsNothingWrongWithABlockThatLies) {
+  Scene scene = oneBlockScene(true);
+  scene.seconds = 0.5;
+  const Record record = judgeScene(scene, patient());
+  EXPECT_EQ(record.frames, 30);
+  EXPECT_NEAR(record.simulated_s, 0.5, 1e-12);
+  EXPECT_LT(record.movedMost, 1e-2);
+  EXPECT_EQ(record.sameOnTwoThreads, true);
+  EXPECT_EQ(record.sameVerdict, true);
+  for (const Fault fault : faultsOf(record)) EXPECT_EQ(fault, Fault::slow) << describe(record, fault);
+}
+
+// Explicit steps that are far too long for the stiffness, which no cure of the engine helps.
+TEST(RandomJudge, FindsWhatDiverges) {
+  const Record record = judgeScene(fileScene("unstable"), patient());
+  EXPECT_THAT(faultsOf(record), Contains(Fault::diverged));
+  EXPECT_THAT(describe(record, Fault::diverged), HasSubstr("diverged: block"));
+  EXPECT_TRUE(record.notFinite.empty());
+  EXPECT_EQ(record.sameOnTwoThreads, true);
+  EXPECT_FALSE(record.sameVerdict.has_value());
+}
+
+TEST(RandomJudge, FindsABlockThatFallsThroughWhatItShouldHit) {
+  Scene scene = droppedBlockScene(0.03);
+  scene.settings.continuousTests = false;  // nothing is hit: the fault is planted
+  scene.seconds = 0.5;
+  const Record record = judgeScene(scene, patient());
+  EXPECT_THAT(faultsOf(record), Contains(Fault::deep));
+  EXPECT_GT(record.deepest_m, kBlockHeight_m);
+  EXPECT_GT(record.movedMost, kMaxMove);
+}
+
+// Gravity that swings does work on a block in flight, of which the judge knows nothing.
+TEST(RandomJudge, FindsEnergyFromNowhere) {
+  Scene scene = oneBlockScene(false);
+  scene.blocks[0].velocity.z() = 1.0;
+  scene.seconds = 0.5;
+  EXPECT_THAT(faultsOf(judgeScene(scene, patient())), Not(Contains(Fault::energy)));
+  scene.gravity.sway_deg = 60.0;
+  scene.gravity.sway_hz = 1.0;
+  const Record record = judgeScene(scene, patient());
+  EXPECT_THAT(faultsOf(record), Contains(Fault::energy));
+  EXPECT_GT(record.energyGained, kMaxEnergyGain);
+}
+
+// The scene's own force does work as well, and that is known.
+TEST(RandomJudge, CountsTheWorkOfForces) {
+  Scene scene = oneBlockScene(true);
+  scene.seconds = 0.5;
+  UserForce force;
+  force.force = Vec3(1.0, 0.0, 0.0);  // N, five weights
+  force.end_s = 0.3;
+  scene.forces = {force};
+  const Record record = judgeScene(scene, patient());
+  EXPECT_GT(record.movedMost, 1.0);
+  EXPECT_LT(record.energyGained, kMaxEnergyGain);
+}
+
+TEST(RandomJudge, FindsWhatIsSlow) {
+  Record record;
+  record.frames = 1;
+  record.simulated_s = 1.0;
+  record.processor_s = 1.5;
+  EXPECT_THAT(faultsOf(record), ::testing::ElementsAre(Fault::slow));
+  record.processor_s = 0.5;
+  EXPECT_THAT(faultsOf(record), IsEmpty());
+}
+
+TEST(RandomJudge, EndsARunWithTheFrameInWhichItsTimeIsOver) {
+  Scene scene = oneBlockScene(true);
+  scene.seconds = 100.0;
+  JudgeOptions options;
+  options.limit_s = 0.0;
+  const Record record = judgeScene(scene, options);
+  EXPECT_TRUE(record.cut);
+  EXPECT_EQ(record.frames, 1);
+  EXPECT_THAT(faultsOf(record), Not(Contains(Fault::threads)));
+}
+
+TEST(RandomJudge, MeasuresNoLossOfMomentumOfAFreeBlock) {
+  Scene scene = spinningBlockScene();
+  scene.blocks[0].velocity = Vec3(0.3, -0.2, 0.1);
+  scene.seconds = 0.5;
+  scene.settings.method = Method::semiImplicitEuler;
+  const Record record = judgeScene(scene, patient());
+  ASSERT_TRUE(record.momentumLost.has_value());
+  EXPECT_LT(*record.momentumLost, 1e-9);
+  EXPECT_LT(*record.angularLost, kMaxAngularLoss);
+  EXPECT_FALSE(judgeScene(oneBlockScene(true), JudgeOptions{0.0}).momentumLost.has_value());
+}
+
+TEST(RandomJudge, TellsTwoCoursesApart) {
+  Scene scene = droppedBlockScene(0.03);
+  scene.seconds = 0.3;
+  const Course one = playScene(scene, 1, kPatience_s);
+  EXPECT_TRUE(agree(one, playScene(scene, 2, kPatience_s)));
+  scene.blocks[0].centre.z() += 1e-9;
+  EXPECT_FALSE(agree(one, playScene(scene, 1, kPatience_s)));
+}
+
+TEST(RandomRecord, ComesBackFromJson) {
+  Record record = judgeScene(fileScene("unstable"), patient());
+  record.seed = 17;
+  const Record back = recordFromJson(recordJson(record));
+  EXPECT_EQ(recordJson(back), recordJson(record));
+  EXPECT_EQ(back.diverged, record.diverged);
+  EXPECT_EQ(back.seed, record.seed);
+}
+
+TEST(RandomRecord, HasNamesForAllFaults) {
+  for (const Fault fault : kFaults) EXPECT_EQ(faultFromName(nameOf(fault), "test"), fault);
+  EXPECT_THROW(faultFromName("beauty", "test"), std::exception);
+}
+
+}  // namespace
+}  // namespace springtower
