@@ -2,6 +2,8 @@
 
 #include "core/state.h"
 
+#include <algorithm>
+
 namespace springtower {
 
 /// The eight corners of one block inside a ParticleArray: three runs of eight doubles.

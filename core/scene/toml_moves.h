@@ -3,6 +3,9 @@
 #include "core/scene/scene.h"
 #include "core/scene/toml_table.h"
 
+#include <string_view>
+#include <vector>
+
 namespace springtower {
 
 /// The keys of a [[moves]] table.

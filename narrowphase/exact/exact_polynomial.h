@@ -2,6 +2,7 @@
 
 #include "narrowphase/exact/exact_integer.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 

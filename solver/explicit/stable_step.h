@@ -2,6 +2,7 @@
 
 #include "solver/world/engine.h"
 
+#include <cstdint>
 #include <span>
 
 namespace springtower {

@@ -2,6 +2,7 @@
 
 #include "solver/world/island_step.h"
 
+#include <cstdint>
 #include <span>
 
 namespace springtower {

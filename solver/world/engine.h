@@ -9,6 +9,7 @@
 #include "solver/world/simulation.h"
 #include "solver/world/sleep_state.h"
 
+#include <cstdint>
 #include <vector>
 
 namespace springtower {

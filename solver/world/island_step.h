@@ -3,6 +3,7 @@
 #include "solver/law/contact_force.h"
 #include "solver/world/engine.h"
 
+#include <cstdint>
 #include <span>
 
 namespace springtower {

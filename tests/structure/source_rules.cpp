@@ -1,5 +1,7 @@
 #include "tests/structure/source_rules.h"
 
+#include "tests/structure/standard_includes.h"
+
 #include <algorithm>
 #include <fstream>
 #include <initializer_list>
@@ -233,6 +235,9 @@ std::vector<std::string> brokenRules(std::string_view path, std::string_view tex
   }
   if (path.ends_with(".h") && !text.starts_with("#pragma once\n")) {
     broken.push_back(std::string(path) + ":1: a header starts with #pragma once");
+  }
+  if (path.ends_with(".h")) {
+    for (const std::string& name : missingStandardIncludes(text)) broken.push_back(std::string(path) + ": " + name);
   }
   if (lineNumber > kMaxLines) {
     broken.push_back(std::string(path) + ": " + std::to_string(lineNumber) + " lines, more than " + std::to_string(kMaxLines));

@@ -20,8 +20,9 @@ inline constexpr int kMaxFlatFiles = 12;
 /// an include names its file from the repository root and reaches only the folders below its own and its own (see kFolders in the
 /// source); public headers are written as they are installed (<springtower/...>), and include nothing but the standard library
 /// and one another; within a folder that has rooms it reaches only the file's own room and those before it (kRooms); a header
-/// starts with `#pragma once`; no file is longer than kMaxLines and no function longer than kMaxFunctionLines.
-/// `path` is relative to the repository root and starts with the folder whose rules apply; `text` is the content of the file.
+/// starts with `#pragma once` and includes what defines the names of the standard library that it uses; no file is longer than
+/// kMaxLines and no function longer than kMaxFunctionLines. `path` is relative to the repository root and starts with the folder
+/// whose rules apply; `text` is the content of the file.
 std::vector<std::string> brokenRules(std::string_view path, std::string_view text);
 
 /// All C++ files (.h, .cpp) of the project's folders under `root`, relative to it, sorted.

@@ -167,5 +167,14 @@ TEST(SourceRules, TheSolverHasFewFilesBesideItsFolders) {
   std::filesystem::remove_all(root);
 }
 
+TEST(SourceRules, AHeaderIncludesWhatItUsesOfTheStandardLibrary) {
+  const std::string head = "#pragma once\n";
+  EXPECT_THAT(brokenRules("core/a.h", head + "std::vector<int> a;\n"), ElementsAre("core/a.h: std::vector needs <vector>"));
+  EXPECT_THAT(brokenRules("core/a.h", head + "#include <vector>\nstd::vector<int> a;\n"), IsEmpty());
+  EXPECT_THAT(brokenRules("core/a.h", head + "int a;  // not a std::vector\n"), IsEmpty());
+  EXPECT_THAT(brokenRules("core/a.h", head + "#include <string>\nstd::string_view a;\n"), IsEmpty());
+  EXPECT_THAT(brokenRules("core/a.cpp", "std::vector<int> a;\n"), IsEmpty());
+}
+
 }  // namespace
 }  // namespace springtower

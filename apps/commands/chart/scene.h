@@ -4,6 +4,7 @@
 #include "core/scene/scene.h"
 #include "solver/world/simulation.h"
 
+#include <optional>
 #include <vector>
 
 namespace springtower {

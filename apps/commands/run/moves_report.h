@@ -3,6 +3,7 @@
 #include "solver/runner/run.h"
 
 #include <nlohmann/json_fwd.hpp>
+#include <string>
 
 namespace springtower {
 

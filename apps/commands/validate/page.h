@@ -6,6 +6,7 @@
 #include <iosfwd>
 #include <nlohmann/json_fwd.hpp>
 #include <span>
+#include <string_view>
 
 namespace springtower {
 

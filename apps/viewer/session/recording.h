@@ -4,7 +4,9 @@
 #include "core/output_file.h"
 #include "core/scene/scene.h"
 
+#include <cstdint>
 #include <iosfwd>
+#include <optional>
 #include <string>
 #include <vector>
 

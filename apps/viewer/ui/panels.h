@@ -2,7 +2,9 @@
 
 #include "apps/viewer/view/state.h"
 
+#include <cstdint>
 #include <future>
+#include <optional>
 
 namespace springtower {
 

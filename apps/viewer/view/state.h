@@ -8,8 +8,11 @@
 #include "solver/metrics/penetration.h"
 
 #include <array>
+#include <cstdint>
+#include <iosfwd>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace springtower {
 

@@ -4,6 +4,7 @@
 #include "core/state.h"
 #include "tests/apps/viewer/app/display.h"
 
+#include <cstdint>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
