@@ -49,7 +49,7 @@ function(springtower_add_library folder)
     target_link_libraries(${target} INTERFACE ${arg_PUBLIC})
     set(scope INTERFACE)
   endif()
-  # Outside this project nobody includes its headers: they are not installed.
+  # Outside this project no code includes its headers: they are not installed.
   target_include_directories(${target} ${scope} "$<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>"
                                                 "$<BUILD_INTERFACE:${SPRINGTOWER_GENERATED_DIR}>")
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${folder})

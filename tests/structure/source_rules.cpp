@@ -19,7 +19,7 @@ struct Folder {
 };
 
 // core < broadphase, narrowphase < solver < apps, bench; core < scenarios < apps, bench; tests see the apps, whose viewer has
-// parts that are tested without a window. The public headers (include) know themselves alone; what is behind them (api) lies
+// parts that are tested without a window. The public headers (include) include themselves alone; what is behind them (api) lies
 // above solver and scenarios, beside apps; examples see what other projects see.
 const Folder kFolders[] = {
     {"core", {"core"}},
@@ -35,7 +35,7 @@ const Folder kFolders[] = {
     {"tests", {"core", "broadphase", "narrowphase", "solver", "scenarios", "include", "api", "apps", "tests"}},
 };
 
-// The rooms of the top-level folders that have some, from the ground up: each may know those before it in its own folder.
+// The rooms of the top-level folders that have some, from the ground up: each may include those before it in its own folder.
 // docs/adr/0001-folders.md says why in this order.
 constexpr std::string_view kRooms[] = {"core",
                                        "core/geometry",
@@ -121,8 +121,8 @@ Include parseInclude(std::string_view line) {
   return {line.substr(0, line.find(quoted ? '"' : '>')), quoted};
 }
 
-// Empty when one room of a folder may know the other, else why not. A folder without rooms has no order; nor have files that lie
-// beside its rooms, unless they are one themselves.
+// Empty when one room of a folder may include the other, else why not. A folder without rooms has no order; nor have files that
+// lie beside its rooms, unless they are one themselves.
 std::string complaintInFolder(std::string_view path, std::string_view target) {
   const std::string_view top = topOf(path);
   const bool hasRooms =
@@ -135,7 +135,7 @@ std::string complaintInFolder(std::string_view path, std::string_view target) {
     return folder == top ? "" : std::string(folder) + " has no place in the order";
   }
   if (levelOf(to) <= levelOf(from)) return "";
-  return std::string(from) + " must not know " + std::string(to);
+  return std::string(from) + " must not include " + std::string(to);
 }
 
 // Public headers are included as they are installed.
@@ -147,7 +147,7 @@ std::string complaint(std::string_view path, const Folder& folder, const Include
   if (include.target.starts_with(kPublicHeaders)) {
     if (include.quoted) return "needs angle brackets: it is a public header";
     if (std::find(allowed.begin(), allowed.end(), "include") != allowed.end()) return "";
-    return std::string(folder.name) + " must not know the public headers";
+    return std::string(folder.name) + " must not include the public headers";
   }
   const Folder* target = include.target.find('/') == std::string_view::npos ? nullptr : findFolder(include.target);
   if (target == nullptr) {
@@ -159,7 +159,7 @@ std::string complaint(std::string_view path, const Folder& folder, const Include
   if (target->name == "include") return "is written <springtower/...>: it is a public header";
   if (!include.quoted) return "needs quotes: it is a file of this project";
   if (std::find(allowed.begin(), allowed.end(), target->name) != allowed.end()) return complaintInFolder(path, include.target);
-  return std::string(folder.name) + " must not know " + std::string(target->name);
+  return std::string(folder.name) + " must not include " + std::string(target->name);
 }
 
 // Functions as clang-format lays them out: their heads begin in a line at the margin, or, of members defined in their type, two
