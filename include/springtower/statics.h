@@ -4,7 +4,7 @@
 #include <springtower/scene.h>
 #include <vector>
 
-// Whether a scene can stand at all, from linear programmes and not from a simulation: rigid blocks, Coulomb's friction, the
+// Whether a scene can stand at all, from linear programs and not from a simulation: rigid blocks, Coulomb's friction, the
 // gravity of time 0. Forces, velocities and spins of the scene are left out. Functions keep no state and may be called from any
 // thread; they allocate. All throw InputError for a scene that checkScene refuses, for one without gravity, and for more than
 // 1000 blocks.
@@ -14,7 +14,7 @@ namespace springtower::api {
 /// Stands as placed; stands after its blocks have leant until something else touches; or cannot stand.
 enum class Verdict { stands, leans, falls };
 
-/// One linear programme, two where blocks have to lean.
+/// One linear program, two where blocks have to lean.
 Verdict verdict(const Scene& scene);
 
 /// The verdict on the scene without one of its blocks; the others stay where they are. Throws InputError for a number that is no
@@ -27,7 +27,7 @@ struct StabilityMargin {
   double direction_deg = 0.0;  ///< that side, from +x over +y
 };
 
-/// Within 0.005 degrees; nothing where no turn of less than 89 degrees helps. Some dozens of linear programmes at most.
+/// Within 0.005 degrees; nothing where no turn of less than 89 degrees helps. Some dozens of linear programs at most.
 std::optional<StabilityMargin> stabilityMargin(const Scene& scene);
 
 /// The force between two blocks that face each other.
@@ -37,7 +37,7 @@ struct StaticContact {
   Vec3 force_n;               ///< on `upper`
   Vec3 place;                 ///< m, the centre of pressure
   double normal_n = 0.0;      ///< its part along the contact's normal
-  double frictionUsed = 0.0;  ///< 0 to 1, largest tangential force over what friction bears, of its points
+  double frictionUsed = 0.0;  ///< 0 to 1, largest tangential force over what friction holds, of its points
 };
 
 /// What a block carries.
@@ -59,7 +59,7 @@ struct Loads {
   bool anyOfMany = false;               ///< whether the forces are not those of least squares
 };
 
-/// Nothing for a scene that falls. Two linear programmes a block.
+/// Nothing for a scene that falls. Two linear programs a block.
 std::optional<Loads> loads(const Scene& scene);
 
 /// The greatest force, N, along a direction (of any length but 0), at a block's centre, under which the scene can still stay as

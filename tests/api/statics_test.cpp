@@ -62,7 +62,7 @@ TEST(ApiStatics, LoadsAreTheWeightsAbove) {
   EXPECT_EQ(loads(stackOf(2, 0.014)), std::nullopt);
 }
 
-// Coulomb's bound for the upper of two blocks; 1e-6 is what the linear programme is solved to.
+// Coulomb's bound for the upper of two blocks; 1e-6 is what the linear program is solved to.
 TEST(ApiStatics, FrictionHoldsAPullUpToItsBound) {
   const auto limit = pullLimit(stackOf(2), 1, {5.0, 0.0, 0.0});
   ASSERT_TRUE(limit.has_value());
