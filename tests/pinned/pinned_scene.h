@@ -10,8 +10,8 @@
 
 namespace springtower {
 
-/// Acts on a simulation before each of its frames: a hand, a kick, a force. What it has to remember it keeps itself, so each run
-/// has one of its own.
+/// Acts on a simulation before each of its frames: a hand, a kick, a force. What it needs from frame to frame it stores itself,
+/// so each run has one of its own.
 using Leader = std::function<void(Simulation&)>;
 
 /// A scene whose every bit is pinned (tests/data/pinned.json).
@@ -19,7 +19,7 @@ struct PinnedScene {
   std::string name;  ///< letters and digits: tests and pins are found by it
   int frames = 0;    ///< frames played, also where the leader goes back to an earlier state
   std::function<Scene()> scene;
-  std::function<Leader()> leader = {};  ///< empty: nobody acts
+  std::function<Leader()> leader = {};  ///< empty: nothing acts
 };
 
 /// All of them.

@@ -61,7 +61,7 @@ TEST(RandomJudge, FindsABlockThatFallsThroughWhatItShouldHit) {
   EXPECT_GT(record.movedMost, kMaxMove);
 }
 
-// Gravity that swings does work on a block in flight, of which the judge knows nothing.
+// Gravity that swings does work on a block in flight, which the judge does not count.
 TEST(RandomJudge, FindsEnergyFromNowhere) {
   Scene scene = oneBlockScene(false);
   scene.blocks[0].velocity.z() = 1.0;
@@ -74,7 +74,7 @@ TEST(RandomJudge, FindsEnergyFromNowhere) {
   EXPECT_GT(record.energyGained, kMaxEnergyGain);
 }
 
-// The scene's own force does work as well, and that is known.
+// The scene's own force does work as well, and that is counted.
 TEST(RandomJudge, CountsTheWorkOfForces) {
   Scene scene = oneBlockScene(true);
   scene.seconds = 0.5;

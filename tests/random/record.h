@@ -51,7 +51,7 @@ struct Record {
 enum class Fault : std::uint8_t {
   crash,      ///< its process ended by a signal, or without a record
   refused,    ///< a scene of the generator was not simulated
-  notFinite,  ///< NaN or infinity that nobody named
+  notFinite,  ///< NaN or infinity that was not reported as divergence
   threads,    ///< other states on two threads than on one
   program,    ///< `springtower run` ends otherwise than documented, or with another state
   energy,     ///< energy from nowhere

@@ -221,7 +221,7 @@ TEST(Chart, TimesMotionAlikeAndJudgesTheChoiceOfAuto) {
   EXPECT_THAT(index, ::testing::AnyOf(HasSubstr("| pass |"), HasSubstr("| **fail** |")));
 }
 
-// A frame cannot be broken off, and one of a tall tower may take a quarter of an hour by pivoting: a few rows tell beforehand.
+// A frame cannot be broken off, and one of a tall tower may take a quarter of an hour by pivoting: a few rows show it beforehand.
 TEST(Chart, ForeseesWhichTallTowersTakeTooLong) {
   const ScratchFolder scratch;
   const ProgramResult result = chart({"--quick", "--auto", "--scenes", "tall", "--methods", "implicit,rigid-lcp", "--seconds",

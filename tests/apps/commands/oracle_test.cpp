@@ -64,7 +64,7 @@ TEST(Oracle, SmallTowersAgreeWithoutSleep) {
   expectAgreement("small.jsonl", 343, {"--no-sleep"});
 }
 
-// Towers with displaced blocks, where no simple rule tells which ones fall.
+// Towers with displaced blocks, where no simple rule decides which ones fall.
 TEST(Oracle, ShiftedTowersAgree) {
   expectAgreement("shift.jsonl", 188);
 }

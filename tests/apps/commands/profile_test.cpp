@@ -272,7 +272,7 @@ TEST_F(ProfileFiles, PointsStandWhereTheyBelong) {
   EXPECT_EQ(at(0.3, 0.45), kWhite);
 }
 
-// Scenes of their own size, and one that falls: within the frames asked for, however long a slow machine takes.
+// Scenes of their own size, and one that falls: within the frames of the options, however long a slow machine takes.
 TEST(Profile, TowersAndACollapse) {
   const ProgramResult result = profile({"--rows",       "9",    "--scenes",       "collapse,towers",
                                         "--towers",     "1,2",  "--methods",      "semi-implicit-euler",

@@ -81,7 +81,7 @@ TEST(ChooseMethod, RigidStepsFollowTheTolerance) {
   scene.settings.tolerance_m = 1e-6;
   EXPECT_NEAR(chooseMethod(scene).substeps, 2 * coarse, 2);
   scene.settings.substeps = 7;
-  EXPECT_EQ(chooseMethod(scene).substeps, 7) << "as asked for";
+  EXPECT_EQ(chooseMethod(scene).substeps, 7) << "as set";
 }
 
 TEST(ChooseMethod, ASimulationNamesWhatWasChosen) {

@@ -45,7 +45,7 @@ TEST(FullTower, StandsStillWithoutSleep) {
   EXPECT_LE(*result.creep_m, 0.005 * kMillimetre) << "a tenth of the tolerance: true static friction does not creep";
   EXPECT_LE(result.jitter_m_s, 1e-4 * kMillimetre) << "a tower at rest is still: 0.1 micrometre a second";
   EXPECT_LE(result.bottomRowCompression_m, 0.03 * kMillimetre) << "0.6 of the tolerance, under 17 rows";
-  EXPECT_GT(result.bottomRowCompression_m, 0.0) << "springs that bear a load give way";
+  EXPECT_GT(result.bottomRowCompression_m, 0.0) << "loaded springs are compressed";
   EXPECT_EQ(result.counters.contactsCreatedPenetrating, 0U);
 #ifdef NDEBUG  // sanitizers and assertions cost more than what they check
   // Half of a frame at 60 Hz, and some seventy times the median of 3600 frames: CPU time of this process, so that the load of the
@@ -99,7 +99,7 @@ TEST_P(CollapseTest, IsWithoutFlaw) {
   options.seconds = 10.0;
   const RunResult result = runScene(simulation, options);
   EXPECT_FALSE(result.standing.stands);
-  EXPECT_GT(result.counters.contactsCreated, 500U) << "a heap has met itself many times";
+  EXPECT_GT(result.counters.contactsCreated, 500U) << "the pile's blocks have met many times";
   EXPECT_LE(result.deepest.depth, 1.0 * kMillimetre) << "a block's twentieth: nothing passes through anything";
   EXPECT_EQ(result.counters.contactsCreatedPenetrating, 0U);
   ASSERT_TRUE(result.maxEnergyRise);

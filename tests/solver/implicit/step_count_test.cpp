@@ -100,7 +100,7 @@ TEST(FrequencyEstimate, DeterminesTheStepCount) {
   EXPECT_EQ(stepsAt(1.0, 1), 4);   // 3.35
   EXPECT_EQ(stepsAt(1.4, 1), 6);   // 5.24
   EXPECT_EQ(stepsAt(10.0, 1), 8);  // 72, of which there are at most 8
-  EXPECT_EQ(stepsAt(1.0, 5), 5) << "half as much damping would ask for 4.2, so five steps stay five";
+  EXPECT_EQ(stepsAt(1.0, 5), 5) << "half as much damping would need 4.2, so five steps stay five";
   EXPECT_EQ(stepsAt(0.6, 5), 3) << "but not where they are more than that";
 }
 

@@ -211,7 +211,7 @@ TEST(ReportMethod, PassesAreCountedAndBounded) {
   EXPECT_GE(three.planeCrossings, three.cubicTests);
   EXPECT_GT(three.cubicTests, three.cubicHits);
   EXPECT_GT(three.cubicHits, 0u);
-  EXPECT_EQ(three.contactsCreated, 0u) << "it knows no lasting contacts";
+  EXPECT_EQ(three.contactsCreated, 0u) << "it has no lasting contacts";
 }
 
 // Four towers and a block that falls on one of them: islands that split and join.

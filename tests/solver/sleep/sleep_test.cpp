@@ -53,7 +53,7 @@ TEST(Sleep, AWeakForceWakesItsBlockAlone) {
   stepUntilAsleep(simulation, 3.9);
   ASSERT_TRUE(allAsleep(simulation));
   while (simulation.frame < 240) stepFrame(simulation);
-  ASSERT_TRUE(allAsleep(simulation)) << "a force that does not act yet wakes nobody";
+  ASSERT_TRUE(allAsleep(simulation)) << "a force that does not act yet wakes no block";
   const ParticleArray still = simulation.state.position;
   for (int frame = 0; frame < 12; ++frame) {
     stepFrame(simulation);
@@ -211,7 +211,7 @@ TEST(Sleep, ABlockThatHitsSleepersMovesThemAsAwake) {
   const RunResult expected = play(awake);
   ASSERT_EQ(result.moves.size(), 2U);
   ASSERT_EQ(expected.moves.size(), 2U);
-  EXPECT_GT(expected.moves[1].moved_m, 3e-4) << "the blow has to be felt";
+  EXPECT_GT(expected.moves[1].moved_m, 3e-4) << "the blow has to move a block";
   EXPECT_NEAR(result.moves[1].moved_m, expected.moves[1].moved_m, 0.02 * expected.moves[1].moved_m);
   EXPECT_EQ(asleepBlocks(asleep), 9U) << "and they sleep again";
 }

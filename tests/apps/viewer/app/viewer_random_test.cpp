@@ -33,7 +33,7 @@ class Dice {
   RandomStream random_;
 };
 
-// One of the keys that the window knows, or one of its panel's switches.
+// One of the keys that the window handles, or one of its panel's switches.
 void pressKey(Viewer& viewer, Dice& dice) {
   Controls& controls = viewer.controls;
   switch (dice.below(12)) {

@@ -35,7 +35,7 @@ inline void lead(Session& session, Hand& hand, const Vec3& way, double speed_m_s
 }
 
 /// Draws a block out along its length (its own x axis, towards `side` = -1 or 1), lifts it over the top, turns it across the row
-/// it lands on if asked, lays it down over the axis of the tower and lets go.
+/// it lands on if `turned`, lays it down over the axis of the tower and lets go.
 inline void drawAndPlace(Session& session, std::size_t block, double side, double top_m, bool turned) {
   Hand hand = handOn(session, block);
   const Vec3 along = side * meanEdge(session.simulation.state.position, block, 0).normalized();
