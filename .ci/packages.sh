@@ -1,7 +1,7 @@
 # shellcheck shell=bash
 # Sourced by run.sh and test.sh.
 
-# Installs the packages of packages.txt whose group is one of the arguments and that are missing. Asks for nothing.
+# Installs the packages of packages.txt whose group is one of the arguments and that are missing. Needs no input.
 installPackages() {
   local group package rest missing=()
   while read -r group package rest; do

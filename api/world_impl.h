@@ -50,7 +50,7 @@ struct WorldAccess {
   static const WorldImpl& running(const World& world);
 };
 
-/// Lets the hand hold its block in the coming frame, a little farther on its way; nobody holds anything where it has none.
+/// Lets the hand hold its block in the coming frame, a little farther on its way; does nothing where it has none.
 void leadHand(WorldImpl& impl);
 
 /// A block's position in the engine's arrays. Throws InputError naming `what` unless it is 0 to `count` less one.

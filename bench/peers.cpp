@@ -37,7 +37,7 @@ void writeAll(const std::vector<double>& values) {
   std::size_t left = values.size() * sizeof(double);
   while (left > 0) {
     const ssize_t written = ::write(STDOUT_FILENO, data, left);
-    if (written <= 0) throw std::runtime_error("nobody reads the poses");
+    if (written <= 0) throw std::runtime_error("the poses cannot be written");
     data += written;
     left -= static_cast<std::size_t>(written);
   }

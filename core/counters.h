@@ -18,7 +18,7 @@ inline constexpr std::array<std::string_view, kStages> kStageNames = {"broadphas
 struct Counters {
   std::uint64_t frames = 0;
   std::uint64_t steps = 0;            ///< substeps: over all islands the most in a frame, summed
-  std::uint64_t replayedFrames = 0;   ///< frames run again: with a wider sweep, or with sleepers awake that gave way
+  std::uint64_t replayedFrames = 0;   ///< frames run again: with a wider sweep, or with sleepers awake whose supports failed
   std::uint64_t blockPairs = 0;       ///< pairs of blocks whose swept boxes overlap
   std::uint64_t clearanceChecks = 0;  ///< of these, pairs looked at because their margin was used up
   std::uint64_t candidateTests = 0;   ///< feature pairs of block pairs whose margin was used up
@@ -26,7 +26,7 @@ struct Counters {
   std::uint64_t planeCrossings = 0;   ///< of these, the coplanarity cubic may vanish (report: plane intersection tests)
   std::uint64_t cubicTests = 0;       ///< of these, tested in full
   std::uint64_t cubicHits = 0;        ///< of these, the features met
-  std::uint64_t contactsCreated = 0;  ///< contacts born by a cubic test
+  std::uint64_t contactsCreated = 0;  ///< contacts created by a cubic test
   std::uint64_t contactsCreatedPenetrating = 0;  ///< contacts found already penetrating after the start; must stay 0
   std::uint64_t manifoldRefreshes = 0;
   std::uint64_t contactEvaluations = 0;  ///< contact points times substeps

@@ -23,7 +23,7 @@ enum class Method {
 /// positions of rigid blocks (rigid); or impulses by the rules of the 2003 report on explicit springs (report).
 enum class MethodFamily : std::uint8_t { implicit, explicitSprings, rigid, report };
 
-/// What the engine has to know of a method; all that is alike in a family is decided by the family.
+/// Properties of a method that the engine uses; all that is alike in a family is decided by the family.
 struct MethodTraits {
   MethodFamily family = MethodFamily::implicit;
   bool twoStep = false;     ///< implicit: BDF2, which uses the step before, instead of backward Euler
@@ -63,7 +63,7 @@ constexpr bool isImplicit(Method method) {
   return traitsOf(method).family == MethodFamily::implicit;
 }
 
-/// Whether a method takes blocks as rigid: it has no stiffness, and its knobs are substeps and iterations.
+/// Whether a method takes blocks as rigid: it has no stiffness, and its parameters are substeps and iterations.
 constexpr bool isRigid(Method method) {
   return traitsOf(method).family == MethodFamily::rigid;
 }

@@ -12,7 +12,7 @@ namespace springtower {
 /// NAME.partial, which the destructor removes; a device or pipe is written directly. A process that is killed leaves NAME.partial
 /// as it was last flushed, and the next one that writes to NAME takes its place. Of two processes that write to NAME at the same
 /// time the second one writes NAME.partial-PID, and NAME is in the end that of the one that finishes last. NAME.partial is locked
-/// (flock) while its process lives: that is how the second one tells it from what a killed process has left.
+/// (flock) while its process lives: that is how the second one distinguishes it from what a killed process has left.
 class OutputFile {
  public:
   /// Opens `path`; `option` names the command line option it came from. Throws InputError naming both when it cannot be written.
@@ -34,7 +34,8 @@ class OutputFile {
   /// fails.
   void cutTo(std::uintmax_t bytes);
 
-  /// The file that is written until `commit`, for a program that is told its name: NAME.partial, or a device's own name.
+  /// The file that is written until `commit`, for a program that takes its name as an argument: NAME.partial, or a device's own
+  /// name.
   [[nodiscard]] const std::string& writtenPath() const { return partial_.empty() ? path_ : partial_; }
 
   /// Writes what is left and gives the file its name. Throws InputError naming the file when the disk is full or the name is

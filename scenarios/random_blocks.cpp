@@ -178,7 +178,7 @@ BlockSpec drawBlock(RandomDraw& draw, const BlockManner& manner) {
 std::vector<BlockSpec> drawStack(RandomDraw& draw, const BlockManner& manner, std::size_t count) {
   const std::size_t shape = draw.pick({0.5, 0.25, 0.25});
   if (shape == 2) return drawRows(draw, manner, count);
-  // How far centres lie aside, in sides: a column that may fall, or a heap of several.
+  // How far centres lie aside, in sides: a column that may fall, or a pile of several.
   const double spread = shape == 0 ? draw.logBetween(0.01, 0.5) : draw.between(0.5, 3.0);
   const std::size_t turns = draw.pick({0.4, 0.3, 0.3});  // none, quarters, any
   const double gap = draw.chance(0.15) ? manner.side_m * draw.logBetween(1e-4, 0.3) : 0.0;

@@ -24,7 +24,7 @@ BlockSpec drawBlock(RandomDraw& draw, const BlockManner& manner);
 
 // Each of these draws the blocks of one kind of scene, none inside another. `count`: how many, at least 2. `manner` is theirs.
 
-/// A column, a heap or rows of blocks that lie on one another, turned about the vertical alone.
+/// A column, a pile or rows of blocks that lie on one another, turned about the vertical alone.
 std::vector<BlockSpec> drawStack(RandomDraw& draw, const BlockManner& manner, std::size_t count);
 
 /// Boxes on one another with planks that lean against their upper edges; no more than `count` blocks.

@@ -115,7 +115,7 @@ constexpr Scenario kScenarios[] = {
      false,
      [](const ScenarioSize& size, const TowerOptions&) { return pileScene(size[0], {.fall_m = kPileFall_m}); }},
     {"heap",
-     "blocks turned at random that fall from a lattice into a heap",
+     "blocks turned at random that fall from a lattice into a pile",
      {SizeNumber{"blocks", 8, 1, 20000}, kNone},
      false,
      [](const ScenarioSize& size, const TowerOptions&) { return randomPileScene(size[0]); }},

@@ -14,7 +14,7 @@
 namespace springtower {
 namespace {
 
-constexpr int kLookUp_ms = 100;  // the signal may have come to another thread, which wakes nobody here
+constexpr int kLookUp_ms = 100;  // the signal may have come to another thread, which interrupts no wait here
 constexpr std::size_t kChunk = 1U << 16U;
 
 }  // namespace

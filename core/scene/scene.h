@@ -81,7 +81,7 @@ struct Scene {
   std::string name;
   std::vector<BlockSpec> blocks;
   std::vector<UserForce> forces;
-  std::vector<Move> moves;  ///< one after the other; empty: nobody touches the tower
+  std::vector<Move> moves;  ///< one after the other; empty: no moves
   Gravity gravity;
   bool floor = true;             ///< the plane z = 0
   bool plane = false;            ///< all that moves stays in the plane y = 0: a scene of rectangles (see checkScene)

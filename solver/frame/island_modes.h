@@ -35,7 +35,7 @@ IslandFacts islandFacts(const IslandStep& step);
 /// The transition table:
 ///   frame begins: rigid if left alone, of 3 to 255 blocks and fast; stays rigid while it is left alone and pinned or moving;
 ///                 else implicit.
-///   implicit gave up (steps do not fit or do not converge): rigid if left alone and mostly fallen, else explicit fallback.
+///   implicit failed (steps do not fit or do not converge): rigid if left alone and mostly fallen, else explicit fallback.
 IslandMode nextMode(ModeChange when, const IslandFacts& facts);
 
 /// The only place where an island's mode is set: converts its contacts between springs and impulses, and notes in its blocks'

@@ -26,7 +26,7 @@ struct RunOptions {
   bool measureEveryFrame =
       true;  ///< penetration, strain, creep, jitter and energy in every frame; otherwise at the start and at the end only
   std::vector<std::uint8_t> leftOut;  ///< 1 for blocks that do not count for `stands`, [blocks] or empty
-  std::function<bool()> shouldStop;   ///< asked after every frame: true ends the run with it, as `interrupted`; or empty
+  std::function<bool()> shouldStop;   ///< called after every frame: true ends the run with it, as `interrupted`; or empty
 };
 
 /// Times of the frames, ms: stepFrame only, without measures and output. CPU time is that of the whole process, over all threads;

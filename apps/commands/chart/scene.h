@@ -15,7 +15,7 @@ inline constexpr double kAutoTolerance_m = 5e-5;
 /// The scene of a case, awake throughout. Throws InputError for rows that are not allowed.
 Scene sceneOf(const ChartCase& what, const ChartLimits& limits);
 
-/// All cases of a scene for these methods and other engines, each with its own knob; fewer of them if `quick`.
+/// All cases of a scene for these methods and other engines, each with its own parameter; fewer of them if `quick`.
 std::vector<ChartCase> casesOf(ChartScene scene, const std::vector<Method>& methods, const std::vector<Peer>& peers, bool quick);
 
 /// When, in s of simulated time: the state is kept that samples start from, resting figures begin, and all ends.
@@ -38,7 +38,7 @@ int pulledBlock(ChartScene scene, const Scene& blocks);
 /// A hand that pulls one block, as far as a force that holds for a frame can, at a steady speed (proportional and integral
 /// control); engines without our hand (solver/hand/grip) take a force.
 struct SteadyPull {
-  int block = -1;  ///< -1: nobody pulls
+  int block = -1;  ///< -1: no block is pulled
   Vec3 direction = Vec3::UnitX();
   double held_n = 0.0;  ///< what the last frames have shown to be needed, N
 };

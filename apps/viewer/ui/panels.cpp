@@ -167,7 +167,7 @@ void timePanel(const Viewer& viewer) {
   const auto asleep = std::count(simulation.asleep.begin(), simulation.asleep.end(), std::uint8_t{1});
   text(fmt::format("blocks {}, asleep {}, contacts {}", simulation.asleep.size(), asleep, viewer.session.contacts.size()));
   text(fmt::format("steps {}, cubic tests {}, hits {}", counters.steps, counters.cubicTests, counters.cubicHits));
-  text(fmt::format("contacts born {}, penetrating {}", counters.contactsCreated, counters.contactsCreatedPenetrating));
+  text(fmt::format("contacts created {}, penetrating {}", counters.contactsCreated, counters.contactsCreatedPenetrating));
   const std::string woken = wakesInWords(simulation.wakes);
   if (!woken.empty()) ImGui::TextWrapped("%s", ("woken: " + woken).c_str());
 }
