@@ -66,7 +66,8 @@ CLI::Option* addWholeNumber(CLI::App& app, const std::string& name, std::optiona
 }
 
 void addFormerFlag(CLI::App& app, const std::string& former, CLI::Option* flag, bool& target) {
-  CLI::Option* alias = app.add_flag(former, target)->group("");
+  // A group without a name would hide it, also from the message that refuses both.
+  CLI::Option* alias = app.add_flag(former, target, "now " + flag->get_name())->group("Former names");
   for (CLI::Option* other : flag->get_excludes()) alias->excludes(other);
   alias->excludes(flag);
   flag->description(fmt::format("{}; formerly {}", flag->get_description(), former));

@@ -39,7 +39,7 @@ CLI::Option* addWholeNumber(CLI::App& app, const std::string& name, std::optiona
                             const std::string& description);
 
 /// Lets a flag be given by a former name as well: by either, not by both. The help shows the former name in the description of
-/// the flag alone. Call it once the flag has all that it excludes.
+/// the flag, and once more at its end. Call it once the flag has all that it excludes.
 void addFormerFlag(CLI::App& app, const std::string& former, CLI::Option* flag, bool& target);
 
 /// Adds the options of `PhysicsOptions` to a command.

@@ -31,7 +31,8 @@ TEST(SettingsCommand, JsonHasTheFormerNameOrNull) {
   const ProgramResult result = runProgram("springtower", {"settings", "--json"});
   ASSERT_EQ(result.exitCode, 0) << result.error;
   std::size_t renamed = 0;
-  for (const Json& row : Json::parse(result.output).at("settings")) {
+  const Json json = Json::parse(result.output);
+  for (const Json& row : json.at("settings")) {
     const std::string_view former = formerKeyOf(row.at("key").get<std::string>());
     EXPECT_EQ(row.at("formerly"), former.empty() ? Json(nullptr) : Json(former)) << row.at("key");
     renamed += former.empty() ? 0 : 1;
