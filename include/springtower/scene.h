@@ -121,7 +121,7 @@ Scene sceneFromToml(const std::string& path, const TowerOptions& options = {});
 /// code, or the path of a TOML file. Throws InputError, for an unknown name with all that is allowed.
 Scene namedScene(const std::string& name, const TowerOptions& options = {});
 
-/// A scenario that namedScene knows.
+/// A scenario that namedScene accepts.
 struct ScenarioInfo {
   std::string usage;         ///< how it is written, such as "wall:COLUMNSxCOURSES"
   std::string what;          ///< one sentence
