@@ -125,7 +125,10 @@ void turnHand(World& world, const Quaternion& orientation) {
   WorldImpl& impl = WorldAccess::running(world);
   Hand& hand = heldHand(impl, "turnHand");
   const Eigen::Quaterniond turn = toEngine(orientation);
-  withPublicErrors([&] { requireInRange(turn.norm(), kUnit, "turnHand: length of the quaternion"); });
+  withPublicErrors([&] {
+    requireInRange(turn.norm(), kUnit, "turnHand: length of the quaternion");
+    if (impl.simulation.scene.plane) checkTurnInPlane(turn, "turnHand");
+  });
   hand.turn = turn;
 }
 

@@ -10,6 +10,7 @@
 #include <numeric>
 #include <oneapi/tbb/global_control.h>
 #include <springtower/world.h>
+#include <utility>
 
 namespace springtower::api {
 namespace {
@@ -53,6 +54,12 @@ std::uint64_t hashOf(const springtower::Scene& scene) {
   return hash.value();
 }
 
+// Marks a world as failed, without a call to the allocator.
+void fail(WorldImpl& impl) {
+  impl.unfinished.time_s = impl.simulation.time_s;
+  impl.divergence = std::move(impl.unfinished);
+}
+
 // Runs a frame with the forces that are to pass with it.
 void stepWithPassingForces(WorldImpl& impl) {
   std::vector<springtower::UserForce>& forces = impl.simulation.scene.forces;
@@ -63,10 +70,13 @@ void stepWithPassingForces(WorldImpl& impl) {
     leadHand(impl);
     stepFrame(impl.simulation);
   } catch (const DivergenceError& error) {
-    impl.divergence = {error.block, error.time_s, error.what()};
-  } catch (...) {
-    impl.divergence = {kFloor, impl.simulation.time_s, "a frame could not be finished"};
     forces.resize(lasting);
+    fail(impl);  // also where there is no memory for the message
+    impl.divergence = {error.block, error.time_s, error.what()};
+    return;
+  } catch (...) {
+    forces.resize(lasting);
+    fail(impl);
     throw;
   }
   forces.resize(lasting);
@@ -230,6 +240,7 @@ void World::restore(const Snapshot& snapshot) {
   restoreSnapshot(impl.simulation, *data.simulation);
   impl.lead = data.lead;
   impl.passing = data.passing;
+  impl.unfinished = unfinishedFrame();
   impl.divergence.reset();
 }
 

@@ -20,6 +20,11 @@ struct HandLead {
   double speed_m_s = 0.0;                              ///< at which the hand goes there
 };
 
+/// That a frame threw, at a time that is still to be given.
+inline Divergence unfinishedFrame() {
+  return {kFloor, 0.0, "a frame could not be finished"};
+}
+
 /// What a world is made of.
 struct WorldImpl {
   explicit WorldImpl(const springtower::Scene& scene) : simulation(scene) {}
@@ -29,6 +34,7 @@ struct WorldImpl {
   std::vector<springtower::UserForce> passing;  ///< forces through the coming frame alone
   std::uint64_t sceneHash = 0;                  ///< of all that decides how the scene runs, as it was given
   std::optional<Divergence> divergence;
+  Divergence unfinished = unfinishedFrame();  ///< what a frame fails with that throws, made before: memory may be out by then
 };
 
 /// What a snapshot is made of.
@@ -50,7 +56,7 @@ struct WorldAccess {
   static const WorldImpl& running(const World& world);
 };
 
-/// Lets the hand hold its block in the coming frame, a little farther on its way; does nothing where it has none.
+/// Lets the hand hold its block in the coming frame, a little farther on its way; releases where it has none.
 void leadHand(WorldImpl& impl);
 
 /// A block's position in the engine's arrays. Throws InputError naming `what` unless it is 0 to `count` less one.

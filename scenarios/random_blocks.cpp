@@ -123,7 +123,10 @@ double addLane(RandomDraw& draw, const BlockManner& manner, double y, std::vecto
     blocks.push_back(box);
   }
   BlockSpec plank = drawBlock(draw, manner);
-  plank.dimensions = Vec3(length, box.dimensions.y() * draw.between(0.5, 1.0), length * draw.between(0.03, 0.15));
+  // Each draw has its own statement: the order of those within one is the compiler's.
+  const double thin = draw.between(0.03, 0.15);
+  const double narrow = draw.between(0.5, 1.0);
+  plank.dimensions = Vec3(length, box.dimensions.y() * narrow, length * thin);
   plank.dimensions.y() = clampedSide(plank.dimensions.y());
   plank.dimensions.z() = clampedSide(plank.dimensions.z());
   const double thickness = plank.dimensions.z();
@@ -252,8 +255,11 @@ std::vector<BlockSpec> drawShot(RandomDraw& draw, const BlockManner& manner, std
     throwBlock(draw, block, 0.1 * speed);
     block.velocity.x() += 0.9 * speed;
     const Vec3 reach = boxOf(block).reach();
-    block.centre = Vec3(left - reach.x() - manner.side_m * draw.logBetween(0.01, 2.0), 0.3 * manner.side_m * draw.between(-1, 1),
-                        std::max(reach.z(), top * draw.between(0.0, 1.0)));
+    const double height = draw.between(0.0, 1.0);  // three statements, as the order within one is the compiler's
+    const double aside = draw.between(-1.0, 1.0);
+    const double before = draw.logBetween(0.01, 2.0);
+    block.centre =
+        Vec3(left - reach.x() - manner.side_m * before, 0.3 * manner.side_m * aside, std::max(reach.z(), top * height));
     left = block.centre.x() - reach.x();
     blocks.push_back(block);
   }

@@ -12,7 +12,7 @@
 namespace springtower {
 
 /// Draws of random scenes, each from the next numbers of one stream. Only arithmetic and square roots, which are the same
-/// everywhere (core/random.h).
+/// everywhere (core/random.h); scenes made from them also take sines and cosines.
 class RandomDraw {
  public:
   explicit RandomDraw(std::uint64_t seed) : random_(seed, kStream) {}

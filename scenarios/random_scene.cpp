@@ -96,7 +96,9 @@ void addForce(RandomDraw& draw, Scene& scene, int rows) {
   UserForce force;
   force.block = static_cast<int>(&block - scene.blocks.data());
   force.corner = draw.chance(0.7) ? -1 : draw.whole(0, 7);
-  force.force = drawLevelDirection(draw) * (draw.logBetween(0.1, 30.0) * block.mass * kStandardGravity_m_s2);
+  const double weights = draw.logBetween(0.1, 30.0);  // two statements, as the order within one is the compiler's
+  const Vec3 direction = drawLevelDirection(draw);
+  force.force = direction * (weights * block.mass * kStandardGravity_m_s2);
   force.start_s = draw.between(0.0, 0.5);
   force.end_s = force.start_s + draw.between(0.1, 1.0);
   scene.forces = {force};

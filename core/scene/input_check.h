@@ -2,6 +2,7 @@
 
 #include "core/scene/scene.h"
 
+#include <Eigen/Geometry>
 #include <cstddef>
 #include <string_view>
 
@@ -22,9 +23,10 @@ void checkForce(const UserForce& force, std::size_t blocks, std::string_view sou
 /// naming `source`, the coefficient, what was found and what is allowed.
 void checkFriction(double staticFriction, double kineticFriction, std::string_view source);
 
-/// Checks what a scene in the plane y = 0 allows: a force at the centre and without a y component; gravity without one. Throws
-/// InputError naming `source`, what was found and what is allowed.
+/// Checks what a scene in the plane y = 0 allows: a force at the centre and without a y component; gravity without one; a block
+/// turned so that one of its axes is the plane's normal. Throws InputError naming `source`, what was found and what is allowed.
 void checkForceInPlane(const UserForce& force, std::string_view source);
 void checkGravityInPlane(const Gravity& gravity, std::string_view source);
+void checkTurnInPlane(const Eigen::Quaterniond& turn, std::string_view source);
 
 }  // namespace springtower

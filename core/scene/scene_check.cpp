@@ -98,7 +98,7 @@ void checkPlane(const Scene& scene, std::string_view source) {
     const BlockSpec& block = scene.blocks[b];
     const std::string where = nameOfBlock(scene, b);
     require(block.centre.y(), where + ": centre y");
-    require(1.0 - block.orientation.toRotationMatrix().row(1).cwiseAbs().maxCoeff(), where + ": turn out of the plane");
+    checkTurnInPlane(block.orientation, fmt::format("{}: {}", source, where));
     require(block.velocity.y(), where + ": velocity y");
     require(block.spin.x(), where + ": spin x");
     require(block.spin.z(), where + ": spin z");
@@ -165,6 +165,10 @@ void checkForceInPlane(const UserForce& force, std::string_view source) {
 
 void checkGravityInPlane(const Gravity& gravity, std::string_view source) {
   requireNone(gravity.at(0.0).y(), fmt::format("{}: gravity: y", source));
+}
+
+void checkTurnInPlane(const Eigen::Quaterniond& turn, std::string_view source) {
+  requireNone(1.0 - turn.toRotationMatrix().row(1).cwiseAbs().maxCoeff(), fmt::format("{}: turn out of the plane", source));
 }
 
 void checkScene(const Scene& scene, std::string_view source) {

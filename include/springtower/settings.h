@@ -73,7 +73,7 @@ struct Settings {
 };
 
 /// Checks every number against its range. Throws InputError naming the setting, what was found and what is allowed. Worlds check
-/// their scenes; this is for those who wish to know before. Thread-safe.
+/// their scenes; this is to check beforehand. Thread-safe.
 void checkSettings(const Settings& settings);
 
 /// A method by its name, as scene files and the command line spell it ("implicit", "rigid-pgs", "auto"). Throws InputError with

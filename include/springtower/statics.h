@@ -37,7 +37,7 @@ struct StaticContact {
   Vec3 force_n;               ///< on `upper`
   Vec3 place;                 ///< m, the centre of pressure
   double normal_n = 0.0;      ///< its part along the contact's normal
-  double frictionUsed = 0.0;  ///< 0 to 1, largest tangential force over what friction holds, of its points
+  double frictionUsed = 0.0;  ///< 0 to 1, largest tangential force over the friction limit, of its points
 };
 
 /// What a block carries.

@@ -26,7 +26,7 @@ struct Velocity {
 };
 
 /// That a simulation has failed: a position is not finite any more, or a block is turned inside out. The default method does so
-/// under absurd inputs alone.
+/// in some scenes, mostly of flush neighbours, in the first step (docs/random-scenes.md).
 struct Divergence {
   int block = kFloor;   ///< the block found first
   double time_s = 0.0;  ///< simulated time

@@ -12,9 +12,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <fmt/format.h>
+#include <mutex>
 #include <oneapi/tbb/parallel_for.h>
 #include <optional>
+#include <utility>
 
 namespace springtower {
 
@@ -33,6 +36,43 @@ void checkShapes(const Simulation& simulation, std::span<const std::int32_t> blo
                           block, simulation.time_s);
   }
 }
+
+// Runs an island through the frame.
+void runIsland(Simulation& simulation, const ContactLaw& law, std::size_t i) {
+  Engine& engine = *simulation.engine;
+  const auto first = static_cast<std::size_t>(engine.memo.pairStart[i]);
+  IslandStep step{simulation,
+                  engine,
+                  engine.memo.islands.island(i),
+                  std::span<const std::int32_t>(engine.memo.islandPairs)
+                      .subspan(first, static_cast<std::size_t>(engine.memo.pairStart[i + 1]) - first),
+                  engine.scratch.islandCounters[i],
+                  engine.scratch.islandTimes[i],
+                  law};
+  saveFrameStart(step);
+  const IslandOutcome outcome = advanceIsland(step);
+  engine.scratch.islandOutcome[i] = outcome.inside ? outcome.substeps : -1;
+}
+
+// Of the islands that diverge in a frame the first in their order, whichever thread comes first: the message is the same on any
+// number of threads. All of them are run, so that the state is as well.
+class FirstDivergence {
+ public:
+  void keep(std::size_t island, std::exception_ptr error) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (error_ != nullptr && island_ < island) return;
+    island_ = island;
+    error_ = std::move(error);
+  }
+  void throwIfAny() const {
+    if (error_ != nullptr) std::rethrow_exception(error_);
+  }
+
+ private:
+  std::mutex mutex_;
+  std::size_t island_ = 0;
+  std::exception_ptr error_;
+};
 
 // Runs all islands through the frame; false when one has left its swept boxes.
 bool runIslands(Simulation& simulation) {
@@ -53,20 +93,15 @@ bool runIslands(Simulation& simulation) {
       if (contact >= 0) engine.contacts.pose(contact) = RelativePose{};
     }
   }
+  FirstDivergence divergence;
   tbb::parallel_for(std::size_t{0}, islands, [&](std::size_t i) {
-    const auto first = static_cast<std::size_t>(engine.memo.pairStart[i]);
-    IslandStep step{simulation,
-                    engine,
-                    engine.memo.islands.island(i),
-                    std::span<const std::int32_t>(engine.memo.islandPairs)
-                        .subspan(first, static_cast<std::size_t>(engine.memo.pairStart[i + 1]) - first),
-                    engine.scratch.islandCounters[i],
-                    engine.scratch.islandTimes[i],
-                    law};
-    saveFrameStart(step);
-    const IslandOutcome outcome = advanceIsland(step);
-    engine.scratch.islandOutcome[i] = outcome.inside ? outcome.substeps : -1;
+    try {
+      runIsland(simulation, law, i);
+    } catch (const DivergenceError&) {
+      divergence.keep(i, std::current_exception());
+    }
   });
+  divergence.throwIfAny();
   bool inside = true;
   simulation.substeps = 0;
   for (std::size_t i = 0; i < islands; ++i) {

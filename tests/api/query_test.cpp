@@ -1,4 +1,4 @@
-// What is read from worlds, against closed forms.
+// What queries of a world return, against closed forms.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <springtower/inputs.h>

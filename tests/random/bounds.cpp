@@ -7,14 +7,14 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <functional>
+#include <limits>
 
 namespace springtower {
 namespace {
 
-// Rates were measured on 1200 scenes (seeds 1 to 200, 20000 to 20699 and 300 of a commit, from 148816908684216; limit 1 s; a
-// machine that was busy with other work). Each rate here is the largest that the count found is compatible with: with a larger
-// one so few would be found less than once in a thousand times (Clopper and Pearson 1934). They are to be lowered when more
-// scenes are measured, and when the engine gets better.
+// Each rate is the upper end of 99.9 % confidence (Clopper and Pearson 1934): with a larger one, so few as were found would be
+// found less than once in a thousand times. Where they were measured is in docs/random-scenes.md. They are to be lowered when
+// more scenes are measured, and when the engine gets better.
 constexpr std::array<Bound, kFaults.size()> kBounds = {{
     {Fault::crash, 0.0, "must never be"},
     {Fault::refused, 0.0, "must never be: the generator makes scenes that can be simulated"},
@@ -30,15 +30,16 @@ constexpr std::array<Bound, kFaults.size()> kBounds = {{
     {Fault::verdict, 0.009, "0 of 789 that could be compared"},
 }};
 
-// How bad a fault is, for the order of the seeds.
-double weightOf(const Record& record, Fault fault) {
+// How bad a fault is.
+double numberOf(const Record& record, Fault fault) {
   switch (fault) {
     case Fault::energy:
       return record.energyGained;
     case Fault::deep:
       return record.deepest_m / record.leastSide_m;
     case Fault::momentum:
-      return std::max(*record.momentumLost, *record.angularLost);
+      if (std::isnan(*record.momentumLost)) return *record.momentumLost;
+      return std::max(*record.angularLost, *record.momentumLost);  // the first where it is not a number
     case Fault::slow:
     case Fault::hung:
       return record.simulated_s > 0.0 ? record.processor_s / record.simulated_s : 1e9;
@@ -48,6 +49,12 @@ double weightOf(const Record& record, Fault fault) {
     default:
       return 0.0;
   }
+}
+
+// The same for the order of the seeds, in which what is not a number comes first.
+double weightOf(const Record& record, Fault fault) {
+  const double number = numberOf(record, fault);
+  return std::isnan(number) ? std::numeric_limits<double>::infinity() : number;
 }
 
 bool isImplicitOrAutomatic(const Record& record) {

@@ -100,6 +100,7 @@ void compareWithProgram(const RandomScene& random, Record& record) {
 // What a child does. Writes the record after every run as a line: the last one counts.
 [[noreturn]] void beChild(const ChildTask& task, const ChildOptions& options, int out) {
   const auto line = [&](const Record& record) { writeAll(out, recordJson(record).dump() + "\n"); };
+  setpgid(0, 0);  // with the program it runs: both are ended together
   try {
     limitAddresses();
     JudgeOptions judge = options.judge;
@@ -129,6 +130,7 @@ Child startChild(ChildTask task, const ChildOptions& options) {
     close(ends[0]);
     beChild(task, options, ends[1]);
   }
+  setpgid(process, process);  // here as well: either may come first
   close(ends[1]);
   return {std::move(task), process, ends[0], {}, Clock::now()};
 }
@@ -184,7 +186,7 @@ std::vector<bool> listen(std::list<Child>& children, double mostWall_s) {
     const double wall_s = std::chrono::duration<double>(Clock::now() - child.start).count();
     if (!closed[i] && wall_s > mostWall_s && !child.late) {
       child.late = true;
-      kill(child.process, SIGKILL);
+      kill(-child.process, SIGKILL);
     }
     ++i;
   }

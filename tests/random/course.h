@@ -37,7 +37,7 @@ struct CourseWatch {
 /// and is in the course.
 Course playScene(const Scene& scene, int threads, double limit_s, const CourseWatch& watch = {});
 
-/// Whether two runs of one scene have the same states as far as both went: hashes, or the message with which they diverged.
+/// Whether two runs of one scene agree: in the hashes of their states as far as both went, and in that both diverged or none.
 bool agree(const Course& one, const Course& other);
 
 }  // namespace springtower

@@ -10,12 +10,19 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <limits>
+#include <utility>
+#include <vector>
 
 namespace springtower {
 namespace {
 
 constexpr std::uint64_t kFramesToAMomentum = 5;
 constexpr double kThreadsShare = 0.25;  // of the limit, for the run on two threads
+
+// NaN where one of them is: what could not be measured is not to pass as small.
+double largerOrNan(double a, double b) {
+  return std::isnan(a) || a > b ? a : b;
+}
 
 // Sum of what the blocks have at the start: kinetic energy, and potential energy above the floor, for which a block that lies on
 // it still has half its side. In space at rest there is none: then what one contact of the tolerance's depth would store.
@@ -91,8 +98,8 @@ class EnergyWatch {
     work_.afterFrame(simulation);
     Energy now = energy(simulation);
     const double rise_j = energyRise(least_, now) - (work_.sum_j - workAtLeast_j_);
-    if (std::isfinite(rise_j)) most_j_ = std::max(most_j_, rise_j);
-    if (rise_j >= 0.0) return;
+    most_j_ = largerOrNan(most_j_, std::isfinite(rise_j) ? rise_j : std::numeric_limits<double>::quiet_NaN());
+    if (!(rise_j < 0.0)) return;
     least_ = std::move(now);
     workAtLeast_j_ = work_.sum_j;
   }
@@ -153,8 +160,8 @@ class MomentumWatch {
   void afterFrame(const Simulation& simulation) {
     if (!applies_ || simulation.frame % kFramesToAMomentum != 0) return;
     const Momenta now = momentaOf(simulation, about_);
-    linear_ = std::max(linear_, (now.linear - start_.linear).norm() / start_.linearSum);
-    angular_ = std::max(angular_, (now.angular - start_.angular).norm() / start_.angularSum);
+    linear_ = largerOrNan(linear_, (now.linear - start_.linear).norm() / start_.linearSum);
+    angular_ = largerOrNan(angular_, (now.angular - start_.angular).norm() / start_.angularSum);
   }
   [[nodiscard]] bool applies() const { return applies_; }
   [[nodiscard]] double linearLost() const { return linear_; }
@@ -196,7 +203,7 @@ Course playAndMeasure(const Scene& scene, double limit_s, Record& record) {
     energies.afterFrame(simulation);
     momenta.afterFrame(simulation);
     const double depth_m = maxPenetration(simulation.state.position, scene.floor, workspace).depth;
-    record.deepest_m = std::max(record.deepest_m, depth_m);
+    record.deepest_m = largerOrNan(record.deepest_m, depth_m);
   };
   Course course = playScene(scene, 1, limit_s, watch);
   copyCourse(course, record);

@@ -6,6 +6,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -16,6 +17,7 @@ using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
+using Json = nlohmann::ordered_json;
 
 constexpr double kPatience_s = 60.0;  // also where sanitizers slow everything down
 
@@ -127,6 +129,32 @@ TEST(RandomJudge, TellsTwoCoursesApart) {
   EXPECT_TRUE(agree(one, playScene(scene, 2, kPatience_s)));
   scene.blocks[0].centre.z() += 1e-9;
   EXPECT_FALSE(agree(one, playScene(scene, 1, kPatience_s)));
+}
+
+// Within any run: also where the first one is over and measured.
+TEST(RandomRecord, IsOfASceneThatHungWhereItsProcessWasEndedAtItsLimit) {
+  Record record;
+  record.simulated_s = 1.0;
+  record.ended = "limit";
+  EXPECT_THAT(faultsOf(record), ::testing::ElementsAre(Fault::hung, Fault::slow));
+  EXPECT_THAT(describe(record, Fault::hung), HasSubstr("the first run"));
+  record.frames = 60;
+  record.hash = "0123456789abcdef";
+  EXPECT_THAT(faultsOf(record), ::testing::ElementsAre(Fault::hung, Fault::slow));
+  EXPECT_THAT(describe(record, Fault::hung), HasSubstr("a run after the first"));
+  record.ended = "signal 11";
+  EXPECT_THAT(faultsOf(record), ::testing::ElementsAre(Fault::crash));
+}
+
+TEST(RandomRecord, HasAFaultWhereWhatWasMeasuredIsNotANumber) {
+  Record record;
+  record.frames = 1;
+  record.simulated_s = 1.0;
+  record.energyGained = record.deepest_m = std::numeric_limits<double>::quiet_NaN();
+  record.momentumLost = record.angularLost = record.energyGained;
+  const auto faults = ::testing::ElementsAre(Fault::energy, Fault::deep, Fault::momentum);
+  EXPECT_THAT(faultsOf(record), faults);
+  EXPECT_THAT(faultsOf(recordFromJson(Json::parse(recordJson(record).dump()))), faults);
 }
 
 TEST(RandomRecord, ComesBackFromJson) {

@@ -3,6 +3,7 @@
 #include "core/error.h"
 #include "core/limits.h"
 
+#include <cmath>
 #include <fmt/format.h>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -14,6 +15,8 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::array<std::string_view, kFaults.size()> kFaultNames = {
     "crash", "refused", "not-finite", "threads", "program", "energy", "diverged", "hung", "slow", "deep", "momentum", "verdict"};
+
+constexpr const char* kNotFinite = "not finite";  // in place of a number
 
 // Calls use(key, member) for every member, so that writing and reading cannot differ.
 template <class SomeRecord, class Use>
@@ -56,6 +59,11 @@ template <class Value>
 Json jsonOf(const std::optional<Value>& value) {
   return value ? Json(*value) : Json(nullptr);
 }
+// JSON has no number that is not finite, and null is an empty option.
+Json jsonOf(const std::optional<double>& value) {
+  if (value && !std::isfinite(*value)) return kNotFinite;
+  return value ? Json(*value) : Json(nullptr);
+}
 
 template <class Value>
 void readJson(const Json& json, Value& value) {
@@ -68,6 +76,10 @@ void readJson(const Json& json, double& value) {
 template <class Value>
 void readJson(const Json& json, std::optional<Value>& value) {
   value = json.is_null() ? std::nullopt : std::optional<Value>(json.get<Value>());
+}
+void readJson(const Json& json, std::optional<double>& value) {
+  value.reset();
+  if (!json.is_null()) value = json == kNotFinite ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();
 }
 
 // NaN is no smaller than any bound.
@@ -107,7 +119,7 @@ bool has(const Record& record, Fault fault) {
     case Fault::diverged:
       return !record.diverged.empty();
     case Fault::hung:
-      return record.ended == "limit" && record.frames == 0;
+      return record.ended == "limit";
     case Fault::slow:
       return has(record, Fault::hung) || (record.diverged.empty() && record.processor_s > record.simulated_s);
     case Fault::deep:
@@ -147,7 +159,8 @@ std::string describe(const Record& record, Fault fault) {
       case Fault::diverged:
         return record.diverged;
       case Fault::hung:
-        return "a frame took more than a second over the processor time allowed for all";
+        return fmt::format("{} was not over when its process was ended at its limit",
+                           record.hash.empty() ? "the first run" : "a run after the first");
       case Fault::slow:
         return fmt::format("{:.3g} s of processor time for {:.3g} s", record.processor_s, record.simulated_s);
       case Fault::deep:

@@ -51,12 +51,12 @@ struct Record {
 enum class Fault : std::uint8_t {
   crash,      ///< its process ended by a signal, or without a record
   refused,    ///< a scene of the generator was not simulated
-  notFinite,  ///< NaN or infinity that was not reported as divergence
+  notFinite,  ///< NaN or infinity that no error named
   threads,    ///< other states on two threads than on one
   program,    ///< `springtower run` ends otherwise than documented, or with another state
   energy,     ///< energy from nowhere
   diverged,
-  hung,  ///< one frame took more than the processor time allowed for all
+  hung,  ///< its process was ended at its limit: a frame of one of the runs took too long
   slow,  ///< slower than real time
   deep,
   momentum,

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <fmt/format.h>
+#include <type_traits>
 #include <utility>
 #include <vector>
 

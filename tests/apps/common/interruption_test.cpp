@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <stdexcept>
 #include <sys/stat.h>
 #include <thread>
 #include <unistd.h>
@@ -196,7 +197,7 @@ TEST_P(ListOf, TowersGoesOnAfterBadLinesWhenToldTo) {
   }
 }
 
-// 18 rows by fine explicit steps take seconds; the first line is done long before.
+// 12 rows by fine explicit steps take seconds; the first line is done long before.
 TEST(Interruption, AVerdictUnderWayIsNotPrinted) {
   const ScratchFolder scratch;
   std::ofstream(scratch.file("list.jsonl"))
