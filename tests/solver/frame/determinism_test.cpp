@@ -125,7 +125,7 @@ std::string messageOfFirstFrame(const Scene& scene, int threads) {
 }
 
 TEST(Determinism, OfIslandsThatDivergeInOneFrameTheFirstIsNamedOnAnyThreads) {
-  constexpr int kRuns = 20;  // on several threads another one comes first in some of them
+  constexpr int kRuns = 200;  // which island comes first on several threads is chance: another one does in one run of 200 or so
   const Scene scene = divergingBlocks();
   for (std::size_t b = 0; b + 1 < scene.blocks.size(); ++b) {
     Scene one = scene;
