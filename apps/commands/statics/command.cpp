@@ -182,7 +182,7 @@ CLI::App* defineStatics(CLI::App& program, StaticsCommand& command) {
   statics->add_flag("--check", command.check,
                     "for a list: prints how many answers agree with what is expected; exit code 1 if one differs");
   statics->add_flag("--keep-going", command.keepGoing,
-                    "for a list: tells a bad line on standard error, leaves it out and goes on; exit code 2 at the end");
+                    "for a list: reports a bad line on standard error, leaves it out and goes on; exit code 2 at the end");
   addWholeNumber(*statics, "--threads", command.threads, kThreadsRange, "threads to use (default: one for each processor)");
   wrapDescriptions(*statics);
   statics->footer(std::string(kHelp));

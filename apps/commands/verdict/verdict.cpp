@@ -146,7 +146,7 @@ CLI::App* defineVerdict(CLI::App& program, VerdictCommand& command) {
       "--check", command.check,
       "prints on standard error how many verdicts agree with expect where that is clear; exit code 1 if one differs");
   verdict->add_flag("--keep-going", command.keepGoing,
-                    "tells a bad line on standard error, leaves it out and goes on; exit code 2 at the end");
+                    "reports a bad line on standard error, leaves it out and goes on; exit code 2 at the end");
   wrapDescriptions(*verdict);
   verdict->footer(std::string(kVerdictExamples));
   return verdict;
