@@ -18,6 +18,7 @@ function(springtower_configure_target target)
   target_compile_options(${target} PRIVATE ${SPRINGTOWER_COMPILE_OPTIONS})
   set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF)
   target_compile_features(${target} PUBLIC cxx_std_20)
+  add_dependencies(${target} springtower_version)  # core/version.h
   if(SPRINGTOWER_SANITIZE)
     # Public, because whoever links an instrumented library needs the run-time of the sanitizer.
     target_link_options(${target} PUBLIC -fsanitize=${SPRINGTOWER_SANITIZE})

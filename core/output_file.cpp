@@ -13,6 +13,7 @@
 #include <sys/stat.h>
 #include <system_error>
 #include <unistd.h>
+#include <utility>
 
 namespace springtower {
 namespace {
@@ -20,15 +21,18 @@ namespace {
 constexpr std::chrono::seconds kFlushEvery{1};
 
 // Opens a file for its lock, which only one process holds; -1 where another one does, or the file cannot be opened or locked
-// (errno says why). Its content stays as it is.
+// (errno says why). Its content stays as it is; an empty file that cannot be locked at all, as on some network drives, is
+// removed: nobody would write it or take it away.
 int lockedFile(const std::string& name) {
   while (true) {
     const int file = open(name.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0666);
     if (file < 0) return -1;
     struct stat opened {};
     struct stat named {};
-    if (flock(file, LOCK_EX | LOCK_NB) != 0 || fstat(file, &opened) != 0 || !S_ISREG(opened.st_mode)) {
+    const bool isRegular = fstat(file, &opened) == 0 && S_ISREG(opened.st_mode);
+    if (!isRegular || flock(file, LOCK_EX | LOCK_NB) != 0) {
       const int why = errno;
+      if (isRegular && why != EWOULDBLOCK && opened.st_size == 0) unlink(name.c_str());
       close(file);
       errno = why;
       return -1;
@@ -104,9 +108,16 @@ void OutputFile::commit() {
   stream_.close();
   if (stream_.fail()) fail("writing failed; is the disk full?");
   if (partial_.empty()) return;
-  if (std::rename(partial_.c_str(), path_.c_str()) != 0) fail(std::strerror(errno));
-  partial_.clear();
-  unlock();
+  if (std::rename(partial_.c_str(), path_.c_str()) == 0) {
+    partial_.clear();
+    unlock();
+    return;
+  }
+  const std::string why = std::strerror(errno);
+  const std::string kept = std::exchange(partial_, {});  // the only whole copy: the destructor has to leave it
+  std::error_code error;
+  if (!std::filesystem::exists(kept, error)) fail(why);
+  fail(fmt::format("{}; what was written is in {}", why, inQuotes(kept)));
 }
 
 void OutputFile::fail(const std::string& what) const {

@@ -38,8 +38,8 @@ class OutputFile {
   /// name.
   [[nodiscard]] const std::string& writtenPath() const { return partial_.empty() ? path_ : partial_; }
 
-  /// Writes what is left and gives the file its name. Throws InputError naming the file when the disk is full or the name is
-  /// gone.
+  /// Writes what is left and gives the file its name. Throws InputError naming the file when the disk is full, or when it cannot
+  /// get its name: what was written then stays in NAME.partial, which the message names.
   void commit();
 
  private:

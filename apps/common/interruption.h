@@ -3,7 +3,8 @@
 namespace springtower {
 
 /// From here on SIGINT and SIGTERM are noted instead of ending the program, which looks at `interrupted` at every frame, line or
-/// case, keeps what is done, and ends with `interruptionExitCode`. A second signal ends it at once with that code. A signal that
+/// case, keeps what is done, and ends with `interruptionExitCode`. A second signal ends it at once with that code; it is also
+/// what ends a program that waits for the other end of a named pipe, but for the pipe of a list (line_reader.h). A signal that
 /// the program was started to ignore stays ignored (as nohup and shells do for what runs in the background).
 void noteInterruption();
 

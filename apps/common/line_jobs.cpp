@@ -6,6 +6,7 @@
 #include "apps/common/progress.h"
 #include "core/error.h"
 
+#include <atomic>
 #include <cstdio>
 #include <exception>
 #include <fmt/format.h>
@@ -15,38 +16,30 @@
 #include <oneapi/tbb/partitioner.h>
 #include <oneapi/tbb/task_arena.h>
 #include <optional>
+#include <utility>
 
 namespace springtower {
 namespace {
 
-// The list under way. Its own lock guards reading and parsing, and another one what is done.
+// The list under way. One lock guards reading and parsing, held while the input is waited for, and another one what came of the
+// lines, so that a line is printed or reported meanwhile.
 class LineWork {
  public:
   LineWork(LineReader& input, bool keepGoing, const LineParser& parse) : input_(input), keepGoing_(keepGoing), parse_(parse) {}
 
-  // Takes lines and does them until there are none left.
+  // Takes lines and does them until there are none left. What is thrown here ends the whole list.
   void help() {
-    while (const std::optional<Task> task = take()) {
-      std::string text;
-      try {
-        // Isolated, so that a thread waiting inside one scene does not start another on top of it.
-        tbb::this_task_arena::isolate([&] { text = task->job(); });
-      } catch (const InputError&) {
-        refuse(task->place);
-        continue;
-      } catch (const Interrupted&) {
-        const std::scoped_lock lock(takeMutex_);
-        stopped_ = counts_.interrupted = true;
-        return;
-      }
-      const std::scoped_lock lock(doneMutex_);
-      done_[task->place] = std::move(text);
-      print();
+    try {
+      while (const std::optional<Task> task = take()) work(*task);
+    } catch (...) {
+      stopped_ = true;
+      throw;
     }
   }
 
   LineCounts finish() {
     if (complaint_) std::rethrow_exception(complaint_);
+    counts_.lines = lines_;
     return counts_;
   }
 
@@ -60,34 +53,52 @@ class LineWork {
     const std::scoped_lock lock(takeMutex_);
     std::string text;
     while (!stopped_) {
-      if (interrupted()) counts_.interrupted = true;
-      if (counts_.interrupted || !input_.next(text)) {
-        counts_.interrupted = counts_.interrupted || interrupted();
+      if (interrupted() || !input_.next(text, [&] { return stopped_.load(); })) {
+        if (interrupted()) noteInterrupted();
         stopped_ = true;
         break;
       }
       ++number_;
-      const std::size_t place = counts_.lines;
+      const std::size_t place = lines_;
       try {
         LineJob job = parse_(text, number_, fmt::format("{}: line {}", input_.source(), number_));
         if (!job) continue;
-        ++counts_.lines;
+        ++lines_;
         return Task{place, std::move(job)};
       } catch (const InputError&) {
-        ++counts_.lines;
-        refuseLocked(place);
+        ++lines_;
+        refuse(place);
       }
     }
     return std::nullopt;
   }
 
-  void refuse(std::size_t place) {
-    const std::scoped_lock lock(takeMutex_);
-    refuseLocked(place);
+  void work(const Task& task) {
+    std::string text;
+    try {
+      // Isolated, so that a thread waiting inside one scene does not start another on top of it.
+      tbb::this_task_arena::isolate([&] { text = task.job(); });
+    } catch (const InputError&) {
+      refuse(task.place);
+      return;
+    } catch (const Interrupted&) {
+      noteInterrupted();
+      stopped_ = true;
+      return;
+    }
+    const std::scoped_lock lock(doneMutex_);
+    done_[task.place] = std::move(text);
+    print();
+  }
+
+  void noteInterrupted() {
+    const std::scoped_lock lock(doneMutex_);
+    counts_.interrupted = true;
   }
 
   // Called in the handler of an InputError. Of several bad lines the first one is what ends the work; those before it are done.
-  void refuseLocked(std::size_t place) {
+  void refuse(std::size_t place) {
+    const std::scoped_lock lock(doneMutex_);
     ++counts_.bad;
     if (keepGoing_) {
       try {
@@ -95,7 +106,6 @@ class LineWork {
       } catch (const InputError& error) {
         complain("springtower", error.what());
       }
-      const std::scoped_lock lock(doneMutex_);
       done_[place].clear();
       print();
       return;
@@ -121,11 +131,12 @@ class LineWork {
   const LineParser& parse_;
   std::mutex takeMutex_;
   std::size_t number_ = 0;
-  bool stopped_ = false;
-  LineCounts counts_;
+  std::size_t lines_ = 0;             // that are no blank ones
+  std::atomic<bool> stopped_{false};  // no more lines are taken
+  std::mutex doneMutex_;              // may be locked while the other one is held, not the other way round
+  LineCounts counts_;                 // but the lines
   std::exception_ptr complaint_;
   std::size_t complaintAt_ = 0;
-  std::mutex doneMutex_;
   std::map<std::size_t, std::string> done_;  // by place, not printed yet
   std::size_t printed_ = 0;
   Progress progress_{0.0, "lines"};

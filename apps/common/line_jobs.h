@@ -24,10 +24,10 @@ struct LineCounts {
 };
 
 /// Works off the lines of an input on `threads` threads, in the order in which they come, and prints each text on standard output
-/// as soon as it and all before it are done. So what is printed is at any time the begin of what will have been printed in the
-/// end. A bad line ends the work with its InputError, when those before it are done and printed; with `keepGoing` it is reported
-/// on standard error and left out. A signal ends the work: what then is under way is not printed. Throws InputError where
-/// standard output takes no more.
+/// as soon as it and all before it are done. So what is printed is at any time the beginning of what will have been printed in
+/// the end. A bad line ends the work with its InputError, when those before it are done and printed; with `keepGoing` it is
+/// reported on standard error and left out. A signal ends the work: what then is under way is not printed. Throws InputError
+/// where standard output takes no more. Anything else that a job or the parser throws ends the work at once and is thrown on.
 LineCounts workOffLines(LineReader& input, int threads, bool keepGoing, const LineParser& parse);
 
 /// The exit code of a command that has worked off a list, `otherwise` where nothing came between: that of a signal, or that of

@@ -14,13 +14,15 @@
 namespace springtower {
 namespace {
 
-constexpr int kLookUp_ms = 100;  // the signal may have come to another thread, which interrupts no wait here
+constexpr int kLookUp_ms = 100;  // the signal may have come to another thread, which does not interrupt poll here
 constexpr std::size_t kChunk = 1U << 16U;
 
 }  // namespace
 
 LineReader::LineReader(const std::string& path) : source_(path == "-" ? "standard input" : onOneLine(path)) {
-  file_ = path == "-" ? fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, 0) : open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  // A named pipe that nobody writes yet is opened all the same and waited for in `fill`, where a signal is seen: poll finds its
+  // end only once somebody has written it.
+  file_ = path == "-" ? fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, 0) : open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (file_ < 0) throw InputError(fmt::format("{}: cannot be read", source_));
 }
 
@@ -28,7 +30,7 @@ LineReader::~LineReader() {
   close(file_);
 }
 
-bool LineReader::next(std::string& line) {
+bool LineReader::next(std::string& line, const std::function<bool()>& stop) {
   ++number_;
   std::size_t searched = begin_;
   std::size_t end = buffer_.find('\n', searched);
@@ -40,20 +42,20 @@ bool LineReader::next(std::string& line) {
     buffer_.erase(0, begin_);
     begin_ = 0;
     searched = buffer_.size();
-    if (!fill()) break;
+    if (!fill(stop)) break;
     end = buffer_.find('\n', searched);
   }
-  if (!ended_ && end == std::string::npos) return false;  // interrupted
+  if (!ended_ && end == std::string::npos) return false;  // interrupted or stopped
   if (end == std::string::npos && begin_ == buffer_.size()) return false;
   line = buffer_.substr(begin_, end - begin_);
   begin_ = end == std::string::npos ? buffer_.size() : end + 1;
   return true;
 }
 
-// Appends what there is. Returns false at the end of the input, and when a signal has come.
-bool LineReader::fill() {
+// Appends what there is. Returns false at the end of the input, when a signal has come, and when `stop` says so.
+bool LineReader::fill(const std::function<bool()>& stop) {
   while (!ended_) {
-    if (interrupted()) return false;
+    if (interrupted() || stop()) return false;
     pollfd waiting{file_, POLLIN, 0};
     const int ready = poll(&waiting, 1, kLookUp_ms);
     if (ready == 0 || (ready < 0 && errno == EINTR)) continue;  // to read now would be to wait

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <string>
 
 namespace springtower {
@@ -18,14 +19,14 @@ class LineReader {
   /// How messages name the input: the path, or "standard input".
   [[nodiscard]] const std::string& source() const { return source_; }
 
-  /// The next line without its end. Returns false at the end of the input, and when a signal has come while it waited for more
-  /// (interruption.h). Throws InputError when reading fails, and for a line of more than kMaxLine bytes.
-  bool next(std::string& line);
+  /// The next line without its end. Returns false at the end of the input, and when a signal has come (interruption.h) or `stop`
+  /// has become true while it waited for more. Throws InputError when reading fails, and for a line of more than kMaxLine bytes.
+  bool next(std::string& line, const std::function<bool()>& stop);
 
   static constexpr std::size_t kMaxLine = std::size_t{64} << 20U;  ///< bytes: 64 MB, the longest line that is kept in memory
 
  private:
-  bool fill();
+  bool fill(const std::function<bool()>& stop);
 
   std::string source_;
   int file_ = -1;

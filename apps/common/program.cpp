@@ -40,8 +40,7 @@ int guarded(std::string_view program, const std::function<int()>& work) {
     // A full disk or a closed pipe behind standard output must not pass unseen.
     return flushed() ? code : end("standard output: writing failed", kBadInput);
   } catch (const Interrupted&) {
-    flushed();
-    return interruptionExitCode();
+    return flushed() ? interruptionExitCode() : end("standard output: writing failed", kBadInput);
   } catch (const InputError& error) {
     return end(error.what(), kBadInput);
   } catch (const DivergenceError& error) {

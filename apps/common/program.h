@@ -16,8 +16,10 @@ inline constexpr int kProgramError = 70;
 void complain(std::string_view program, const std::string& message);
 
 /// Does the work of a program and returns its exit code: what the work returned, or that of what it threw, after a complaint.
-/// From here on signals are noted (interruption.h), and a closed pipe is an error of writing. Output that standard output or
-/// standard error does not take, as it is closed or its disk full, ends in 2. Throws nothing.
+/// From here on signals are noted (interruption.h), and a closed pipe is an error of writing. Output that standard
+/// output does not take, as it is closed or its disk full, ends in 2, whatever the work returned and after a signal as well; only
+/// what diverged (3) and an error of the program itself (70) keep their codes. A complaint that standard error does not take is
+/// lost and changes no code; of other text for it the error ends in 2 where the work throws it. Throws nothing.
 int exitCodeOf(std::string_view program, const std::function<int()>& work);
 
 }  // namespace springtower

@@ -1,5 +1,6 @@
 #include "apps/common/provenance.h"
 
+#include "core/error.h"
 #include "core/version.h"
 
 #include <chrono>
@@ -63,6 +64,15 @@ bool sameOrigin(const Provenance& a, const Provenance& b) {
     return std::tie(p.version, p.commit, p.compiler, p.flags, p.buildType, p.processor);
   };
   return origin(a) == origin(b);
+}
+
+void checkCommitted(const Provenance& then, const Provenance& now, const std::string& where) {
+  const bool isDirty = now.commit.ends_with("-dirty");
+  if (!isDirty && !then.commit.ends_with("-dirty")) return;
+  throw InputError(
+      fmt::format("{}: found results to go on with, but {} has uncommitted changes, so that its commit does not say whether they "
+                  "are of the same sources; allowed are builds of a commit, or --no-resume",
+                  where, isDirty ? "this build" : "the build that measured them"));
 }
 
 std::string footnote(const Provenance& provenance) {

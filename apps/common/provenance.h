@@ -8,7 +8,7 @@ namespace springtower {
 /// What a timing has to be quoted with.
 struct Provenance {
   std::string version;
-  std::string commit;
+  std::string commit;  ///< as in core/version.h, with -dirty after it where there were uncommitted changes
   std::string compiler;
   std::string flags;
   std::string buildType;
@@ -26,6 +26,10 @@ Provenance provenanceFromJson(const nlohmann::ordered_json& json);
 
 /// Whether results of both may stand beside each other: the same version, commit, compiler, flags, build type and processor.
 bool sameOrigin(const Provenance& a, const Provenance& b);
+
+/// Whether an earlier run may be gone on with as far as its build is concerned: throws InputError with the reason when one of
+/// both builds has uncommitted changes, of which its commit says nothing. `where` begins the message.
+void checkCommitted(const Provenance& then, const Provenance& now, const std::string& where);
 
 /// One line for the foot of a chart.
 std::string footnote(const Provenance& provenance);

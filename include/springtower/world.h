@@ -156,7 +156,7 @@ class ThreadLimit {
 /// What a hash or a time has to be quoted with.
 struct BuildInfo {
   std::string_view version;    ///< of the library
-  std::string_view commit;     ///< the first twelve digits; "unknown" outside a git clone
+  std::string_view commit;     ///< the first twelve digits, then -dirty if changed; "unknown" outside a git clone
   std::string_view compiler;   ///< name and version
   std::string_view flags;      ///< that it was compiled with
   std::string_view buildType;  ///< as CMake names it

@@ -73,6 +73,23 @@ TEST(OutputFile, TakesThePlaceOfWhatAKilledProcessLeft) {
   EXPECT_EQ(filesIn(scratch), 1);
 }
 
+// A folder took its name meanwhile.
+TEST(OutputFile, StaysWhereItCannotGetItsName) {
+  const ScratchFolder scratch;
+  {
+    OutputFile file(scratch.file("a"), "--out");
+    file.stream() << "hours of work";
+    std::filesystem::create_directory(scratch.file("a"));
+    try {
+      file.commit();
+      ADD_FAILURE() << "it was given the name of a folder";
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.what(), ::testing::HasSubstr("what was written is in '" + scratch.file("a.partial") + "'"));
+    }
+  }
+  EXPECT_EQ(contentOf(scratch.file("a.partial")), "hours of work");
+}
+
 TEST(OutputFile, CanBeCut) {
   const ScratchFolder scratch;
   OutputFile file(scratch.file("a"), "--out");

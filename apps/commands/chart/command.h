@@ -33,8 +33,8 @@ CLI::App* defineChart(CLI::App& program, ChartCommand& command);
 
 /// Measures every case, scene by scene, and writes chart.json, chart.csv, the charts and index.md into the folder of `--out`.
 /// What an earlier run with the same build and limits has left there is not measured again, what another has left is refused
-/// unless `--no-resume`. With `--maps` stability maps instead: maps.csv, the maps and maps.md. Returns the exit code 0. Throws
-/// InputError.
+/// unless `--no-resume`, and so is what a build with uncommitted changes has left, or is to go on with. With `--maps` stability
+/// maps instead: maps.csv, the maps and maps.md. Returns the exit code 0. Throws InputError.
 int executeChart(const ChartCommand& command);
 
 }  // namespace springtower

@@ -122,6 +122,7 @@ std::vector<ChartResult> readChartJson(const std::string& path, const Chart& now
   try {
     const Json json = Json::parse(stream);
     const Provenance then = provenanceFromJson(json);
+    checkCommitted(then, now.provenance, "chart.json");
     const bool same = sameOrigin(then, now.provenance) && json.at("limits") == limitsJson(now.limits);
     if (!same)
       throw InputError("found figures of another build, machine or limits, allowed are those of this run, or --no-resume");

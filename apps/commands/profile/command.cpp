@@ -206,29 +206,29 @@ void writeFolder(const std::string& folder, const Profile& profile, bool measure
     writeOutputFile(folder, chart.first + ".svg", [&](std::ostream& stream) { writeSvg(stream, chart.second); });
     writeOutputFile(folder, chart.first + ".png", [&](std::ostream& stream) { writePng(stream, chart.second); });
   }
-  std::error_code ignored;
-  if (measured) std::filesystem::remove(std::filesystem::path(folder) / kUnfinished, ignored);
   fmt::print("\n{} charts (SVG and PNG), profile.csv, culling.csv{} in {}\n", charts.size(), measured ? ", profile.json" : "",
              onOneLine(folder));
 }
 
-// The results that a run that was broken off has left in the folder. A trace is of one run.
+// The results that a run that was broken off has left in the folder.
 std::vector<ProfileResult> keptResults(const ProfileCommand& command, const Profile& now) {
-  if (!command.out || command.fresh || command.trace) return {};
+  if (!command.out || command.noResume) return {};
   const std::filesystem::path path = std::filesystem::path(*command.out) / kUnfinished;
   if (!std::filesystem::exists(path)) return {};
   Profile then = readProfileJson(path.string());
+  checkCommitted(then.provenance, now.provenance, onOneLine(path.string()));
   if (!sameOrigin(then.provenance, now.provenance) || !(then.limits == now.limits)) {
     throw InputError(
-        fmt::format("{}: found figures of another build, machine or limits, allowed are those of this run, or --fresh",
+        fmt::format("{}: found figures of another build, machine or limits, allowed are those of this run, or --no-resume",
                     onOneLine(path.string())));
   }
   return std::move(then.results);
 }
 
 // Measures scene by scene, and puts into the profile what is known of the cases after each. A scene is taken over from a run that
-// was broken off only as a whole, as its cases were timed by turns.
-void measureAll(const ProfileCommand& command, const std::vector<ProfileCase>& cases, Profile& profile,
+// was broken off only as a whole, as its cases were timed by turns, and not into a trace, which is of one run. Returns whether
+// such a run has left cases that are none of these.
+bool measureAll(const ProfileCommand& command, const std::vector<ProfileCase>& cases, Profile& profile,
                 std::vector<TracedCase>* traced) {
   const auto begun = std::chrono::steady_clock::now();
   Profile kept{profile.provenance, profile.limits, keptResults(command, profile)};
@@ -240,7 +240,8 @@ void measureAll(const ProfileCommand& command, const std::vector<ProfileCase>& c
   for (auto first = cases.begin(); first != cases.end();) {
     const auto last = std::find_if(first, cases.end(), [&](const ProfileCase& what) { return what.scene != first->scene; });
     const std::vector<ProfileCase> group(first, last);
-    if (!std::all_of(first, last, [&](const ProfileCase& what) { return known(what) != kept.results.end(); })) {
+    if (traced != nullptr ||
+        !std::all_of(first, last, [&](const ProfileCase& what) { return known(what) != kept.results.end(); })) {
       const auto before = static_cast<int>(first - cases.begin()) * stepsOfCase;
       const std::vector<ProfileResult> results =
           measureProfile(group, profile.limits, begun, traced, [&](int done, int, const ProfileCase& next) {
@@ -254,6 +255,8 @@ void measureAll(const ProfileCommand& command, const std::vector<ProfileCase>& c
     for (const ProfileCase& what : group) profile.results.push_back(*known(what));
     first = last;
   }
+  return std::any_of(kept.results.begin(), kept.results.end(),
+                     [&](const ProfileResult& old) { return std::find(cases.begin(), cases.end(), old.what) == cases.end(); });
 }
 
 }  // namespace
@@ -279,8 +282,9 @@ CLI::App* defineProfile(CLI::App& program, ProfileCommand& command) {
   addNumber(*profile, "--sample-limit", command.sample_s, kLimitRange, "S",
             "wall time after which a sample ends, with fewer frames (default 1)");
   profile->add_flag("--quick", command.quick, "fewer cases, shorter samples: seconds instead of minutes");
-  profile->add_flag("--fresh", command.fresh,
-                    "times everything again, also what a run that was broken off has left in the folder");
+  CLI::Option* noResume = profile->add_flag("--no-resume", command.noResume,
+                                            "times everything again, also what a run that was broken off has left in the folder");
+  addFormerFlag(*profile, "--fresh", noResume, command.noResume);
   profile->add_option("--out", command.out, "writes CSV, JSON and the charts into this folder")->type_name("DIR");
   profile->add_option("--trace", command.trace, "writes the frames of the last samples for Perfetto or chrome://tracing")
       ->type_name("FILE.json");
@@ -310,8 +314,9 @@ int executeProfile(const ProfileCommand& command) {
   profile.provenance = provenanceNow();
   profile.limits = limitsOf(command);
   std::vector<TracedCase> traced;
+  bool othersKept = false;
   try {
-    measureAll(command, cases, profile, traceFile ? &traced : nullptr);
+    othersKept = measureAll(command, cases, profile, traceFile ? &traced : nullptr);
   } catch (const Interrupted&) {
     if (!profile.results.empty()) printTable(profile);
     complain("springtower", fmt::format("interrupted; {} of {} cases are timed{}", profile.results.size(), cases.size(),
@@ -320,7 +325,12 @@ int executeProfile(const ProfileCommand& command) {
   }
   printTable(profile);
   printCulling(profile);
-  if (command.out) writeFolder(*command.out, profile, true);
+  if (command.out) {
+    writeFolder(*command.out, profile, true);
+    std::error_code ignored;
+    // Cases of a run of others stay for that.
+    if (!othersKept) std::filesystem::remove(std::filesystem::path(*command.out) / kUnfinished, ignored);
+  }
   if (traceFile) {
     writeTrace(traceFile->stream(), profile.provenance, traced);
     traceFile->commit();

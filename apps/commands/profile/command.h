@@ -29,7 +29,7 @@ struct ProfileCommand {
   std::optional<std::string> trace;
   std::optional<std::string> from;
   bool quick = false;
-  bool fresh = false;
+  bool noResume = false;
 };
 
 /// Adds the command to the program.
@@ -37,8 +37,10 @@ CLI::App* defineProfile(CLI::App& program, ProfileCommand& command);
 
 /// Times every case and prints a table; writes profile.json, profile.csv, culling.csv and the charts into the folder of `--out`
 /// and the trace into the file of `--trace`. Scenes that are done are kept in that folder, in profile.unfinished.json, until all
-/// are: a run that was broken off is gone on with, one of another build, machine or limits is refused unless `--fresh`. Returns
-/// the exit code 0. Throws InputError before anything is timed, and Interrupted when a signal has come.
+/// are: a run that was broken off is gone on with (but with `--trace` all is timed again, as a trace is of one run), one of
+/// another build, machine or limits, or of a build with uncommitted changes, is refused unless `--no-resume`. Cases that are kept
+/// there and are none of this run's stay. Returns the exit code 0. Throws InputError before anything is timed, and Interrupted
+/// when a signal has come.
 int executeProfile(const ProfileCommand& command);
 
 }  // namespace springtower

@@ -51,13 +51,22 @@ Gravity withOptions(Gravity gravity, const RunCommand& command) {
   return gravity;
 }
 
-// Two outputs of one name would overwrite each other.
+// Two outputs of one name would overwrite each other, and so would one and what another is until it is whole.
 void checkNames(std::initializer_list<std::pair<std::string_view, const std::optional<std::string>*>> files) {
   for (const auto* a = files.begin(); a != files.end(); ++a) {
     for (const auto* b = files.begin(); b != a; ++b) {
-      if (!*a->second || *a->second != *b->second) continue;
+      if (!*a->second || !*b->second) continue;
+      const std::string& nameOfA = **a->second;
+      const std::string& nameOfB = **b->second;
+      if (nameOfA == nameOfB) {
+        throw InputError(
+            fmt::format("{} and {}: found {} for both, allowed are two names", b->first, a->first, inQuotes(nameOfA)));
+      }
+      if (nameOfA != nameOfB + ".partial" && nameOfB != nameOfA + ".partial") continue;
       throw InputError(
-          fmt::format("{} and {}: found {} for both, allowed are two names", b->first, a->first, inQuotes(**a->second)));
+          fmt::format("{} and {}: found {} and {}, allowed are two names of which none is the other with .partial, "
+                      "where that file is written until it is whole",
+                      b->first, a->first, inQuotes(nameOfB), inQuotes(nameOfA)));
     }
   }
 }

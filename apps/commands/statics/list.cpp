@@ -89,8 +89,13 @@ std::pair<VerdictLine, std::optional<Sequence>> readLine(std::string text, std::
   json.erase("stands_after");
   text = jsonText(json);
   VerdictLine line = readVerdictLine(text, number, where, ids);
-  Sequence sequence = readSequence(remove, after, line.scene, where);
-  return {std::move(line), std::move(sequence)};
+  try {
+    Sequence sequence = readSequence(remove, after, line.scene, where);
+    return {std::move(line), std::move(sequence)};
+  } catch (const InputError&) {
+    ids.erase(line.id);  // a bad line is left out with its id
+    throw;
+  }
 }
 
 Answer solve(const VerdictLine& line, const std::optional<Sequence>& sequence) {

@@ -47,8 +47,8 @@ std::vector<ValidationPart> partsOf(const ValidateCommand& command) {
   return parts;
 }
 
-void print(const ValidationSection& section) {
-  fmt::print("{} ({:.1f} s)\n", section.title, section.wall_s);
+void print(const ValidationSection& section, bool isKept) {
+  fmt::print("{} ({:.1f} s){}\n", section.title, section.wall_s, isKept ? " (kept)" : "");
   for (const Claim& claim : section.claims) {
     fmt::print("  {:<5}{}: {} (allowed: {})\n", resultOf(claim), claim.what, claim.measured, claim.tolerance);
   }
@@ -112,7 +112,9 @@ CLI::App* defineValidate(CLI::App& program, ValidateCommand& command) {
   validate->add_option("--oracle", command.oracle, "folder of the reference sets (default tests/data/oracle)")->type_name("DIR");
   validate->add_option("--scenes", command.scenes, "folder of the scene files (default scenes)")->type_name("DIR");
   validate->add_flag("--check", command.check, "exit code 1 if a claim fails");
-  validate->add_flag("--fresh", command.fresh, "measures all parts again, also those that a run that was broken off has left");
+  CLI::Option* noResume = validate->add_flag("--no-resume", command.noResume,
+                                             "measures all parts again, also those that a run that was broken off has left");
+  addFormerFlag(*validate, "--fresh", noResume, command.noResume);
   addWholeNumber(*validate, "--threads", command.threads, kValidateThreads, "threads to use (default: one for each processor)");
   wrapDescriptions(*validate);
   validate->footer(std::string(kValidateExamples));
@@ -130,19 +132,20 @@ int executeValidate(const ValidateCommand& command) {
   const Provenance provenance = provenanceNow();
   const std::string unfinished = (std::filesystem::path(command.out) / kUnfinished).string();
   std::vector<KeptPart> kept;
-  if (!command.fresh) kept = readKeptParts(unfinished, plan, provenance);
+  if (!command.noResume) kept = readKeptParts(unfinished, plan, provenance);
   std::vector<ValidationSection> sections;
   try {
     for (const ValidationPart& part : parts) {
       const ValidationSection* done = keptSection(kept, part.name, command.out);
-      if (done == nullptr) {
+      const bool isKept = done != nullptr;
+      if (!isKept) {
         std::erase_if(kept, [&](const KeptPart& old) { return old.name == part.name; });
         kept.push_back({std::string(part.name), measured(part, plan, provenance, command.out)});
         writeOutputFile(command.out, kUnfinished, [&](std::ostream& stream) { writeKeptParts(stream, kept, plan, provenance); });
         done = &kept.back().section;
       }
       sections.push_back(*done);
-      print(sections.back());
+      print(sections.back(), isKept);
     }
   } catch (const Interrupted&) {
     complain("springtower",

@@ -84,19 +84,21 @@ std::vector<KeptPart> readKeptParts(const std::string& path, const ValidationPla
   if (!stream) return {};
   try {
     const Json json = Json::parse(stream);
-    if (!sameOrigin(provenanceFromJson(json), provenance) || json.at("long_form") != plan.longForm ||
-        json.at("inputs") != hashOfInputs(plan)) {
+    const Provenance then = provenanceFromJson(json);
+    checkCommitted(then, provenance, onOneLine(path));
+    if (!sameOrigin(then, provenance) || json.at("long_form") != plan.longForm || json.at("inputs") != hashOfInputs(plan)) {
       throw InputError(
           fmt::format("{}: found results of another build, machine, form or other reference sets, allowed are those of this run, "
-                      "or --fresh",
+                      "or --no-resume",
                       onOneLine(path)));
     }
     std::vector<KeptPart> parts;
     for (const Json& part : json.at("parts")) parts.push_back({part.at("part").get<std::string>(), sectionFrom(part)});
     return parts;
   } catch (const Json::exception& error) {
-    throw InputError(fmt::format("{}: not what a broken-off validation of this version leaves, allowed is that, or --fresh: {}",
-                                 onOneLine(path), onOneLine(error.what())));
+    throw InputError(
+        fmt::format("{}: not what a broken-off validation of this version leaves, allowed is that, or --no-resume: {}",
+                    onOneLine(path), onOneLine(error.what())));
   }
 }
 

@@ -22,7 +22,7 @@ void writeKeptParts(std::ostream& stream, std::span<const KeptPart> parts, const
                     const Provenance& provenance);
 
 /// Reads such a file; nothing where there is none. Throws InputError for a file that is none of these, or of another build,
-/// machine, form or input, so that it cannot be gone on with.
+/// machine, form or input or with uncommitted changes, so that it cannot be gone on with.
 std::vector<KeptPart> readKeptParts(const std::string& path, const ValidationPlan& plan, const Provenance& provenance);
 
 }  // namespace springtower

@@ -14,6 +14,7 @@
 #include <CLI/CLI.hpp>
 #include <charconv>
 #include <chrono>
+#include <exception>
 #include <fmt/format.h>
 #include <numbers>
 #include <oneapi/tbb/global_control.h>
@@ -191,6 +192,36 @@ int outcomeOf(const Viewer& viewer, bool headless) {
   return 0;
 }
 
+// Does several things one after the other, each whatever became of those before. What the first of them threw is thrown at the
+// end.
+class Attempts {
+ public:
+  template <class Action>
+  void attempt(const Action& action) {
+    try {
+      action();
+    } catch (...) {
+      if (!failure_) failure_ = std::current_exception();
+    }
+  }
+  void finish() const {
+    if (failure_) std::rethrow_exception(failure_);
+  }
+
+ private:
+  std::exception_ptr failure_;
+};
+
+void play(const Command& command, Viewer& viewer, const ViewerFiles& files, const Viewport& size,
+          std::chrono::steady_clock::time_point started) {
+  if (!command.headless) return runWindow(viewer, files, size, started);
+  const std::size_t recorded = viewer.replay ? viewer.replay->recording.frames.size() : 60;
+  runHeadless(viewer, files, size,
+              {static_cast<int>(command.frames.value_or(static_cast<std::int64_t>(recorded))),
+               static_cast<int>(command.every.value_or(1)), command.png},
+              started);
+}
+
 int runViewer(const Command& command, std::chrono::steady_clock::time_point started) {
   const Viewport size = sizeOf(command);
   if (!command.headless && (command.frames || command.png || command.every)) {
@@ -206,25 +237,25 @@ int runViewer(const Command& command, std::chrono::steady_clock::time_point star
   if (record) recorder.emplace(*record);
   ViewerFiles files = command.files;
   files.recorder = recorder ? &*recorder : nullptr;
-  if (command.headless) {
-    const std::size_t recorded = viewer.replay ? viewer.replay->recording.frames.size() : 60;
-    runHeadless(viewer, files, size,
-                {static_cast<int>(command.frames.value_or(static_cast<std::int64_t>(recorded))),
-                 static_cast<int>(command.every.value_or(1)), command.png},
-                started);
-  } else {
-    runWindow(viewer, files, size, started);
-  }
+  Attempts attempts;
+  attempts.attempt([&] { play(command, viewer, files, size, started); });
+  // A picture or video that cannot be written does not cost the others. Where it failed before the first frame, older files stay.
+  if (viewer.session.log.empty()) attempts.finish();
   if (report) {
-    writeViewerReport(report->stream(), viewer);
-    report->commit();
+    attempts.attempt([&] {
+      writeViewerReport(report->stream(), viewer);
+      report->commit();
+    });
   }
   const double frame_s = viewer.session.scene.settings.frame_s;
   if (poses) {
-    PoseWriter(poses->stream(), frame_s, frame_s).frame(viewer.session.simulation);
-    poses->commit();
+    attempts.attempt([&] {
+      PoseWriter(poses->stream(), frame_s, frame_s).frame(viewer.session.simulation);
+      poses->commit();
+    });
   }
-  if (recorder) recorder->finish(viewer.choice, viewer.session);
+  if (recorder) attempts.attempt([&] { recorder->finish(viewer.choice, viewer.session); });
+  attempts.finish();
   return outcomeOf(viewer, command.headless);
 }
 

@@ -97,7 +97,9 @@ INSTANTIATE_TEST_SUITE_P(
         BadArguments{"FolderAsReport", {"tower:3", "--report", "/"}, "folder"},
         BadArguments{"NamelessReport", {"tower:3", "--report", ""}, "--report"},
         BadArguments{"PictureOfAnotherKind", {"tower:3", "--picture", "p.jpg"}, ".png"},
-        BadArguments{"OneNameForTwoFiles", {"tower:3", "--report", "a.png", "--picture", "a.png"}, "two names"}),
+        BadArguments{"OneNameForTwoFiles", {"tower:3", "--report", "a.png", "--picture", "a.png"}, "two names"},
+        BadArguments{"NameOfAPartialFile", {"tower:3", "--report", "a", "--poses", "a.partial"}, "other with .partial"},
+        BadArguments{"PartialFileOfAName", {"tower:3", "--report", "a.partial", "--poses", "a"}, "other with .partial"}),
     [](const auto& tested) { return tested.param.name; });
 
 TEST(Program, WithoutACommandNamesTheCommands) {

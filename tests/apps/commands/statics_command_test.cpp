@@ -180,6 +180,14 @@ TEST(StaticsList, NamesTheLineThatIsBroken) {
       HasSubstr("line 2: in 'remove': found nesting deeper than 32 levels"));
 }
 
+TEST(StaticsList, ABadLineLeavesItsIdToOthers) {
+  const ProgramResult result = statics({"-", "--keep-going"},
+                                       "{\"id\":\"a\",\"config\":\"(010)\",\"remove\":7}\n"
+                                       "{\"id\":\"a\",\"config\":\"(010)\"}\n");
+  EXPECT_THAT(linesOf(result.output), SizeIs(1)) << result.error;
+  EXPECT_THAT(result.error, HasSubstr("1 of 2 lines was bad"));
+}
+
 // The oracle was made by a program of its own. All its clear verdicts, and its tilts: of towers that stand within 0.1 degrees.
 class StaticsOracleTest : public ::testing::TestWithParam<std::string> {};
 

@@ -197,6 +197,41 @@ TEST_P(ListOf, TowersGoesOnAfterBadLinesWhenToldTo) {
   }
 }
 
+// The bad line is found by its job, while another thread waits for a line that does not come.
+TEST(Interruption, ABadLineIsReportedWhileTheNextIsWaitedFor) {
+  const ScratchFolder scratch;
+  const Feed feed(scratch);
+  RunningProgram list(
+      "springtower",
+      {"verdict", "-", "--threads", "2", "--method", "semi-implicit-euler", "--substeps", "1", "--tolerance", "1e-5"},
+      {.input = feed.path()});
+  feed.line("{\"id\":\"a\",\"config\":\"(111)\"}");
+  const ProgramResult result = list.wait();
+  EXPECT_EQ(result.exitCode, 2) << result.error;
+  EXPECT_THAT(result.error, HasSubstr("standard input: line 1"));
+}
+
+TEST(Interruption, OneSignalEndsAListThatNobodyWrites) {
+  const ScratchFolder scratch;
+  ASSERT_EQ(mkfifo(scratch.file("list.jsonl").c_str(), 0600), 0);
+  RunningProgram list("springtower", {"statics", scratch.file("list.jsonl")});
+  std::this_thread::sleep_for(300ms);
+  EXPECT_TRUE(list.isRunning()) << "it waits for who writes";
+  list.send(SIGINT);
+  EXPECT_EQ(list.wait().exitCode, 130);
+}
+
+TEST(Interruption, AListThatIsWrittenLateIsAnswered) {
+  const ScratchFolder scratch;
+  ASSERT_EQ(mkfifo(scratch.file("list.jsonl").c_str(), 0600), 0);
+  RunningProgram list("springtower", {"statics", scratch.file("list.jsonl")});
+  std::this_thread::sleep_for(300ms);
+  std::ofstream(scratch.file("list.jsonl")) << "{\"id\":\"a\",\"config\":\"(111)\"}\n";
+  const ProgramResult result = list.wait();
+  EXPECT_EQ(result.exitCode, 0) << result.error;
+  EXPECT_THAT(linesOf(result.output), SizeIs(1));
+}
+
 // 12 rows by fine explicit steps take seconds; the first line is done long before.
 TEST(Interruption, AVerdictUnderWayIsNotPrinted) {
   const ScratchFolder scratch;
@@ -210,7 +245,7 @@ TEST(Interruption, AVerdictUnderWayIsNotPrinted) {
   list.send(SIGTERM);
   const ProgramResult result = list.wait();
   EXPECT_EQ(result.exitCode, 143) << result.error;
-  EXPECT_THAT(linesOf(result.output), SizeIs(1)) << "the begin of the answers, without gaps";
+  EXPECT_THAT(linesOf(result.output), SizeIs(1)) << "the beginning of the answers, without gaps";
 }
 
 TEST(Interruption, ARecordingIsKeptAndCanBeReplayed) {

@@ -1,6 +1,8 @@
 // Commands that measure many cases go on where a signal has ended them, with what is of the same build, machine and options.
+#include "core/version.h"
 #include "tests/support/running_program.h"
 
+#include <algorithm>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
@@ -20,10 +22,18 @@ Json jsonOf(const std::string& path) {
 }
 
 // As if another build had written it.
-void forge(const std::string& path) {
+void forge(const std::string& path, const std::string& commit = "another") {
   Json json = jsonOf(path);
-  json["commit"] = "another";
+  json["commit"] = commit;
   std::ofstream(path) << json.dump();
+}
+
+// Whether a run went on where another one was broken off. One of a build with uncommitted changes has to refuse it.
+bool wentOn(const ProgramResult& again) {
+  const bool isDirty = kGitCommit.ends_with("-dirty");
+  EXPECT_EQ(again.exitCode, isDirty ? 2 : 0) << again.error;
+  EXPECT_THAT(again.error, HasSubstr(isDirty ? "this build has uncommitted changes" : ""));
+  return again.exitCode == 0;
 }
 
 // Runs a command until a file is there, and ends it then. Returns the exit code.
@@ -50,8 +60,7 @@ TEST(Resume, ProfileKeepsTheScenesThatAreDone) {
   ASSERT_THAT(then.at("cases"), SizeIs(2));
   EXPECT_FALSE(std::filesystem::exists(scratch.file("out/profile.json")));
 
-  const ProgramResult again = run(profile);
-  ASSERT_EQ(again.exitCode, 0) << again.error;
+  if (!wentOn(run(profile))) return;
   const Json now = jsonOf(scratch.file("out/profile.json"));
   ASSERT_THAT(now.at("cases"), SizeIs(4));
   for (std::size_t i = 0; i < 2; ++i) EXPECT_EQ(now.at("cases")[i], then.at("cases")[i]) << "not timed again";
@@ -62,7 +71,9 @@ TEST(Resume, ProfileKeepsTheScenesThatAreDone) {
   const ProgramResult stale = run(profile);
   EXPECT_EQ(stale.exitCode, 2);
   EXPECT_THAT(stale.error, HasSubstr("another build"));
-  EXPECT_THAT(stale.error, HasSubstr("--fresh"));
+  EXPECT_THAT(stale.error, HasSubstr("--no-resume"));
+  forge(kept, std::string(kGitCommit) + "-dirty");
+  EXPECT_THAT(run(profile).error, HasSubstr("the build that measured them has uncommitted changes"));
   std::ofstream(kept) << then.dump();
   EXPECT_EQ(run(profile, {"--samples", "1"}).exitCode, 2) << "other limits";
 }
@@ -89,7 +100,10 @@ TEST(Resume, ValidateKeepsThePartsThatAreDone) {
   EXPECT_EQ(run(validate, {"--long"}).exitCode, 2) << "the long form is another";
 
   const ProgramResult again = run(validate);
-  ASSERT_EQ(again.exitCode, 0) << again.error;
+  if (!wentOn(again)) return;
+  const std::vector<std::string> lines = linesOf(again.output);
+  EXPECT_EQ(std::count_if(lines.begin(), lines.end(), [](const std::string& line) { return line.ends_with(" s) (kept)"); }), 1)
+      << again.output;
   const Json sections = jsonOf(scratch.file("out/validation.json")).at("sections");
   ASSERT_THAT(sections, SizeIs(2));
   EXPECT_EQ(sections[0].at("wall_s"), then.at("parts")[0].at("wall_s")) << "not measured again";
@@ -105,23 +119,56 @@ TEST(Resume, ChartKeepsTheScenesThatAreDone) {
       "implicit", "--out",   scratch.file("out")};
   ASSERT_EQ(brokenOff(chart, scratch.file("out/chart.json"), SIGINT), 130);
   const Json then = jsonOf(scratch.file("out/chart.json"));
-  const ProgramResult again = run(chart);
-  ASSERT_EQ(again.exitCode, 0) << again.error;
+  if (!wentOn(run(chart))) return;
   const Json now = jsonOf(scratch.file("out/chart.json"));
   ASSERT_GT(now.at("cases").size(), then.at("cases").size());
   for (std::size_t i = 0; i < then.at("cases").size(); ++i) EXPECT_EQ(now.at("cases")[i], then.at("cases")[i]);
 }
 
-TEST(Resume, FreshBeginsAnew) {
+std::vector<std::string> shortProfile(const ScratchFolder& scratch, const std::string& rows) {
+  return {"profile", "--scenes", "rest", "--rows",   rows,  "--methods", "implicit",         "--samples",
+          "1",       "--frames", "2",    "--settle", "0.1", "--out",     scratch.file("out")};
+}
+
+TEST(Resume, NoResumeBeginsAnew) {
   const ScratchFolder scratch;
+  const std::string kept = scratch.file("out/profile.unfinished.json");
   std::filesystem::create_directories(scratch.file("out"));
-  const std::vector<std::string> profile = {"profile",   "--scenes", "rest",      "--rows", "1",
-                                            "--methods", "implicit", "--samples", "1",      "--frames",
-                                            "2",         "--settle", "0.1",       "--out",  scratch.file("out")};
-  std::ofstream(scratch.file("out/profile.unfinished.json")) << "{}";
-  EXPECT_EQ(run(profile).exitCode, 2);
-  EXPECT_EQ(run(profile, {"--fresh"}).exitCode, 0);
-  EXPECT_FALSE(std::filesystem::exists(scratch.file("out/profile.unfinished.json")));
+  const std::vector<std::string> profile = shortProfile(scratch, "1");
+  for (const char* flag : {"--no-resume", "--fresh"}) {
+    std::ofstream(kept) << "{}";
+    EXPECT_EQ(run(profile).exitCode, 2);
+    EXPECT_EQ(run(profile, {flag}).exitCode, 0);
+    EXPECT_FALSE(std::filesystem::exists(kept));
+  }
+  std::ofstream(scratch.file("out/validation.unfinished.json")) << "{}";
+  const std::vector<std::string> validate = {"validate",
+                                             "--only",
+                                             "pull",
+                                             "--oracle",
+                                             std::string(SPRINGTOWER_TEST_DATA_DIR) + "/oracle",
+                                             "--scenes",
+                                             std::string(SPRINGTOWER_SOURCE_DIR) + "/scenes",
+                                             "--out",
+                                             scratch.file("out")};
+  EXPECT_THAT(run(validate).error, HasSubstr("--no-resume"));
+}
+
+// What another run was broken off with is still there after a run of other cases, traced or not.
+TEST(Resume, ProfileLeavesTheCasesOfOtherRuns) {
+  const ScratchFolder scratch;
+  const std::string kept = scratch.file("out/profile.unfinished.json");
+  ASSERT_EQ(run(shortProfile(scratch, "1,2")).exitCode, 0);
+  const Json others = jsonOf(scratch.file("out/profile.json"));
+  std::ofstream(kept) << others.dump();
+  if (!wentOn(run(shortProfile(scratch, "3"), {"--trace", scratch.file("trace.json")}))) return;
+  ASSERT_THAT(jsonOf(kept).at("cases"), SizeIs(3));
+  ASSERT_EQ(run(shortProfile(scratch, "4")).exitCode, 0);
+  ASSERT_THAT(jsonOf(kept).at("cases"), SizeIs(4));
+  for (std::size_t i = 0; i < 2; ++i) EXPECT_EQ(jsonOf(kept).at("cases")[i], others.at("cases")[i]);
+  ASSERT_EQ(run(shortProfile(scratch, "1,2,3,4")).exitCode, 0);
+  EXPECT_FALSE(std::filesystem::exists(kept)) << "all of them are done";
+  EXPECT_EQ(jsonOf(scratch.file("out/profile.json")).at("cases")[0], others.at("cases")[0]) << "not timed again";
 }
 
 }  // namespace

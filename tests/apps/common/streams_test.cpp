@@ -1,6 +1,7 @@
 // Standard output and standard error that take nothing, and names of files that are no text.
 #include "tests/support/running_program.h"
 
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <gmock/gmock.h>
@@ -41,6 +42,18 @@ TEST(Streams, OutputThatNobodyGetsIsBadInput) {
       EXPECT_EQ(exitCodeOf("springtower", arguments, {.output = output, .error = output}), 2) << arguments[0];
     }
   }
+}
+
+// The table of what was timed until the signal came is lost.
+TEST(Streams, OutputThatNobodyGetsIsBadInputAfterASignalAsWell) {
+  const ScratchFolder scratch;
+  RunningProgram profile("springtower",
+                         {"profile", "--scenes", "rest,collapse", "--rows", "1,3", "--methods", "implicit", "--settle", "0.1",
+                          "--samples", "1000", "--frames", "10", "--out", scratch.file("out")},
+                         {.output = kFull});
+  profile.waitForFile(scratch.file("out/profile.unfinished.json"));
+  profile.send(SIGINT);
+  EXPECT_EQ(profile.wait().exitCode, 2);
 }
 
 // The first file that is opened would take the number of a closed standard error, and get what is written there.

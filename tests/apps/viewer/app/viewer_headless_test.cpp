@@ -78,6 +78,31 @@ TEST(ViewerHeadless, FilmsThroughFfmpeg) {
   EXPECT_EQ(contentOf(film).size(), 7U * 64U * 48U * 3U);
 }
 
+TEST(ViewerHeadless, KeepsWhatWasPlayedWhereAVideoOrPictureFails) {
+  const ScratchFolder scratch;
+  const std::string tool = scratch.file("ffmpeg");
+  std::ofstream(tool) << "#!/bin/sh\n/bin/cat > /dev/null\nexit 1\n";
+  std::filesystem::permissions(tool, std::filesystem::perms::owner_all);
+  const SearchPath path(scratch.path().string());
+  std::filesystem::create_directories(scratch.file("png/frame-00003.png"));
+  const std::pair<std::vector<std::string>, std::size_t> failing[] = {{{"--video", scratch.file("film.mp4")}, 5},
+                                                                      {{"--png", scratch.file("png")}, 3}};
+  for (const auto& [options, frames] : failing) {
+    SCOPED_TRACE(options[0]);
+    const ScratchFolder out;
+    std::vector<std::string> arguments = {"--headless",       "--scene", "(010)",          "--frames",       "5",
+                                          "--size",           "64x48",   "--record",       out.file("game"), "--report",
+                                          out.file("report"), "--poses", out.file("poses")};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    const ProgramResult result = runProgram("springtower-viewer", arguments);
+    EXPECT_EQ(result.exitCode, 2);
+    EXPECT_THAT(result.error, HasSubstr(options[0]));
+    EXPECT_EQ(linesOf(contentOf(out.file("game"))).size(), 1 + frames);
+    EXPECT_EQ(nlohmann::json::parse(contentOf(out.file("report"))).at("frames"), frames);
+    EXPECT_GT(linesOf(contentOf(out.file("poses"))).size(), 1U);
+  }
+}
+
 TEST(ViewerHeadless, SaysThatFfmpegIsMissing) {
   const ScratchFolder scratch;
   const SearchPath path(scratch.path().string());
