@@ -25,8 +25,8 @@ function(springtower_configure_target target)
   endif()
 endfunction()
 
-# What most sources of a target read is read once for all of them. Every source and header still includes what it uses: headers are
-# compiled alone and clang-tidy reads the sources without this.
+# What most sources of a target read is read once for all of them. Every source and header still includes what it uses: tests/structure
+# looks at headers, and clang-tidy reads the sources without this.
 function(springtower_precompile target)
   target_precompile_headers(
     ${target} PRIVATE <algorithm> <array> <cmath> <cstdint> <limits> <memory> <optional> <span> <string> <string_view> <vector>
