@@ -8,7 +8,7 @@
 namespace springtower {
 namespace {
 
-bool isWordCharacter(char c) {
+bool isPartOfName(char c) {
   return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
 }
 
@@ -52,12 +52,12 @@ struct Word {
 std::vector<Word> wordsOf(std::string_view code) {
   std::vector<Word> words;
   for (std::size_t i = 0; i < code.size();) {
-    if (!isWordCharacter(code[i])) {
+    if (!isPartOfName(code[i])) {
       ++i;
       continue;
     }
     std::size_t end = i;
-    while (end < code.size() && isWordCharacter(code[end])) ++end;
+    while (end < code.size() && isPartOfName(code[end])) ++end;
     words.push_back({code.substr(i, end - i), i});
     i = end;
   }
