@@ -12,7 +12,7 @@ const springtower::Simulation& simulationOf(const World& world) {
   return WorldAccess::running(world).simulation;
 }
 
-std::vector<Contact> toPublic(const std::vector<ContactForce>& forces) {
+std::vector<Contact> publicContacts(const std::vector<ContactForce>& forces) {
   std::vector<Contact> contacts;
   contacts.reserve(forces.size());
   for (const ContactForce& force : forces) {
@@ -26,12 +26,12 @@ std::vector<Contact> toPublic(const std::vector<ContactForce>& forces) {
 }  // namespace
 
 std::vector<Contact> contacts(const World& world) {
-  return toPublic(contactForces(simulationOf(world)));
+  return publicContacts(contactForces(simulationOf(world)));
 }
 
 std::vector<Contact> contactsOn(const World& world, int block) {
   const springtower::Simulation& simulation = simulationOf(world);
-  return toPublic(contactForcesOn(simulation, blockId(checkedBlock(block, simulation.model.blockCount()))));
+  return publicContacts(contactForcesOn(simulation, blockId(checkedBlock(block, simulation.model.blockCount()))));
 }
 
 Energy energy(const World& world) {

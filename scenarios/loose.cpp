@@ -96,7 +96,9 @@ Scene randomPileScene(int blocks) {
   Scene scene;
   for (int i = 0; i < blocks; ++i) {
     BlockSpec block;
-    block.centre = Vec3(kSpacing_m * (i % 2), kSpacing_m * (i / 2 % 2), 0.1 + kSpacing_m * (i / 4));
+    const int row = i / 2 % 2;
+    const int level = i / 4;
+    block.centre = Vec3(kSpacing_m * (i % 2), kSpacing_m * row, 0.1 + kSpacing_m * level);
     for (Eigen::Index a = 0; a < 4; ++a) block.orientation.coeffs()[a] = random.normal();
     block.orientation.normalize();
     scene.blocks.push_back(block);
