@@ -23,7 +23,7 @@ struct ChildTask {
 };
 
 /// Judges scenes in child processes, at most `jobs` at once. `next` gives the next one, nothing when there are no more; `done`
-/// takes the records as they come. A child may use processor time up to the limit of each run and a second more, and 4 GB of
+/// is called with each record when its child has ended. A child may use processor time up to the limit of each run and a second more, and 4 GB of
 /// addresses (not under the address sanitizer, whose shadow needs more). Precondition: the caller has one thread: children are
 /// forks. Throws std::runtime_error where the system gives no process.
 void judgeInChildren(const ChildOptions& options, std::size_t jobs, const std::function<std::optional<ChildTask>()>& next,

@@ -17,8 +17,8 @@ namespace {
 
 constexpr double kLongest_s = 600.0;
 constexpr double kStrongHand_n = 20.0;  // a block under the whole tower has to come as well
-// A block is jerked out where friction holds it by more than this share of the pull that the tower withstands: a slow hand, or
-// one at 0.4 m/s, draws such towers over, and statics alone does not show it.
+// A block is jerked out where its friction force is above this share of the tipping force of the tower: a slow pull, or one at
+// 0.4 m/s, tips such towers over, and statics alone does not show it.
 constexpr double kSlowShare = 2.0 / 3.0;
 constexpr double kJerk_m_s = 1.5;
 constexpr std::size_t kShortRemovals = 3;  // of the first sequence
@@ -238,11 +238,11 @@ ValidationSection validateMoves(const ValidationPlan& plan) {
       "4 cm/s and quick at 40 cm/s; allowed is what the real tower did. Blocks that are not loose have heights within 0.006 mm "
       "of "
       "one another. Then with heights that differ by all of the 0.02 mm within which they count as equal: in some seeds 3-1, "
-      "which step 3 draws, then has so much load that friction needs nearly the force at which the tower goes over its edge "
-      "(0.80 N, with 1-1 loose), and the tower rocks: that is reported. "
+      "which step 3 draws, then carries so large a load that its friction force is nearly the force at which the tower tips "
+      "about its edge (0.80 N, with 1-1 loose), and the tower rocks: that is reported. "
       "Then blocks are pulled out of a full tower of 18 rows one by one and put aside, middle blocks along their length and "
-      "outer ones sideways, at 4 cm/s, or at 1.5 m/s where friction needs more than two thirds of the pull that the tower "
-      "withstands by statics; both ways again. "
+      "outer ones sideways, at 4 cm/s, or at 1.5 m/s where the friction force is above two thirds of the tipping force "
+      "by statics; both ways again. "
       "After a state that differs a sequence is not counted further."};
   const PlayedSequence asleep = playSequence(plan, Sleep::on, std::nullopt);
   const PlayedSequence awake = playSequence(plan, Sleep::off, std::nullopt);

@@ -165,8 +165,8 @@ ValidationSection validateSleep(const ValidationPlan& plan) {
       "Sleep",
       "A block is drawn out of a sleeping tower at 4 cm/s; awake blocks are counted in every frame from "
       "the first millimetre until nothing touches it any more. Then out of the same tower with nothing "
-      "asleep. Where friction requires about as much as the tower supports (`statics --pull`: 1.46 of 1.54 N "
-      "in row 45 of 54, 2.54 of 1.82 in row 38) a slow hand draws it over, and it has to go over asleep "
+      "asleep. Where the friction force is about the tipping force of the tower or above (`statics --pull`: 1.46 and "
+      "1.54 N in row 45 of 54, 2.54 and 1.82 N in row 38) a slow pull tips it over, and it has to tip over asleep "
       "as well. Rows count from 1 at the bottom."};
   std::vector<SleepPull> pulls = sleepPulls(plan.longForm);
   tbb::parallel_for(std::size_t{0}, 2 * pulls.size(), [&](std::size_t i) {
