@@ -1,5 +1,6 @@
 // Commands that measure many cases go on where a signal has ended them, with what is of the same build, machine and options.
 #include "core/version.h"
+#include "tests/apps/common/resume.h"
 #include "tests/support/running_program.h"
 
 #include <algorithm>
@@ -26,14 +27,6 @@ void forge(const std::string& path, const std::string& commit = "another") {
   Json json = jsonOf(path);
   json["commit"] = commit;
   std::ofstream(path) << json.dump();
-}
-
-// Whether a run went on where another one was broken off. One of a build with uncommitted changes has to refuse it.
-bool wentOn(const ProgramResult& again) {
-  const bool isDirty = kGitCommit.ends_with("-dirty");
-  EXPECT_EQ(again.exitCode, isDirty ? 2 : 0) << again.error;
-  EXPECT_THAT(again.error, HasSubstr(isDirty ? "this build has uncommitted changes" : ""));
-  return again.exitCode == 0;
 }
 
 // Runs a command until a file is there, and ends it then. Returns the exit code.
