@@ -2,6 +2,7 @@
 
 #include "apps/commands/validate/page.h"
 #include "core/error.h"
+#include "core/hash.h"
 #include "core/limits.h"
 
 #include <algorithm>
@@ -17,7 +18,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// FNV-1a, of the reference sets and scenes: other towers under the same names are another validation.
+// Of the reference sets and scenes: other towers under the same names are another validation.
 std::string hashOfInputs(const ValidationPlan& plan) {
   std::vector<std::filesystem::path> files;
   for (const std::string& folder : {plan.oracle, plan.scenes}) {
@@ -27,14 +28,14 @@ std::string hashOfInputs(const ValidationPlan& plan) {
     }
   }
   std::sort(files.begin(), files.end());
-  std::uint64_t hash = 0xcbf29ce484222325U;
-  const auto add = [&](char c) { hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3U; };
+  Hash hash;
   for (const std::filesystem::path& file : files) {
     std::ifstream stream(file, std::ios::binary);
-    std::for_each(std::istreambuf_iterator<char>(stream), {}, add);
-    add('\0');
+    const std::string text{std::istreambuf_iterator<char>(stream), {}};
+    hash.bytes(text.data(), text.size());
+    hash.word(text.size());
   }
-  return fmt::format("{:016x}", hash);
+  return fmt::format("{:016x}", hash.value());
 }
 
 ValidationSection sectionFrom(const Json& json) {
