@@ -5,6 +5,7 @@
 #include "broadphase/swept_boxes.h"
 #include "core/scene/scene.h"
 #include "core/state.h"
+#include "scenarios/towers.h"
 
 #include <benchmark/benchmark.h>
 #include <cmath>
@@ -17,7 +18,6 @@ namespace {
 
 constexpr int kRows = 18;
 constexpr int kBlocksPerTower = 3 * kRows;
-constexpr double kTowerSpacing_m = 0.3;
 constexpr double kBlockPitch_m = 0.02715;
 constexpr double kFrame_s = 1.0 / 60.0;
 constexpr double kMargin_m = 1e-3;

@@ -18,16 +18,16 @@
 namespace springtower {
 namespace {
 
-using Colour = Eigen::Array3d;
+using LinearColour = Eigen::Array3d;
 
 constexpr double kRadians = std::numbers::pi / 180.0;
 constexpr int kSamples = 3;        // a pixel is the mean of 3 x 3 samples
 constexpr int kShadowSize = 2048;  // of the shadow map, a side
-const Colour kBackground(0.975, 0.972, 0.965);
-const Colour kFloorColour(0.935, 0.928, 0.915);
-const Colour kGridColour(0.80, 0.79, 0.775);
-const Colour kWood(0.900, 0.735, 0.505);
-const Colour kEdge(0.36, 0.24, 0.13);
+const LinearColour kBackground(0.975, 0.972, 0.965);
+const LinearColour kFloorColour(0.935, 0.928, 0.915);
+const LinearColour kGridColour(0.80, 0.79, 0.775);
+const LinearColour kWood(0.900, 0.735, 0.505);
+const LinearColour kEdge(0.36, 0.24, 0.13);
 
 // What is drawn: all blocks but those far away from the rest.
 struct Subject {
@@ -120,10 +120,10 @@ double noise(std::uint32_t block, std::uint32_t salt) {
   return static_cast<double>(x ^ (x >> 16U)) / 4294967296.0;
 }
 
-Colour woodOf(std::uint32_t block) {
+LinearColour woodOf(std::uint32_t block) {
   const double light = 0.93 + 0.11 * noise(block, 1);
   const double warm = 0.05 * (noise(block, 2) - 0.5);
-  return (kWood + Colour(warm, 0.0, -warm)) * light;
+  return (kWood + LinearColour(warm, 0.0, -warm)) * light;
 }
 
 // Draws samples of a scene: light, shadow, floor.
@@ -142,14 +142,14 @@ class Painter {
     }
   }
 
-  [[nodiscard]] Colour block(std::int32_t mark, int column, int line, float nearness) const {
+  [[nodiscard]] LinearColour block(std::int32_t mark, int column, int line, float nearness) const {
     const Look& look = looks_[static_cast<std::size_t>(mark / 2)];
     const Vec3 point = pointAt(column, line, nearness) + 0.004 * subject_.radius * look.normal;
-    const Colour& colour = mark % 2 == 1 ? look.edge : look.wood;
+    const LinearColour& colour = mark % 2 == 1 ? look.edge : look.wood;
     return colour * (look.shade + (look.sun > 0.0 && isLit(point, column, line) ? look.sun : 0.0));
   }
 
-  [[nodiscard]] Colour background(int column, int line) const {
+  [[nodiscard]] LinearColour background(int column, int line) const {
     if (!floor_) return kBackground;
     // The ray from the eye through the sample, against the floor.
     const Vec3 eye = view_.middle + view_.distance * view_.back;
@@ -162,8 +162,8 @@ class Painter {
     const double fade = std::clamp(2.0 - 0.75 * away, 0.0, 1.0);
     if (fade <= 0.0) return kBackground;
     const bool onLine = std::min(toLine(point.x()), toLine(point.y())) < std::min(0.018 * square_, 0.0016 * subject_.radius);
-    const Colour plain = onLine ? kGridColour : kFloorColour;
-    const Colour shaded = plain * (isLit(point, column, line) ? 1.0 : 0.80);
+    const LinearColour plain = onLine ? kGridColour : kFloorColour;
+    const LinearColour shaded = plain * (isLit(point, column, line) ? 1.0 : 0.80);
     return kBackground + fade * fade * (3.0 - 2.0 * fade) * (shaded - kBackground);
   }
 
@@ -171,8 +171,8 @@ class Painter {
   // A face under this light, whatever covers it.
   struct Look {
     Vec3 normal;
-    Colour wood;
-    Colour edge;
+    LinearColour wood;
+    LinearColour edge;
     double shade;  // brightness without sun
     double sun;    // what the sun adds
   };
@@ -219,7 +219,7 @@ class Painter {
   std::vector<Look> looks_;  // of each face
 };
 
-std::uint32_t packed(const Colour& colour) {
+std::uint32_t packed(const LinearColour& colour) {
   std::uint32_t value = 0xff;
   for (Eigen::Index a = 0; a < 3; ++a) {
     value = (value << 8U) | static_cast<std::uint32_t>(std::lround(255.0 * std::clamp(colour[a], 0.0, 1.0)));
@@ -240,7 +240,7 @@ void writePicture(std::ostream& stream, const ParticleArray& position, bool floo
   pixels.reserve(static_cast<std::size_t>(frame.width) * static_cast<std::size_t>(frame.height));
   for (int y = 0; y < frame.height; ++y) {
     for (int x = 0; x < frame.width; ++x) {
-      Colour sum = Colour::Zero();
+      LinearColour sum = LinearColour::Zero();
       for (int sample = 0; sample < kSamples * kSamples; ++sample) {
         const int column = kSamples * x + sample % kSamples;
         const int line = kSamples * y + sample / kSamples;

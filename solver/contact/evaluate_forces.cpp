@@ -14,7 +14,7 @@ namespace springtower {
 
 namespace {
 
-using Range = tbb::blocked_range<std::size_t>;
+using IndexRange = tbb::blocked_range<std::size_t>;
 
 // Runs a kernel over the island's blocks: in one call, or in ranges on many threads.
 template <class Kernel>
@@ -23,8 +23,8 @@ void overBlocks(const IslandStep& step, bool parallel, const Kernel& kernel) {
     kernel(step.blocks);
     return;
   }
-  tbb::parallel_for(Range(0, step.blocks.size(), tuning::kBlockGrain),
-                    [&](const Range& range) { kernel(step.blocks.subspan(range.begin(), range.size())); });
+  tbb::parallel_for(IndexRange(0, step.blocks.size(), tuning::kBlockGrain),
+                    [&](const IndexRange& range) { kernel(step.blocks.subspan(range.begin(), range.size())); });
 }
 
 ContactSide sideOf(const Engine& engine, std::int32_t block, bool sameMotion) {
@@ -78,7 +78,7 @@ std::uint64_t contactsInOrder(IslandStep& step, const Evaluation& evaluation) {
 // The same sums in the same order: first all pairs, then each block sums its own.
 std::uint64_t contactsInParallel(IslandStep& step, const Evaluation& evaluation) {
   Engine& engine = step.engine;
-  tbb::parallel_for(Range(0, step.activePairs.size(), tuning::kPairGrain), [&](const Range& range) {
+  tbb::parallel_for(IndexRange(0, step.activePairs.size(), tuning::kPairGrain), [&](const IndexRange& range) {
     for (std::size_t i = range.begin(); i < range.end(); ++i) {
       const auto at = static_cast<std::size_t>(step.activePairs[i]);
       if (!engine.pairs.touches(at)) continue;
@@ -86,7 +86,7 @@ std::uint64_t contactsInParallel(IslandStep& step, const Evaluation& evaluation)
       evaluatePair(step, evaluation, engine.contacts.edit(contact, engine.pairs[at]), engine.contacts.pairForce(contact));
     }
   });
-  tbb::parallel_for(Range(0, step.blocks.size(), tuning::kBlockGrain), [&](const Range& range) {
+  tbb::parallel_for(IndexRange(0, step.blocks.size(), tuning::kBlockGrain), [&](const IndexRange& range) {
     for (std::size_t i = range.begin(); i < range.end(); ++i) {
       const std::int32_t block = step.blocks[i];
       const auto b = static_cast<std::size_t>(block);

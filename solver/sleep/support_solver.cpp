@@ -9,7 +9,7 @@ namespace springtower {
 
 namespace {
 
-using Vec6 = Eigen::Matrix<double, 6, 1>;
+using Wrench6 = Eigen::Matrix<double, 6, 1>;
 using Mat6 = Eigen::Matrix<double, 6, 6>;
 
 // Stiffness of a point's springs.
@@ -62,7 +62,7 @@ bool redistribute(std::span<SupportPoint> points, const Vec3& force, const Vec3&
   const double slip_n = tuning::kSupportConeTolerance * friction_n / static_cast<double>(points.size());
   for (int round = 0; round < tuning::kMaxSupportRounds; ++round) {
     Mat6 stiffness = Mat6::Zero();
-    Vec6 load;
+    Wrench6 load;
     load << -force, -torque / length_m;
     for (const SupportPoint& point : points) {
       const Eigen::Matrix3d turn = turning(point.arm / length_m);
@@ -77,7 +77,7 @@ bool redistribute(std::span<SupportPoint> points, const Vec3& force, const Vec3&
     }
     const Eigen::LDLT<Mat6> factors(stiffness);
     if (!(factors.vectorD().minCoeff() > tuning::kMinSupportStiffness * factors.vectorD().maxCoeff())) return false;
-    const Vec6 moved = factors.solve(load);
+    const Wrench6 moved = factors.solve(load);
     bool kept = true;
     for (SupportPoint& point : points) {
       const Vec3 motion = moved.head<3>() + turning(point.arm / length_m) * moved.tail<3>();

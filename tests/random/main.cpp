@@ -1,5 +1,6 @@
 // Random scenes, judged by what must hold in every one of them (tests/random/judge.h). docs/random-scenes.md says more.
 #include "apps/common/options.h"
+#include "apps/common/program.h"
 #include "apps/common/progress.h"
 #include "core/error.h"
 #include "core/output_file.h"
@@ -25,8 +26,6 @@ namespace springtower {
 namespace {
 
 constexpr int kBeyondBounds = 1;
-constexpr int kBadInput = 2;
-constexpr int kProgramError = 70;
 constexpr Range kCountRange{1.0, 1e7, ""};
 constexpr Range kMinutesRange{1e-3, 1e5, "minutes"};
 constexpr Range kLimitRange{0.01, 3600.0, "s"};

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <set>
 #include <string_view>
+#include <utility>
 
 namespace springtower {
 namespace {
@@ -78,20 +79,50 @@ bool isMember(std::string_view code, const Word& word) {
   return before == '.' || before == ':' || (before == '>' && word.begin > 1 && code[word.begin - 2] == '-');
 }
 
+// Whether a word at namespace level is a constant that is defined there: a type stands before it, and its value follows.
+bool isConstant(std::string_view code, const Word& word, char next) {
+  if (word.text[0] != 'k' || (next != '=' && next != '[' && next != '{') || word.begin == 0) return false;
+  const std::size_t before = code.find_last_not_of(" \n", word.begin - 1);
+  return before != std::string_view::npos && (isPartOfName(code[before]) || code[before] == '>');
+}
+
+// How deep a place lies in braces, those of namespaces left out.
+class Braces {
+ public:
+  explicit Braces(std::string_view code) : code_(code) {}
+  // Places in ascending order.
+  int depthAt(std::size_t place) {
+    for (; at_ < place; ++at_) {
+      if (code_[at_] == '{') {
+        isNamespace_.push_back(std::exchange(begins_, false));
+        depth_ += isNamespace_.back() ? 0 : 1;
+      } else if (code_[at_] == '}' && !isNamespace_.empty()) {
+        depth_ -= isNamespace_.back() ? 0 : 1;
+        isNamespace_.pop_back();
+      }
+    }
+    return depth_;
+  }
+  // The next brace opens a namespace.
+  void beginNamespace() { begins_ = true; }
+
+ private:
+  std::string_view code_;
+  std::size_t at_ = 0;
+  std::vector<bool> isNamespace_;
+  bool begins_ = false;
+  int depth_ = 0;
+};
+
 Header readHeader(std::string_view text) {
   Header header;
   const std::string code = codeOf(text, header.includes);
   const std::vector<Word> words = wordsOf(code);
-  int depth = 0;       // of braces, those of namespaces left out
-  std::size_t at = 0;  // how far braces are counted
+  Braces braces(code);
   for (std::size_t i = 0; i < words.size(); ++i) {
-    for (; at < words[i].begin; ++at) {
-      if (code[at] == '{') ++depth;
-      if (code[at] == '}') --depth;
-    }
+    const int depth = braces.depthAt(words[i].begin);
     if (words[i].text == "namespace") {
-      const std::size_t open = code.find('{', words[i].begin);
-      if (open != std::string::npos) at = open + 1;
+      braces.beginNamespace();
       continue;
     }
     if (!isKnownKind(words[i].text)) continue;
@@ -101,14 +132,15 @@ Header readHeader(std::string_view text) {
     const std::string_view before = words[i - 1].text;
     const std::size_t after = code.find_first_not_of(" \n", words[i].begin + name.size());
     const char next = after == std::string::npos ? ' ' : code[after];
-    const bool isType = before == "struct" || before == "class" || before == "using" || before == "union";
+    const bool isScope = next == ':' && code[after + 1] == ':';  // of a member that is defined
+    const bool isType = !isScope && (before == "struct" || before == "class" || before == "using" || before == "union");
     if (isType && (depth > 0 || next == ';')) {
       header.declares.insert(name);
     } else if (isType && (next == '>' || next == ',')) {
       header.declares.insert(name);  // a parameter of a template
     } else if (depth > 0) {
       continue;
-    } else if (isType || before == "enum" || (name[0] == 'k' && (next == '=' || next == '[' || next == '{'))) {
+    } else if (isType || before == "enum" || isConstant(code, words[i], next)) {
       header.defines.insert(name);
     }
   }
@@ -145,6 +177,22 @@ std::vector<std::string> namesNotReached(const std::map<std::string, std::string
     }
   }
   return missing;
+}
+
+std::vector<std::string> namesHidden(const std::map<std::string, std::string>& headers,
+                                     const std::map<std::string, std::string>& sources) {
+  std::map<std::string, std::string> owner;
+  for (const auto& [path, text] : headers) {
+    for (const std::string& name : readHeader(text).defines) owner.emplace(name, path);
+  }
+  std::vector<std::string> hidden;
+  for (const auto& [path, text] : sources) {
+    for (const std::string& name : readHeader(text).defines) {
+      const auto found = owner.find(name);
+      if (found != owner.end()) hidden.push_back(path + ": " + name + " is that of " + found->second + " as well");
+    }
+  }
+  return hidden;
 }
 
 }  // namespace springtower

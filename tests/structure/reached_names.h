@@ -13,4 +13,10 @@ namespace springtower {
 /// which takes minutes.
 std::vector<std::string> namesNotReached(const std::map<std::string, std::string>& headers);
 
+/// Types and constants of this kind that a source defines at namespace level although a header of the project has one of that
+/// name: a source that is compiled together with it, or that comes to include the header, would take one for the other. One
+/// "path: Name is that of HEADER as well" each, sorted. `sources`: the texts of sources by their paths.
+std::vector<std::string> namesHidden(const std::map<std::string, std::string>& headers,
+                                     const std::map<std::string, std::string>& sources);
+
 }  // namespace springtower

@@ -38,5 +38,13 @@ TEST(ReachedNames, CommentsMembersAndParametersOfTemplatesAreNoUse) {
   EXPECT_THAT(namesNotReached({{"core/other.h", other}, {"core/wheel.h", wheel}}), IsEmpty());
 }
 
+TEST(HiddenNames, ASourceHasNoConstantOfTheNameOfAHeaders) {
+  const std::map<std::string, std::string> headers = {{"core/wheel.h", "inline constexpr int kWheels = 4;\n"}};
+  EXPECT_THAT(namesHidden(headers, {{"apps/car.cpp", "namespace {\nconstexpr int kWheels = 3;\n}  // namespace\n"}}),
+              ElementsAre("apps/car.cpp: kWheels is that of core/wheel.h as well"));
+  EXPECT_THAT(namesHidden(headers, {{"apps/car.cpp", "void roll() {\n  constexpr int kWheels = 3;\n}\n"}}), IsEmpty());
+  EXPECT_THAT(namesHidden(headers, {{"apps/car.cpp", "int count = kWheels;\n"}}), IsEmpty());
+}
+
 }  // namespace
 }  // namespace springtower

@@ -271,6 +271,7 @@ std::vector<std::string> brokenRulesInTree(const std::filesystem::path& root) {
   const auto open = std::count_if(files.begin(), files.end(), [](const auto& file) { return *file.begin() == "include"; });
   if (open > kMaxPublicHeaders) broken.push_back("include/: " + std::to_string(open) + " public headers");
   std::map<std::string, std::string> headers;
+  std::map<std::string, std::string> sources;
   for (const std::filesystem::path& file : files) {
     std::ifstream stream(root / file, std::ios::binary);
     std::ostringstream text;
@@ -279,9 +280,21 @@ std::vector<std::string> brokenRulesInTree(const std::filesystem::path& root) {
     for (std::string& line : brokenRules(file.generic_string(), text.str())) broken.push_back(std::move(line));
     // Public headers have a namespace of their own, and are compiled alone.
     const bool isEngine = *file.begin() != "include" && *file.begin() != "api" && *file.begin() != "examples";
-    if (isEngine && file.extension() == ".h") headers.emplace(file.generic_string(), text.str());
+    if (isEngine) (file.extension() == ".h" ? headers : sources).emplace(file.generic_string(), text.str());
   }
   for (std::string& line : namesNotReached(headers)) broken.push_back(std::move(line));
+  for (const Folder& folder : kFolders) {
+    const auto isOf = [](std::string_view path, std::string_view top) { return topOf(path) == top; };
+    std::map<std::string, std::string> within;
+    for (const auto& [path, text] : headers) {
+      const auto& may = folder.mayInclude;
+      if (std::any_of(may.begin(), may.end(), [&](std::string_view top) { return isOf(path, top); })) within.emplace(path, text);
+    }
+    std::map<std::string, std::string> own;
+    for (const auto& [path, text] : sources)
+      if (isOf(path, folder.name)) own.emplace(path, text);
+    for (std::string& line : namesHidden(within, own)) broken.push_back(std::move(line));
+  }
   return broken;
 }
 

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kMaxMargin_deg = 20.0;
 constexpr double kMinMargin_deg = 1.0;
-constexpr int kMaxRows = 8;
+constexpr int kMaxTiltedRows = 8;
 constexpr double kTolerance_deg = 0.3;
 constexpr double kEarlier_deg = 0.5;    // where friction is active
 constexpr double kAhead_deg = 1.2;      // where the ramp begins
@@ -72,7 +72,7 @@ std::vector<Tilted> tiltedScenes(const ValidationPlan& plan, std::size_t count) 
   if (!file) throw InputError(fmt::format("--oracle: found no file {}, allowed is the folder of the reference sets", path));
   std::vector<VerdictLine> fit;
   for (VerdictLine& line : readVerdictLines(file, path)) {
-    if (rowsOf(line.scene) > kMaxRows || !line.expect.is_object() || !line.expect.value("clear", false)) continue;
+    if (rowsOf(line.scene) > kMaxTiltedRows || !line.expect.is_object() || !line.expect.value("clear", false)) continue;
     if (!line.expect.contains("tilt_deg") || !line.expect.at("tilt_deg").is_number()) continue;
     const double tilt_deg = line.expect.at("tilt_deg").get<double>();
     if (tilt_deg > kMinMargin_deg && tilt_deg < kMaxMargin_deg) fit.push_back(std::move(line));

@@ -17,9 +17,9 @@ using Json = nlohmann::ordered_json;
 constexpr int kMaxNesting = 32;
 
 // Follows the parser through a line and refuses what the parser would let pass.
-class Watch {
+class ParseCheck {
  public:
-  explicit Watch(const std::string& where) : where_(where) {}
+  explicit ParseCheck(const std::string& where) : where_(where) {}
 
   void see(int depth, Json::parse_event_t event, const Json& parsed) {
     const bool opens = event == Json::parse_event_t::object_start || event == Json::parse_event_t::array_start;
@@ -55,7 +55,7 @@ bool isBlankLine(std::string_view text) {
 }
 
 Json parseVerdictLine(const std::string& text, const std::string& where) {
-  Watch watch(where);
+  ParseCheck watch(where);
   try {
     return Json::parse(text, [&](int depth, Json::parse_event_t event, Json& parsed) {
       watch.see(depth, event, parsed);

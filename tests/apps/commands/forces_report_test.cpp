@@ -1,6 +1,6 @@
+#include "core/vector.h"
 #include "tests/support/program.h"
 
-#include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <gmock/gmock.h>
@@ -11,7 +11,6 @@ namespace springtower {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using Vec3 = Eigen::Vector3d;
 
 Json forcesOf(std::vector<std::string> arguments) {
   const ScratchFolder scratch;

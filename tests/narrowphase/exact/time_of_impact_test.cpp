@@ -208,13 +208,13 @@ struct Sampled {
 
 /// The determinant of the corners, whether the origin lies well inside their polygon seen along its normal, and the polygon's
 /// smallest height.
-struct Crossing {
+struct FeatureCrossing {
   double volume;
   bool inside;
   double height;
 };
 
-Crossing crossingAt(const CollisionQuery& query, QueryKind kind, double time) {
+FeatureCrossing crossingAt(const CollisionQuery& query, QueryKind kind, double time) {
   const std::array<Vec3, 4> q = differencesAt(query, kind, time);
   const Vec3 normal = (q[1] - q[0]).cross(q[2] - q[1]);
   bool inside = true;
@@ -232,11 +232,11 @@ Sampled sample(const CollisionQuery& query, QueryKind kind, double extent) {
   constexpr int kSamples = 200;
   const double reach = relativeMotion(query, kind) / (2.0 * kSamples) + 1e-9 * extent;
   Sampled sampled{true, {}};
-  Crossing before = crossingAt(query, kind, 0.0);
+  FeatureCrossing before = crossingAt(query, kind, 0.0);
   for (int i = 0; i <= kSamples; ++i) {
     const double time = static_cast<double>(i) / kSamples;
     sampled.apart &= distanceAt(query, kind, time) > reach;
-    const Crossing now = crossingAt(query, kind, time);
+    const FeatureCrossing now = crossingAt(query, kind, time);
     if (before.inside && now.inside && before.volume * now.volume < 0.0 && reach < 0.01 * std::min(before.height, now.height)) {
       sampled.meetUntil = time;
       break;
