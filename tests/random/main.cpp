@@ -1,4 +1,5 @@
 // Random scenes, judged by what must hold in every one of them (tests/random/judge.h). docs/random-scenes.md says more.
+#include "apps/common/interruption.h"
 #include "apps/common/options.h"
 #include "apps/common/program.h"
 #include "apps/common/progress.h"
@@ -39,7 +40,9 @@ constexpr const char* kFooter =
     "  random_scenes --write 17 seed17.toml                  one of them as a scene for springtower run\n"
     "  random_scenes --file seed17.toml                      judges a scene file\n"
     "  random_scenes --from 1 --count 100 --shrink DIR --fault diverged\n"
-    "exit codes: 0 within the bounds (--file: without faults), 1 beyond them, 2 bad input or arguments";
+    "exit codes: 0 within the bounds (--file: without faults), 1 beyond them, 2 bad input or arguments, 130 or 143 ended by a "
+    "signal\n"
+    "(the table is of what was judged by then)";
 
 struct Options {
   std::optional<std::int64_t> from;
@@ -101,7 +104,7 @@ std::vector<Record> judgeSeeds(const Options& options) {
   Progress progress(static_cast<double>(count), "scenes");
   std::int64_t given = 0;
   const auto next = [&]() -> std::optional<ChildTask> {
-    if (given == count || (options.minutes && minutesSince(start) > *options.minutes)) return std::nullopt;
+    if (given == count || interrupted() || (options.minutes && minutesSince(start) > *options.minutes)) return std::nullopt;
     const auto seed = static_cast<std::uint64_t>(from + given++);
     return ChildTask{randomScene(seed), seed};
   };
@@ -200,6 +203,7 @@ void shrinkAll(std::vector<Record> records, const Options& options) {
   const Clock::time_point start = Clock::now();
   Progress progress(static_cast<double>(records.size()), "scenes looked at for shrinking");
   for (std::size_t i = 0; i < records.size(); ++i) {
+    endIfInterrupted();
     if (options.minutes && minutesSince(start) > kShareOfMinutes * *options.minutes) break;
     progress.update(static_cast<double>(i));
     const std::optional<Fault> fault = faultToShrink(records[i], options);
@@ -225,13 +229,9 @@ int executeSeeds(const Options& options) {
   const std::vector<Fault> exceeded = exceededBounds(records, !options.ignoreTimes);
   for (const Fault fault : exceeded) fmt::print("beyond its bound: {}\n", nameOf(fault));
   std::fflush(stdout);
+  endIfInterrupted();
   if (options.shrink) shrinkAll(records, options);
   return exceeded.empty() ? 0 : kBeyondBounds;
-}
-
-int complain(const std::string& message, int code) {
-  std::fputs(fmt::format("random_scenes: {}\n", onOneLine(message)).c_str(), stderr);
-  return code;
 }
 
 int runProgram(int argc, char** argv) {
@@ -242,7 +242,7 @@ int runProgram(int argc, char** argv) {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return program.exit(error);
-    return complain(std::string(error.what()) + " (try 'random_scenes --help')", kBadInput);
+    throw InputError(std::string(error.what()) + " (try 'random_scenes --help')");
   }
   if (options.fault) faultFromName(*options.fault, "--fault");
   if (options.shrink && !std::filesystem::is_directory(*options.shrink)) {
@@ -256,14 +256,5 @@ int runProgram(int argc, char** argv) {
 }  // namespace springtower
 
 int main(int argc, char** argv) {
-  try {
-    const int code = springtower::runProgram(argc, argv);
-    // A full disk or a closed pipe behind standard output must not pass unseen.
-    if (std::fflush(stdout) != 0) return springtower::complain("standard output: writing failed", springtower::kBadInput);
-    return code;
-  } catch (const springtower::InputError& error) {
-    return springtower::complain(error.what(), springtower::kBadInput);
-  } catch (const std::exception& error) {
-    return springtower::complain(error.what(), springtower::kProgramError);
-  }
+  return springtower::exitCodeOf("random_scenes", [&] { return springtower::runProgram(argc, argv); });
 }

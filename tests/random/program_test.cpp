@@ -1,10 +1,16 @@
 // The program that judges random scenes, as a user runs it.
 #include "tests/support/program.h"
 
+#include "tests/support/running_program.h"
+
+#include <chrono>
+#include <csignal>
+#include <filesystem>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <thread>
 
 namespace springtower {
 namespace {
@@ -69,6 +75,19 @@ TEST(RandomScenesProgram, GivesTheSameRecordsWithAnyNumberOfJobs) {
   }
   EXPECT_EQ(found[0].size(), 4U);
   EXPECT_EQ(found[0], found[1]);
+}
+
+TEST(RandomScenesProgram, ASignalEndsItWithTheTableOfWhatWasJudged) {
+  const ScratchFolder scratch;
+  RunningProgram program(
+      "random_scenes", {"--from", "1", "--count", "100000", "--jobs", "2", "--limit", "1", "--json", scratch.file("found.json")});
+  program.waitForFile(scratch.file("found.json.partial"), 0);
+  std::this_thread::sleep_for(std::chrono::seconds(1));
+  program.send(SIGINT);
+  const ProgramResult result = program.wait();
+  EXPECT_EQ(result.exitCode, 130);
+  EXPECT_THAT(result.output, ::testing::HasSubstr(" scenes from seed 1,"));
+  EXPECT_TRUE(std::filesystem::exists(scratch.file("found.json")));
 }
 
 }  // namespace
