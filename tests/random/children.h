@@ -23,9 +23,9 @@ struct ChildTask {
 };
 
 /// Judges scenes in child processes, at most `jobs` at once. `next` gives the next one, nothing when there are no more; `done`
-/// is called with each record when its child has ended. A child may use processor time up to the limit of each run and a second more, and 4 GB of
-/// addresses (not under the address sanitizer, whose shadow needs more). Precondition: the caller has one thread: children are
-/// forks. Throws std::runtime_error where the system gives no process.
+/// is called with each record when its child has ended. A child may use processor time up to the limit of each run and a second
+/// more, and 4 GB of addresses (not under the address sanitizer, whose shadow needs more). Precondition: the caller has one
+/// thread: children are forks. Throws std::runtime_error where the system gives no process.
 void judgeInChildren(const ChildOptions& options, std::size_t jobs, const std::function<std::optional<ChildTask>()>& next,
                      const std::function<void(const ChildTask&, const Record&)>& done);
 

@@ -1,6 +1,7 @@
 // Commands that measure many cases go on where a signal has ended them, with what is of the same build, machine and options.
-#include "core/version.h"
 #include "tests/apps/common/resume.h"
+
+#include "core/version.h"
 #include "tests/support/running_program.h"
 
 #include <algorithm>
