@@ -20,7 +20,7 @@ struct ClipPoint {
   double height;
 };
 
-using Polygon = std::array<ClipPoint, 2 * kManifoldPoints>;
+using ClippedFace = std::array<ClipPoint, 2 * kManifoldPoints>;
 
 ClipPoint between(const ClipPoint& p, const ClipPoint& q, double fraction) {
   return {p.s + fraction * (q.s - p.s), p.t + fraction * (q.t - p.t), p.u + fraction * (q.u - p.u), p.v + fraction * (q.v - p.v),
@@ -28,7 +28,7 @@ ClipPoint between(const ClipPoint& p, const ClipPoint& q, double fraction) {
 }
 
 // Keeps the part of the polygon where side * coordinate <= 1/2.
-std::size_t clip(const Polygon& in, std::size_t count, double ClipPoint::*coordinate, double side, Polygon& out) {
+std::size_t clip(const ClippedFace& in, std::size_t count, double ClipPoint::*coordinate, double side, ClippedFace& out) {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < count; ++i) {
     const ClipPoint& p = in[i];
@@ -63,7 +63,7 @@ double squaredDistance(const ClipPoint& corner, const ClipPoint& from, const Cli
 
 // Removes corners at which an edge is straight. They add no support to that of their neighbours, and where edges of both faces
 // coincide they appear and vanish with rounding errors. Returns how many are left.
-std::size_t dropStraight(double radius, const Lengths& lengths, std::size_t count, Polygon& corners) {
+std::size_t dropStraight(double radius, const Lengths& lengths, std::size_t count, ClippedFace& corners) {
   std::size_t i = 0;
   while (i < count && count > 2) {
     const ClipPoint& before = corners[i == 0 ? count - 1 : i - 1];
@@ -144,8 +144,8 @@ void buildFaceManifold(const CornerView& upper, const CornerView& lower, int inc
   const Vec3 alongS = reference.sideU / reference.sideU.squaredNorm();
   const Vec3 alongT = reference.sideV / reference.sideV.squaredNorm();
 
-  Polygon polygon;
-  Polygon other;
+  ClippedFace polygon;
+  ClippedFace other;
   for (std::size_t i = 0; i < 4; ++i) {
     const auto [u, v] = kCornerPlaces[i];
     const Vec3 offset = incident.centre + u * incident.sideU + v * incident.sideV - reference.centre;

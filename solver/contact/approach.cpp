@@ -99,7 +99,7 @@ double maxFirstClosing(const IslandStep& step, const BlockPair& pair) {
   const double massA = mass[static_cast<std::size_t>(pair.a)];
   const double massB = pair.b < 0 ? 0.0 : mass[static_cast<std::size_t>(pair.b)];
   const double reduced = pair.b < 0 ? massA : massA * massB / (massA + massB);
-  const double stiffness = pair.b < 0 ? step.law.floorStiffness_n_m : step.law.stiffness_n_m;
+  const double stiffness = step.law.stiffnessOf(pair.a, pair.b);
   return tuning::kMaxFirstClosingShare * step.law.impactPenetration_m * std::sqrt(stiffness / reduced) * step.drift_s;
 }
 
@@ -260,9 +260,10 @@ ApproachEstimate estimateApproach(const IslandStep& step) {
       }
     }
     approach.meeting = approach.meeting || mayMeet;
-    approach.speed = std::max(approach.speed, speed);
-    approach.reducedMass = std::max(approach.reducedMass, reduced);
-    approach.cornerInverse = std::max(approach.cornerInverse, inverse);
+    const double stiffness = step.law.stiffnessOf(pair.a, pair.b);
+    const double depth = step.law.impactPenetration_m;
+    approach.stiffening = std::max(approach.stiffening, reduced * speed * speed / (depth * depth * stiffness));
+    approach.pointRate = std::max(approach.pointRate, 2.0 * stiffness * (1.0 + step.law.maxwellRatio) * inverse);
   }
   return approach;
 }

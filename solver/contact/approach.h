@@ -9,11 +9,10 @@ double fastestCorner(const ParticleArray& velocity, std::size_t block, const Vec
 
 /// Possible first contacts of an island in this frame, from the speeds at its start: the largest over its pairs of each number.
 struct ApproachEstimate {
-  double speed = 0.0;          ///< m/s, closing speed of two near blocks
-  double reducedMass = 0.0;    ///< kg
-  double cornerInverse = 0.0;  ///< 1/kg, sum of the inverse masses of two corners
-  bool meeting = false;        ///< whether separated blocks may touch at all
-  int together = 0;            ///< number of pairs of one block that may make first contact; simultaneous ones add up
+  double stiffening = 0.0;  ///< factor on the resting stiffness at which the impact stops within the target depth
+  double pointRate = 0.0;   ///< 1/s2, largest eigenvalue of M^-1 K that one new contact point of resting stiffness adds
+  bool meeting = false;     ///< whether separated blocks may touch at all
+  int together = 0;         ///< number of pairs of one block that may make first contact; simultaneous ones add up
 };
 ApproachEstimate estimateApproach(const IslandStep& step);
 

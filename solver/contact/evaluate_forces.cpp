@@ -141,7 +141,7 @@ void evaluateForces(IslandStep& step, const MotionState& state, const ParticleAr
   const bool sameMotion = &carried == &state.velocity;
   const double kick_s = sameMotion && update == PointUpdate::store ? step.kick_s : 0.0;
   const Evaluation evaluation{
-      {advance_s, step.maxStiffening, update == PointUpdate::trial ? 0.0 : 1.0, kick_s}, sameMotion, update};
+      {advance_s, step.maxStiffening, update == PointUpdate::trial ? 0.0 : 1.0, step.sticks, kick_s}, sameMotion, update};
   using Blocks = std::span<const std::int32_t>;
   overBlocks(step, parallel, [&](Blocks blocks) {
     computeFrames(state.position, blocks, engine.memo.frames);

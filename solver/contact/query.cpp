@@ -31,7 +31,7 @@ struct ManifoldNow {
     const double behind = simulation.engine->memo.blockHistory[upper].lastExplicitStep_s;
     const double kick = traitsOf(simulation.scene.settings.method).leapfrog ? behind : 0.0;
     const PointRows rows{manifold.points.data(), manifold.points.data() + 1};
-    manifoldForces(manifold, up, low, law, {behind, 1.0, 1.0, kick}, reducedMass(simulation.model, stored), &rows, force);
+    manifoldForces(manifold, up, low, law, {behind, 1.0, 1.0, false, kick}, reducedMass(simulation.model, stored), &rows, force);
     points = pointForces(manifold, up, low, law);
     if (stored.kind != PointKind::penalty) {
       manifold = copyOf(stored);
@@ -43,7 +43,7 @@ struct ManifoldNow {
 // Energy stored in a manifold's springs, Maxwell branches and friction displacements, J.
 double energyOf(const Simulation& simulation, const ManifoldNow& now, const ContactLaw& law) {
   const ContactView m = now.manifold;
-  const double stiffness = m.lower < 0 ? law.floorStiffness_n_m : law.stiffness_n_m;
+  const double stiffness = law.stiffnessOf(m.upper, m.lower);
   double energy = 0.0;
   for (std::size_t i = 0; i < static_cast<std::size_t>(m.count); ++i) {
     const std::size_t lane = laneOf(i);
@@ -83,8 +83,7 @@ void addContactForces(const Simulation& simulation, const ContactLaw& law, const
 ContactLaw contactLaw(const Simulation& simulation) {
   const Settings& settings = simulation.scene.settings;
   ContactLaw law;
-  law.stiffness_n_m = simulation.contactStiffness_n_m;
-  law.floorStiffness_n_m = simulation.floorStiffness_n_m;
+  law.stiffness = &simulation.stiffness;
   law.maxwellRatio = settings.maxwellRatio;
   law.maxwellTime_s = settings.maxwellTime * simulation.lengths.fallTime_s;
   law.dampingTime_s = simulation.dampingTime_s;

@@ -34,7 +34,7 @@ void readForces(const ContactView& manifold, PointForces& points);
 /// rigid methods, which have no springs.
 inline double springDepthOfForce(const Simulation& simulation, const ContactView& manifold, std::size_t point) {
   if (isRigid(simulation.scene.settings.method)) return 0.0;
-  const double stiffness = manifold.lower < 0 ? simulation.floorStiffness_n_m : simulation.contactStiffness_n_m;
+  const double stiffness = pairStiffness(simulation.stiffness, manifold.upper, manifold.lower);
   return std::min(manifold.impulse(point).normalForce[laneOf(point)] / stiffness, simulation.tolerance_m);
 }
 

@@ -35,7 +35,7 @@ void addManifold(Simulation& simulation, const ContactView& m) {
   const bool moveUpper = simulation.asleep[upper] == 0;
   const bool moveLower = m.lower >= 0 && simulation.asleep[lower] == 0;
   const double share = moveUpper && moveLower ? 1.0 : 0.5;  // the factor of two does not apply against what cannot move
-  const double stiffness = (m.lower < 0 ? simulation.floorStiffness_n_m : simulation.contactStiffness_n_m) *
+  const double stiffness = pairStiffness(simulation.stiffness, m.upper, m.lower) *
                            std::max(1.0 + settings.maxwellRatio, settings.tangentialRatio) * share;
   const auto add = [&](std::size_t block, const std::array<double, 3>& place, double k) {
     const Eigen::Vector4d w = affineWeights(place, settings.inertia, simulation.model.mass[block]);

@@ -33,7 +33,7 @@ Settings chooseMethod(const Scene& scene) {
   double mass = 0.0;
   for (const BlockSpec& block : scene.blocks) mass = std::max(mass, block.mass);
   const double depth = settings.impactDepth * tolerance_m;
-  const double stiffness = stiffnessForTolerance(loads, tolerance_m).contact_n_m;
+  const double stiffness = largestStiffness(stiffnessForTolerance(loads, tolerance_m));
   const double thrown = meetingSpeed(scene);
   const double squaredSpeed = 2.0 * gravity * loads.askewFall_m + thrown * thrown;
   const double stiffening = mass * squaredSpeed / (depth * depth * stiffness);

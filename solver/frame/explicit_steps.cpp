@@ -54,13 +54,10 @@ int chooseSubsteps(IslandStep& step) {
     record.contactSignature = signature;
   }
   const double standing = record.spectralRadius;
-  const double stiffness = simulation.contactStiffness_n_m * (1.0 + settings.maxwellRatio);
   const ApproachEstimate approach =
       isReport ? ApproachEstimate{} : estimateApproach(step);  // contacts of method `report` have no stiffness
-  const double depth = impactDepth_m(settings, simulation.tolerance_m, simulation.lengths.blockHeight_m);
-  const double wanted =
-      approach.reducedMass * approach.speed * approach.speed / (depth * depth * simulation.contactStiffness_n_m);
-  const double born = 2.0 * stiffness * approach.cornerInverse;  // contribution of one new contact of resting stiffness
+  const double wanted = approach.stiffening;
+  const double born = approach.pointRate;
   // Simultaneous contacts of a block add up: the step is stable either for all of them at resting stiffness, or for one with the
   // stiffening of the impact.
   const double together = std::max(1, approach.together);

@@ -66,7 +66,7 @@ void penaltyToImpulse(const IslandStep& step, std::int32_t contact, const Contac
 // The inverse: springs with the forces of the last impulses.
 void impulseToPenalty(const IslandStep& step, std::int32_t contact, const ContactView& manifold) {
   const PointForces points = forcesNow(step.simulation, manifold);
-  const double stiffness = manifold.lower < 0 ? step.law.floorStiffness_n_m : step.law.stiffness_n_m;
+  const double stiffness = step.law.stiffnessOf(manifold.upper, manifold.lower);
   const double tangential = step.law.tangentialRatio * stiffness;
   const PointRows rows = step.engine.contacts.points(contact);
   for (std::size_t i = 0; i < static_cast<std::size_t>(manifold.count); ++i) {

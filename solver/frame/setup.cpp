@@ -36,22 +36,24 @@ void placeBlock(const BlockSpec& spec, std::size_t b, Simulation& simulation) {
 
 // Largest eigenvalue of M^-1 K, 1/s2, expected of any contact set of this scene with this stiffness: the stiffest block's
 // springs, and contacts that press a block from both sides against neighbours of the same compliance.
-double foreseenSpectralRadius(const Simulation& simulation, const Stiffness& stiffness) {
+double foreseenSpectralRadius(const Simulation& simulation, const BlockStiffness& stiffness) {
   const Settings& settings = simulation.scene.settings;
   BlockModel model = simulation.model;
   double springs = 0.0;
   double lightest = 1e300;
   for (std::size_t b = 0; b < model.blockCount(); ++b) {
-    const bool asBefore = b > 0 && model.dimensions[b] == model.dimensions[b - 1] && model.mass[b] == model.mass[b - 1];
+    const bool asBefore = b > 0 && model.dimensions[b] == model.dimensions[b - 1] && model.mass[b] == model.mass[b - 1] &&
+                          stiffness.edge_n_m[b] == stiffness.edge_n_m[b - 1];
     lightest = std::min(lightest, model.mass[b]);
     if (asBefore) continue;
-    setSprings(model, b, stiffness.spring_n_m, simulation.lengths.blockHeight_m, 0.0);
+    setSprings(model, b, stiffness.edge_n_m[b], simulation.lengths.blockHeight_m, 0.0);
     springs = std::max(springs, blockSpectralRadius(model, settings.inertia, b));
   }
   const double compressionMass =
       inverseMass(settings.inertia).own / 2.0;  // 1/m times this, for the mode that presses a block flat
   const double contact =
-      std::max(2.0 * tuning::kPointsPerSide * stiffness.contact_n_m, 4.0 * stiffness.floor_n_m) / 4.0 * 2.0 * compressionMass;
+      std::max(2.0 * tuning::kPointsPerSide * largestStiffness(stiffness), 4.0 * largest(stiffness.floor_n_m)) / 4.0 * 2.0 *
+      compressionMass;
   return springs + (1.0 + settings.maxwellRatio) * contact / lightest;
 }
 
@@ -63,13 +65,13 @@ void chooseStiffness(Simulation& simulation) {
   const bool stable = isStableForAnyStep(settings.method);
   simulation.fixedSubsteps = stable ? 0 : settings.substeps;
   simulation.tolerance_m = toleranceOf(simulation.scene);
-  Stiffness stiffness = stiffnessForTolerance(loads, simulation.tolerance_m);
+  BlockStiffness stiffness = stiffnessForTolerance(loads, simulation.tolerance_m);
   if (simulation.fixedSubsteps > 0) {
     const double allowed = stableSpectralRadius(settings.method, settings.frame_s / settings.substeps, simulation.dampingTime_s,
                                                 settings.stabilitySafety);
     const double needed = foreseenSpectralRadius(simulation, stiffness);
     if (!settings.tolerance_m) {
-      loads.swayStiffness_n_m = 0.0;
+      for (StackLoad& stack : loads.stacks) stack.sway_n_m = 0.0;
       const double unit = foreseenSpectralRadius(simulation, stiffnessForTolerance(loads, 1.0));
       simulation.tolerance_m = unit / allowed;
       stiffness = stiffnessForTolerance(loads, simulation.tolerance_m);
@@ -82,9 +84,8 @@ void chooseStiffness(Simulation& simulation) {
                                      stableStep(settings.method, needed, simulation.dampingTime_s, settings.stabilitySafety)))));
     }
   }
-  simulation.contactStiffness_n_m = stiffness.contact_n_m;
-  simulation.floorStiffness_n_m = stiffness.floor_n_m;
-  simulation.springStiffness_n_m = settings.springRatio * stiffness.spring_n_m;
+  for (double& edge_n_m : stiffness.edge_n_m) edge_n_m *= settings.springRatio;
+  simulation.stiffness = std::move(stiffness);
 }
 
 // Sizes the data that every method uses.
@@ -111,8 +112,9 @@ void sizeEngine(Simulation& simulation) {
   e.scratch.newContactCount.assign(count, 0);
   e.sleep.awakeCount = count;
   for (std::size_t b = 0; b < count; ++b) {
-    const bool asBefore =
-        b > 0 && scene.blocks[b].dimensions == scene.blocks[b - 1].dimensions && model.mass[b] == model.mass[b - 1];
+    const bool asBefore = b > 0 && scene.blocks[b].dimensions == scene.blocks[b - 1].dimensions &&
+                          model.mass[b] == model.mass[b - 1] &&
+                          simulation.stiffness.edge_n_m[b] == simulation.stiffness.edge_n_m[b - 1];
     e.springRadius[b] = asBefore ? e.springRadius[b - 1] : blockSpectralRadius(model, scene.settings.inertia, b);
     e.sleep.windows[b].centre = centre(simulation.state.position, b);
   }
@@ -142,7 +144,7 @@ Simulation::Simulation(const Scene& given) : scene(given), engine(std::make_uniq
   lengths.contactError_m = tuning::kFirstContactError * lengths.blockHeight_m;
   lengths.partingGap_m = tuning::kPartingGap * lengths.blockHeight_m;
   chooseStiffness(*this);
-  for (std::size_t b = 0; b < count; ++b) setSprings(model, b, springStiffness_n_m, lengths.blockHeight_m, dampingTime_s);
+  for (std::size_t b = 0; b < count; ++b) setSprings(model, b, stiffness.edge_n_m[b], lengths.blockHeight_m, dampingTime_s);
 
   sizeEngine(*this);
   Engine& e = *engine;

@@ -41,7 +41,7 @@ void addPair(const IslandStep& step, const NewtonSystem& island, std::size_t at,
   static const AffineField kStill{};
   const PointForces points =
       pointForces(m, {&engine.memo.frames[upper], &kStill, &kStill}, {frameLower, &kStill, &kStill}, step.law);
-  const double stiffness = m.lower < 0 ? step.law.floorStiffness_n_m : step.law.stiffness_n_m;
+  const double stiffness = step.law.stiffnessOf(m.upper, m.lower);
   const double friction = step.law.kineticFriction;
   const double sign = part == Part::factors ? 1.0 : -1.0;
   const std::vector<std::uint8_t>& asleep = step.simulation.asleep;
@@ -92,6 +92,7 @@ ActiveSetBits activeSetBits(const IslandStep& step, const NewtonSystem& island, 
   const ConstPointRows trial = contacts.trial(contact);
   const ConstPointRows slid = island.trialIsAhead ? trial : contacts.points(contact);
   const auto count = static_cast<std::size_t>(contacts.shape(contact).count);
+  if (island.assumesSupport) return allPush(count);
   const double least = island.useConsistentTangent ? 1.0 : kTouchingWithoutForce;
   unsigned mask = 0;
   for (std::size_t first = 0; first < count; first += kRowPoints) {
@@ -109,7 +110,7 @@ ActiveSetBits activeSetBits(const IslandStep& step, const NewtonSystem& island, 
 PointStiffness pointStiffness(const IslandStep& step, const ContactView& manifold, const ContactView& trial, ActiveSetBits mask,
                               std::size_t i, double step_s) {
   const ContactLaw& law = step.law;
-  const double stiffness = manifold.lower < 0 ? law.floorStiffness_n_m : law.stiffness_n_m;
+  const double stiffness = law.stiffnessOf(manifold.upper, manifold.lower);
   const PenaltyRow& row = trial.penalty(i);
   const std::size_t lane = laneOf(i);
   // First contact in this step: its damping velocity is its depth over the step.

@@ -22,12 +22,15 @@ namespace springtower {
 
 namespace {
 
-// Stopping criteria of Newton's iteration, and the residual below which it uses the consistent tangent.
+// Stopping criteria of Newton's iteration, and what it linearises.
 struct NewtonOptions {
-  int mostContactIterations;  // while the active set changes: a load front takes one iteration a row
-  double near;                // residual below which the consistent friction tangent is used, and points that touch
-                              // without a normal force count as open
-  double enough;              // relative tolerance, of the initial residual
+  int mostContactIterations;    // while the active set changes: a load front takes one iteration a row
+  double near;                  // residual below which the consistent friction tangent is used, and points that touch
+                                // without a normal force count as open
+  double enough;                // relative tolerance, of the initial residual
+  bool assumesSupport = false;  // in the first iteration all points push and stick
+  double leastEnough = tuning::kNewtonTolerance;
+  int mostStalled = std::numeric_limits<int>::max();  // iterations after the least residual so far
 };
 
 // Newton settings in motion. A share of the initial residual may remain, up to tuning::kMaxMotionResidual: a ten-thousandth of a
@@ -35,12 +38,6 @@ struct NewtonOptions {
 constexpr NewtonOptions kInMotion{tuning::kMaxActiveSetIterations, tuning::kConsistentTangentResidual, tuning::kRelativeResidual};
 // If finer steps can follow: a step that does not converge in a few iterations converges in fewer with finer steps.
 constexpr NewtonOptions kBeforeFiner{tuning::kMaxNewtonIterations, tuning::kConsistentTangentResidual, tuning::kRelativeResidual};
-// In steps from rest the weight reaches the foot of a tower row by row, starting far from the solution. In a wide island the last
-// iterations have thousands of slipping points. Without the consistent tangent each reduces the residual only to three tenths,
-// and rounding decides whether that suffices within the iteration limit (so a pyramid of 40 rows of cubes found its equilibrium
-// or did not).
-constexpr NewtonOptions kFromRest{tuning::kMaxActiveSetIterations, 0.0, 0.0};
-constexpr NewtonOptions kWideFromRest{tuning::kMaxActiveSetIterations, tuning::kConsistentTangentResidual, 0.0};
 
 NewtonSystem& islandOf(IslandStep& step) {
   return step.engine.memo.newtonSystems[static_cast<std::size_t>(step.blocks.front())];
@@ -265,14 +262,17 @@ bool solveStep(IslandStep& step, double effective_s, bool carried, const NewtonO
   double residual = island.exceedsFill || carried ? 0.0 : findResidual(step, island, effective_s);
   if (!island.exceedsFill && (carried || residual > tuning::kPredictorResidual))
     residual = beginPredicted(step, island, effective_s, how, clock);
-  const double enough = std::clamp(how.enough * residual, tuning::kNewtonTolerance, tuning::kMaxMotionResidual);
+  const double enough = std::clamp(how.enough * residual, how.leastEnough, std::max(how.leastEnough, tuning::kMaxMotionResidual));
   const bool wide = step.blocks.size() > tuning::kNarrowBlocks && !island.exceedsFill;
   if (wide && !island.trialIsAhead) residual = evaluateInPlace(step, island, effective_s, clock);
   bool converged = wide && residual <= tuning::kNewtonTolerance;
   int most = island.exceedsFill || converged ? 0 : tuning::kMaxNewtonIterations;
   bool slow = false;
+  double least = residual;
+  int leastAt = 0;
   for (int iteration = 0; iteration < most; ++iteration) {
     island.useConsistentTangent = residual < how.near;
+    island.assumesSupport = iteration == 0 && how.assumesSupport;
     const ActiveSet now = activeSetNow(step, island);
     if (now.changed) most = std::min(how.mostContactIterations, iteration + tuning::kMaxNewtonIterations);
     const bool old =
@@ -287,11 +287,16 @@ bool solveStep(IslandStep& step, double effective_s, bool carried, const NewtonO
       if (!refactorise(step, island, effective_s)) break;
       findCorrection(step, island, effective_s, tuning::kGmresAbsoluteTolerance * tuning::kNewtonResidual, differs);
     }
+    island.assumesSupport = false;
     residual = searchLine(step, island, effective_s, enough, clock);
     slow = residual > tuning::kSlowConvergence * before;
     ++step.counters.implicitIterations;
     converged = residual <= enough;
-    if (converged || !std::isfinite(residual)) break;
+    if (residual < least) {
+      least = residual;
+      leastAt = iteration;
+    }
+    if (converged || !std::isfinite(residual) || iteration - leastAt >= how.mostStalled) break;
   }
   clock.lap(Stage::integration);
   return converged;
@@ -343,13 +348,33 @@ bool stepImplicit(IslandStep& step, bool canRetryFiner) {
   return finishStep(step, converged);
 }
 
-bool stepFromRest(IslandStep& step, double effective_s) {
+bool stepFromRest(IslandStep& step, double effective_s, StepFromRest kind) {
   step.drift_s = effective_s / kBdf2;
+  step.sticks = kind == StepFromRest::supported;
   evaluateForces(step, step.simulation.state, step.simulation.state.velocity, 0.0, PointUpdate::trial);
   predictEuler(step, effective_s);
-  NewtonOptions how = step.blocks.size() > tuning::kNarrowBlocks ? kWideFromRest : kFromRest;
-  how.mostContactIterations = std::max(how.mostContactIterations, static_cast<int>(step.blocks.size()));
-  return finishStep(step, solveStep(step, effective_s, false, how));
+  // The weight may reach the foot of a tower row by row.
+  NewtonOptions how{std::max(tuning::kMaxActiveSetIterations, static_cast<int>(step.blocks.size())),
+                    tuning::kConsistentTangentResidual, 0.0};
+  if (kind != StepFromRest::asPlaced) how.mostStalled = tuning::kMaxStalledIterations;
+  how.assumesSupport = step.sticks;
+  // Narrow islands come to bear as placed on a way on which less slips. In wide ones, with thousands of slipping points, each
+  // iteration without the consistent tangent reduces the residual to three tenths only, and rounding decides whether that is
+  // enough.
+  if (kind == StepFromRest::asPlaced && step.blocks.size() <= tuning::kNarrowBlocks) how.near = 0.0;
+  if (step.sticks) how.leastEnough = tuning::kStickingResidual;
+  const bool converged = solveStep(step, effective_s, false, how);
+  step.sticks = false;
+  return finishStep(step, converged);
+}
+
+double slipAtRest(IslandStep& step, double effective_s) {
+  evaluateForces(step, step.simulation.state, step.simulation.state.velocity, 0.0, PointUpdate::trial);
+  predictEuler(step, effective_s);
+  NewtonSystem& island = islandOf(step);
+  const double residual = findResidual(step, island, effective_s);
+  accept(step, island);
+  return residual;
 }
 
 }  // namespace springtower

@@ -24,9 +24,17 @@ IslandOutcome runImplicitSteps(IslandStep& step, bool mostlyFallen, double& reac
 /// then restored. With `canRetryFiner` it stops after fewer iterations.
 bool stepImplicit(IslandStep& step, bool canRetryFiner);
 
+/// How a step from rest is solved. supported: nothing slips, and the solution begins as if all points pushed. coulomb: friction
+/// is bounded by the normal forces at the end. asPlaced: the same, for islands whose weight does not bear yet.
+enum class StepFromRest { supported, coulomb, asPlaced };
+
 /// One step of implicit Euler from rest, of `effective_s`, towards static equilibrium. Contact points advance by more than that,
 /// as in stepImplicit. Returns false if it does not converge; the state is then restored.
-bool stepFromRest(IslandStep& step, double effective_s);
+bool stepFromRest(IslandStep& step, double effective_s, StepFromRest kind);
+
+/// Lets points slip where they are, down to Coulomb's bound; returns the residual that this leaves in a step from rest of
+/// `effective_s`, in units of tuning::kNewtonResidual. Precondition: a step from rest has ended here.
+double slipAtRest(IslandStep& step, double effective_s);
 
 /// Computes the own matrices of the island's blocks, for steps whose end forces are multiplied by `effective_s`.
 void setJacobians(IslandStep& step, double effective_s);

@@ -12,6 +12,9 @@ namespace springtower {
 
 namespace {
 
+// Times the coefficient of friction, of points that stick whatever the force.
+constexpr double kStickingFriction = 1e6;
+
 struct LawStep {
   const ContactLaw& law;
   const ContactStep& step;
@@ -25,7 +28,7 @@ struct LawStep {
 
 SPRINGTOWER_INLINE LawStep lawStep(const ContactView& m, const ContactLaw& law, const ContactStep& step, double reducedMass) {
   const double aim = law.impactPenetration_m;
-  const double stiffness = m.lower < 0 ? law.floorStiffness_n_m : law.stiffness_n_m;
+  const double stiffness = law.stiffnessOf(m.upper, m.lower);
   return {law,
           step,
           stiffness,
@@ -46,6 +49,7 @@ struct PointState {
   LaneMask known;   // those that touched before
   Lanes closing;    // m/s
   Lanes stiffness;  // N/m
+  Lanes bounding;   // N, normal force that bounds friction
 };
 
 // The tangential part of the law, for points with the normal force p.normalForce and the closing velocity `closing`: advances the
@@ -73,7 +77,7 @@ SPRINGTOWER_INLINE void frictionLaw(const LawStep& s, const PointState& state, c
   }
   const Lanes squared = friction[0] * friction[0] + friction[1] * friction[1] + friction[2] * friction[2];
   const Lanes coefficient = p.slipRatio > zero ? zero + law.kineticFriction : zero + law.staticFriction;
-  const Lanes sticking = coefficient * push;
+  const Lanes sticking = coefficient * state.bounding;
   const LaneMask slides = squared > sticking * sticking;
   if (!any(slides)) {
     p.slipRatio = zero;
@@ -85,7 +89,7 @@ SPRINGTOWER_INLINE void frictionLaw(const LawStep& s, const PointState& state, c
   }
   Lanes size;
   squareRoot(squared, size);
-  const Lanes keep = slides ? law.kineticFriction * push / size : one;
+  const Lanes keep = slides ? law.kineticFriction * state.bounding / size : one;
   p.slipRatio = slides & touching ? (keep > tuning::kMinSlipRatio ? keep : zero + tuning::kMinSlipRatio) : zero;
   // Slip releases a little of the rest depth; the dissipation of friction pays for the work.
   Lanes displacementSize;
@@ -143,7 +147,9 @@ SPRINGTOWER_INLINE void pointLaw(const LawStep& s, const Lanes& depth, const Lan
   }
   p.touching = touching ? (push > zero ? one : zero + kTouchingWithoutForce) : zero;
   p.normalForce = push;
-  frictionLaw(s, {touching, known, closing, stiffness}, relative, carried, normal, p);
+  Lanes bounding = push;
+  if (s.step.sticks) bounding = push * kStickingFriction;
+  frictionLaw(s, {touching, known, closing, stiffness, bounding}, relative, carried, normal, p);
 }
 
 // Sums of three lane vectors at once: [sum a, sum b, sum c, 0].

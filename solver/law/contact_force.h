@@ -2,8 +2,10 @@
 
 #include "narrowphase/manifold.h"
 #include "solver/block/affine.h"
+#include "solver/law/block_stiffness.h"
 
 #include <array>
+#include <cstdint>
 
 namespace springtower {
 
@@ -12,17 +14,21 @@ namespace springtower {
 /// the anchor with a dashpot, bounded by Coulomb's cone (Cundall & Strack 1979): displacement beyond the cone is slip and is
 /// dropped.
 struct ContactLaw {
-  double stiffness_n_m = 0.0;        ///< k between blocks, N/m
-  double floorStiffness_n_m = 0.0;   ///< k on the floor, N/m
-  double maxwellRatio = 0.0;         ///< stiffness of the Maxwell branch over k
-  double maxwellTime_s = 1.0;        ///< its relaxation time, s
-  double dampingTime_s = 0.0;        ///< dashpot over stiffness, s
-  double tangentialRatio = 1.0;      ///< tangential stiffness over k
-  double staticFriction = 0.0;       ///< Coulomb's coefficient while it sticks
-  double kineticFriction = 0.0;      ///< and while it slips
-  double impactPenetration_m = 1.0;  ///< target depth of an impact; determines the stiffening of a new contact
-  double stiffeningTime_s = 1.0;     ///< s, time constant with which that stiffening fades
-  double restDepthPerSlip = 0.0;     ///< rest depth that fades per length of slip; its work is paid by the friction of the slip
+  const BlockStiffness* stiffness = nullptr;  ///< k of each pair, N/m
+  double maxwellRatio = 0.0;                  ///< stiffness of the Maxwell branch over k
+  double maxwellTime_s = 1.0;                 ///< its relaxation time, s
+  double dampingTime_s = 0.0;                 ///< dashpot over stiffness, s
+  double tangentialRatio = 1.0;               ///< tangential stiffness over k
+  double staticFriction = 0.0;                ///< Coulomb's coefficient while it sticks
+  double kineticFriction = 0.0;               ///< and while it slips
+  double impactPenetration_m = 1.0;           ///< target depth of an impact; determines the stiffening of a new contact
+  double stiffeningTime_s = 1.0;              ///< s, time constant with which that stiffening fades
+  double restDepthPerSlip = 0.0;  ///< rest depth that fades per length of slip; its work is paid by the friction of the slip
+
+  /// k of a pair's points, N/m; `lower` is negative for the floor.
+  [[nodiscard]] double stiffnessOf(std::int32_t upper, std::int32_t lower) const {
+    return pairStiffness(*stiffness, upper, lower);
+  }
 };
 
 /// Parameters that change from step to step.
@@ -33,6 +39,7 @@ struct ContactStep {
   /// which adds no energy; at 0 it starts at the surface, which an implicit step requires, as it evaluates the step's end only.
   /// The damping velocity is then limited to depth over step.
   double firstRestDepthShare = 1.0;
+  bool sticks = false;  ///< whether points that push stick, whatever the friction
   double kick_s = 0.0;  ///< s for which the force acts on the velocities of a leapfrog step; 0 in other steps
 };
 

@@ -74,6 +74,7 @@ struct NewtonSystem : NewtonWork {
   int directions = 0;                 ///< GMRES directions that the last correction took beside the factors
   bool trialIsAhead = false;          ///< whether the trial points belong to a state after the step's start
   bool useConsistentTangent = false;  ///< whether the residual is small enough for the consistent friction tangent
+  bool assumesSupport = false;        ///< whether every point of every manifold counts as pushing and sticking
   bool forcesKnown = false;           ///< whether engine.memo.force holds the forces at the island's present state
   BlockCholesky matrix;
   std::vector<std::int32_t> touching;                      ///< touching pairs, as positions in engine.pairs
@@ -89,6 +90,11 @@ struct NewtonSystem : NewtonWork {
   std::size_t orderProducts = 0;                 ///< products of a factorisation at that time
   std::vector<BlockPair> edges;                  ///< nodes that touching pairs couple, as last laid out
 };
+
+/// The active set of a manifold of `count` points that all push and stick.
+inline ActiveSetBits allPush(std::size_t count) {
+  return static_cast<ActiveSetBits>((1U << count) - 1U);
+}
 
 /// The own matrix of a node's block.
 inline const BlockJacobian& jacobianOf(const NewtonSystem& island, std::size_t node) {

@@ -3,6 +3,7 @@
 #include "core/counters.h"
 #include "core/scene/scene.h"
 #include "core/state.h"
+#include "solver/law/block_stiffness.h"
 #include "solver/law/tether.h"
 #include "solver/law/tolerances.h"
 #include "solver/world/wake_reason.h"
@@ -28,17 +29,15 @@ struct Simulation {
   MotionState state;
   Tether tether;  ///< the hand's springs on its block, as set by the owner of the hand (solver/hand/grip), until it releases the
                   ///< block
-  double time_s = 0.0;                ///< simulated time, s
-  std::uint64_t frame = 0;            ///< frames done
-  double tolerance_m = 0.0;           ///< the tolerance in force: as given, or what the given substeps allow
-  double dampingTime_s = 0.0;         ///< s, dashpot over stiffness of springs and contacts
-  double contactStiffness_n_m = 0.0;  ///< N/m, of one resting contact point, normal
-  double floorStiffness_n_m = 0.0;    ///< N/m, of one on the floor
-  double springStiffness_n_m = 0.0;   ///< N/m, of an upright edge of a block of the scene's least height
-  int fixedSubsteps = 0;              ///< steps of every frame if the user gave them, otherwise 0
-  int substeps = 0;                   ///< steps of the last frame (the most over its islands)
-  std::vector<std::uint8_t> asleep;   ///< 1 where a block sleeps, [blocks]
-  std::vector<double> restTime_s;     ///< how long a block has been at rest, s, [blocks]; kept with sleep off as well
+  double time_s = 0.0;               ///< simulated time, s
+  std::uint64_t frame = 0;           ///< frames done
+  double tolerance_m = 0.0;          ///< the tolerance in force: as given, or what the given substeps allow
+  double dampingTime_s = 0.0;        ///< s, dashpot over stiffness of springs and contacts
+  BlockStiffness stiffness;          ///< of contacts and springs, by block; part of the model
+  int fixedSubsteps = 0;             ///< steps of every frame if the user gave them, otherwise 0
+  int substeps = 0;                  ///< steps of the last frame (the most over its islands)
+  std::vector<std::uint8_t> asleep;  ///< 1 where a block sleeps, [blocks]
+  std::vector<double> restTime_s;    ///< how long a block has been at rest, s, [blocks]; kept with sleep off as well
   Counters counters;
   StageTimes stageTimes;
   WakeCounts wakes{};  ///< blocks woken, by reason

@@ -31,7 +31,7 @@ Scene flyingBlock() {
 Scene divergingScene() {
   Scene scene;
   scene.blocks.resize(2);
-  scene.blocks[0].centre = {1.0, 0.0, 0.0091};
+  scene.blocks[0].centre = {0.0, 0.0, 0.0283};
   scene.blocks[0].mass_kg = 19.6;
   scene.blocks[1].centre = {0.0, 0.0, 0.0101};
   scene.settings.method = Method::semiImplicitEuler;

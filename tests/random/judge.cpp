@@ -33,7 +33,7 @@ double energyScale_j(const Simulation& simulation, const Energy& start) {
     const double height = simulation.scene.floor ? std::max(least, centre(simulation.state.position, b).z()) : 0.0;
     scale_j += simulation.model.mass[b] * simulation.scene.gravity.magnitude * height;
   }
-  return std::max(scale_j, 0.5 * simulation.contactStiffness_n_m * simulation.tolerance_m * simulation.tolerance_m);
+  return std::max(scale_j, 0.5 * largestStiffness(simulation.stiffness) * simulation.tolerance_m * simulation.tolerance_m);
 }
 
 // What the hand and the scene's forces do to their blocks: the work of a frame is the mean of their forces at both ends times the

@@ -68,7 +68,7 @@ MapPoint tried(Method method, int rows, double tolerance_m, int steps, const Map
   point.steps = steps;
   point.step_s = frame_s / steps;
   point.rows = rows;
-  if (!isRigid(method)) point.stiffness = simulation.contactStiffness_n_m;
+  if (!isRigid(method)) point.stiffness = largestStiffness(simulation.stiffness);
   const std::vector<FittedBox> start = fittedBoxes(simulation.state.position);
   std::vector<int> row;
   for (const BlockSpec& block : simulation.scene.blocks) row.push_back(block.row);

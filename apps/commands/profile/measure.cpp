@@ -154,7 +154,7 @@ void describePrepared(PreparedScene& scene, ProfileResult& result) {
   for (const BlockSpec& block : scene.simulation.scene.blocks) row.push_back(block.row);
   result.compression_mm = 1e3 * meanRowCompression(scene.simulation.model, fresh.state.position, scene.simulation.state.position,
                                                    bottomRow(scene.simulation.model, fresh.state.position, row));
-  result.stiffness_n_m = scene.simulation.contactStiffness_n_m;
+  result.stiffness_n_m = largestStiffness(scene.simulation.stiffness);
   result.prepared_s = scene.simulation.time_s;
 }
 

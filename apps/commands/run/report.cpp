@@ -95,8 +95,8 @@ Json reportJson(const Simulation& simulation, const RunResult& result, int threa
   report["inertia"] = nameOf(settings.inertia);
   report["sleep"] = nameOf(settings.sleep);
   report["tolerance_m"] = simulation.tolerance_m;
-  report["stiffness_n_m"] = simulation.contactStiffness_n_m;
-  report["spring_stiffness_n_m"] = simulation.springStiffness_n_m;
+  report["stiffness_n_m"] = largestStiffness(simulation.stiffness);
+  report["spring_stiffness_n_m"] = largest(simulation.stiffness.edge_n_m);
   report["substeps"] = result.substeps;
   report["threads"] = threads;
 
@@ -147,7 +147,7 @@ void printResult(const Simulation& simulation, const RunResult& result, int thre
       fmt::format("{}, {} inertia, sleep {}", nameOf(settings.method), nameOf(settings.inertia), nameOf(settings.sleep)));
   row("tolerance", fmt::format("{:.4g} mm{}", kMillimetres * simulation.tolerance_m,
                                simulation.fixedSubsteps > 0 && !settings.tolerance_m ? ", as the substeps allow" : ""));
-  row("contact stiffness", fmt::format("{:.4g} kN/m", 1e-3 * simulation.contactStiffness_n_m));
+  row("contact stiffness", fmt::format("{:.4g} kN/m", 1e-3 * largestStiffness(simulation.stiffness)));
   row("substeps", fmt::format("{} in the last awake frame, {} in all", result.substeps, result.counters.steps));
   if (result.standing.stands) {
     row("stands", "yes");

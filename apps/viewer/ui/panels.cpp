@@ -86,7 +86,7 @@ void physicsPanel(Viewer& viewer, PanelDraft& draft) {
   if (!ImGui::IsItemActive()) draft.tolerance_um = static_cast<float>(1e6 * tuning.tolerance_m);
   auto friction = static_cast<float>(tuning.friction);
   if (ImGui::SliderFloat("friction", &friction, 0.0F, 1.0F, "%.2f")) tuning.friction = static_cast<double>(friction);
-  text(fmt::format("{} steps a frame, contacts {:.1f} kN/m", simulation.substeps, 1e-3 * simulation.contactStiffness_n_m));
+  text(fmt::format("{} steps a frame, contacts {:.1f} kN/m", simulation.substeps, 1e-3 * largestStiffness(simulation.stiffness)));
 }
 
 void handPanel(Viewer& viewer) {

@@ -47,6 +47,37 @@ TEST(Polygon, ASquareCutThroughItsCornersIsHalfOfIt) {
   EXPECT_EQ(clippedBy(square, Vec2(1.0, 0.0), 0.25).size(), 4U);
 }
 
+TEST(Polygon, TheHullOfARectangleAndPointsInItAndOnItIsTheRectangle) {
+  const Polygon hull = convexHull({{2.0, 1.0}, {0.0, 0.0}, {1.0, 0.0}, {1.0, 0.5}, {0.0, 1.0}, {2.0, 0.0}, {2.0, 0.5}});
+  ASSERT_EQ(hull.size(), 4U);
+  EXPECT_NEAR(areaMoments(hull).area_m2, 2.0, 1e-15) << "counterclockwise";
+  EXPECT_NEAR(leastWidth(hull), 1.0, 1e-15);
+  EXPECT_LT(convexHull({{0.0, 0.0}, {1.0, 1.0}, {2.0, 2.0}}).size(), 3U) << "on a line";
+}
+
+// Two unit squares, one turned by an eighth about the common centre: a regular octagon of inradius 1/2.
+TEST(Polygon, TheOverlapOfTwoSquaresTurnedByAnEighthIsAnOctagon) {
+  const double half = 0.5 * std::sqrt(2.0);
+  const Polygon square = {{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}};
+  const Polygon turned = {{0.0, -half}, {half, 0.0}, {0.0, half}, {-half, 0.0}};
+  const Polygon octagon = overlapOf(square, turned);
+  EXPECT_EQ(octagon.size(), 8U);
+  EXPECT_NEAR(areaMoments(octagon).area_m2, 2.0 * (std::sqrt(2.0) - 1.0), 1e-14);
+  EXPECT_NEAR(leastWidth(octagon), 1.0, 1e-14);
+  EXPECT_TRUE(overlapOf(square, {{2.0, 0.0}, {3.0, 0.0}, {3.0, 1.0}}).empty());
+}
+
+// A rectangle a x b has second moments a^2 / 12 and b^2 / 12 per area, about its centre, wherever it lies.
+TEST(Polygon, MomentsOfARectangleAreThoseOfTheTextbook) {
+  const AreaMoments of = areaMoments({{10.0, 20.0}, {13.0, 20.0}, {13.0, 22.0}, {10.0, 22.0}});
+  EXPECT_NEAR(of.area_m2, 6.0, 1e-13);
+  EXPECT_NEAR((of.centroid - Eigen::Vector2d(11.5, 21.0)).norm(), 0.0, 1e-13);
+  EXPECT_NEAR(of.secondPerArea(0, 0), 9.0 / 12.0, 1e-13);
+  EXPECT_NEAR(of.secondPerArea(1, 1), 4.0 / 12.0, 1e-13);
+  EXPECT_NEAR(of.secondPerArea(0, 1), 0.0, 1e-13);
+  EXPECT_EQ(areaMoments({{0.0, 0.0}, {1.0, 0.0}}).area_m2, 0.0);
+}
+
 TEST(Sweep, FindsWhatOverlapsOrLiesWithinTheMargin) {
   const std::vector<double> lower = {2.0, 0.0, 1.0};
   const std::vector<double> upper = {3.0, 1.5, 2.0};

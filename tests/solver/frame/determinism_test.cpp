@@ -88,10 +88,10 @@ TEST(Determinism, ManyTowersAreTheSameOnAnyThreads) {
   expectSameOnAnyThreads(scene, 18);
 }
 
-// Blocks far apart in space that spin, with springs for a heavy one among them, the last, and a step that is far too long for the
-// light ones: all light ones diverge in the first frame, each an island of its own.
+// Blocks far apart in space that spin, with springs for the load of a heavy slab that hangs over all of them, the last, and a
+// step that is far too long for the light ones: all light ones diverge in the first frame, each an island of its own.
 Scene divergingBlocks() {
-  constexpr int kBlocks = 16;
+  constexpr int kBlocks = 15;
   Scene scene;
   scene.floor = false;
   scene.gravity.magnitude = 0.0;
@@ -103,9 +103,13 @@ Scene divergingBlocks() {
     BlockSpec block;
     block.centre = Vec3(static_cast<double>(b), 0.0, 0.0);
     block.spin = Vec3(10.0, 20.0, 30.0);
-    block.mass = b + 1 < kBlocks ? kBlockMass_kg : 1000.0 * kBlockMass_kg;
     scene.blocks.push_back(block);
   }
+  BlockSpec slab;
+  slab.dimensions = Vec3(2.0 * kBlocks, 1.0, 1.0);
+  slab.centre = Vec3(0.5 * kBlocks, 0.0, 10.0);
+  slab.mass = 1000.0 * kBlockMass_kg;
+  scene.blocks.push_back(slab);
   return scene;
 }
 

@@ -211,7 +211,8 @@ TEST(ContactTangent, APointThatIsReachedInTheStepPushesFromNothing) {
     for (std::size_t i = 0; i < static_cast<std::size_t>(manifold.count); ++i) {
       if (!(points.depth[i] > 0.0)) continue;
       ++pushing;
-      most += law.stiffness_n_m * points.depth[i] * (1.0 + law.maxwellRatio + law.dampingTime_s / drawn.step.drift_s);
+      most += law.stiffnessOf(manifold.upper, manifold.lower) * points.depth[i] *
+              (1.0 + law.maxwellRatio + law.dampingTime_s / drawn.step.drift_s);
     }
   }
   ASSERT_GE(pushing, 4);
