@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <limits>
 
 namespace springtower {
 
@@ -88,6 +89,18 @@ void chooseStiffness(Simulation& simulation) {
   simulation.stiffness = std::move(stiffness);
 }
 
+// Forces of the stiffest contacts change by so much when positions change by their rounding, over tuning::kNewtonResidual: no
+// iteration leaves less. It decides for towers of some hundred rows, whose stiffness grows as the cube of their height.
+double roundingResidual(const Simulation& simulation) {
+  double farthest_m = 0.0;
+  for (const BlockSpec& block : simulation.scene.blocks)
+    farthest_m = std::max(farthest_m, block.centre.norm() + block.dimensions.norm());
+  double lightest_kg = std::numeric_limits<double>::infinity();
+  for (const double mass_kg : simulation.model.mass) lightest_kg = std::min(lightest_kg, mass_kg);
+  const double error_n = tuning::kPositionRounding * farthest_m * largestStiffness(simulation.stiffness);
+  return error_n / (tuning::kNewtonResidual * lightest_kg * std::max(simulation.scene.gravity.magnitude, 1.0));
+}
+
 // Sizes the data that every method uses.
 void sizeEngine(Simulation& simulation) {
   const Scene& scene = simulation.scene;
@@ -147,6 +160,7 @@ Simulation::Simulation(const Scene& given) : scene(given), engine(std::make_uniq
   for (std::size_t b = 0; b < count; ++b) setSprings(model, b, stiffness.edge_n_m[b], lengths.blockHeight_m, dampingTime_s);
 
   sizeEngine(*this);
+  engine->roundingResidual = roundingResidual(*this);
   Engine& e = *engine;
   const MethodTraits traits = traitsOf(scene.settings.method);
   if (traits.family == MethodFamily::report) {

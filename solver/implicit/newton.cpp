@@ -30,7 +30,8 @@ struct NewtonOptions {
   double enough;                // relative tolerance, of the initial residual
   bool assumesSupport = false;  // in the first iteration all points push and stick
   double leastEnough = tuning::kNewtonTolerance;
-  int mostStalled = std::numeric_limits<int>::max();  // iterations after the least residual so far
+  bool untilStalled =
+      false;  // goes on while the residual gets less: factors of tall towers are so rounded that it does so slowly
 };
 
 // Newton settings in motion. A share of the initial residual may remain, up to tuning::kMaxMotionResidual: a ten-thousandth of a
@@ -262,19 +263,20 @@ bool solveStep(IslandStep& step, double effective_s, bool carried, const NewtonO
   double residual = island.exceedsFill || carried ? 0.0 : findResidual(step, island, effective_s);
   if (!island.exceedsFill && (carried || residual > tuning::kPredictorResidual))
     residual = beginPredicted(step, island, effective_s, how, clock);
-  const double enough = std::clamp(how.enough * residual, how.leastEnough, std::max(how.leastEnough, tuning::kMaxMotionResidual));
+  const double least = std::max(how.leastEnough, step.engine.roundingResidual);
+  const double enough = std::clamp(how.enough * residual, least, std::max(least, tuning::kMaxMotionResidual));
   const bool wide = step.blocks.size() > tuning::kNarrowBlocks && !island.exceedsFill;
   if (wide && !island.trialIsAhead) residual = evaluateInPlace(step, island, effective_s, clock);
-  bool converged = wide && residual <= tuning::kNewtonTolerance;
+  bool converged = wide && residual <= std::max(tuning::kNewtonTolerance, step.engine.roundingResidual);
   int most = island.exceedsFill || converged ? 0 : tuning::kMaxNewtonIterations;
   bool slow = false;
-  double least = residual;
-  int leastAt = 0;
+  double lowest = residual;
+  int lowestAt = 0;
   for (int iteration = 0; iteration < most; ++iteration) {
     island.useConsistentTangent = residual < how.near;
     island.assumesSupport = iteration == 0 && how.assumesSupport;
     const ActiveSet now = activeSetNow(step, island);
-    if (now.changed) most = std::min(how.mostContactIterations, iteration + tuning::kMaxNewtonIterations);
+    if (now.changed || how.untilStalled) most = std::min(how.mostContactIterations, iteration + tuning::kMaxNewtonIterations);
     const bool old =
         iteration == 0 && island.directions >= tuning::kRefactorDirectionShare * static_cast<double>(mostDirections(island));
     const bool stale = (slow || old) && (now.changed || now.slides || now.limited);
@@ -292,11 +294,12 @@ bool solveStep(IslandStep& step, double effective_s, bool carried, const NewtonO
     slow = residual > tuning::kSlowConvergence * before;
     ++step.counters.implicitIterations;
     converged = residual <= enough;
-    if (residual < least) {
-      least = residual;
-      leastAt = iteration;
+    if (residual < lowest) {
+      lowest = residual;
+      lowestAt = iteration;
     }
-    if (converged || !std::isfinite(residual) || iteration - leastAt >= how.mostStalled) break;
+    if (converged || !std::isfinite(residual) || (how.untilStalled && iteration - lowestAt >= tuning::kMaxStalledIterations))
+      break;
   }
   clock.lap(Stage::integration);
   return converged;
@@ -356,7 +359,7 @@ bool stepFromRest(IslandStep& step, double effective_s, StepFromRest kind) {
   // The weight may reach the foot of a tower row by row.
   NewtonOptions how{std::max(tuning::kMaxActiveSetIterations, static_cast<int>(step.blocks.size())),
                     tuning::kConsistentTangentResidual, 0.0};
-  if (kind != StepFromRest::asPlaced) how.mostStalled = tuning::kMaxStalledIterations;
+  how.untilStalled = kind != StepFromRest::asPlaced;
   how.assumesSupport = step.sticks;
   // Narrow islands come to bear as placed on a way on which less slips. In wide ones, with thousands of slipping points, each
   // iteration without the consistent tangent reduces the residual to three tenths only, and rounding decides whether that is

@@ -19,6 +19,7 @@ namespace springtower {
 /// (docs/adr/0003-ownership.md). Vectors grow only when new pairs appear, the pool of contacts when more pairs touch than before.
 struct Engine {
   std::vector<double> springRadius;  ///< 1/s2, largest eigenvalue of M^-1 K of each block alone; part of the model
+  double roundingResidual = 0.0;     ///< part of a step's residual, over tuning::kNewtonResidual, that positions so rounded leave
   PairTable pairs;
   ContactPool contacts;
   SleepState sleep;
