@@ -23,6 +23,11 @@ double meetingSpeed(const Scene& scene) {
   return speed;
 }
 
+// Stiffness of the contacts of the softest stack, N/m: an impact on it has the largest stiffening.
+double softestContact(const BlockStiffness& of) {
+  return of.stack_n_m.empty() ? 0.0 : *std::min_element(of.stack_n_m.begin(), of.stack_n_m.end());
+}
+
 }  // namespace
 
 Settings chooseMethod(const Scene& scene) {
@@ -33,7 +38,7 @@ Settings chooseMethod(const Scene& scene) {
   double mass = 0.0;
   for (const BlockSpec& block : scene.blocks) mass = std::max(mass, block.mass);
   const double depth = settings.impactDepth * tolerance_m;
-  const double stiffness = largestStiffness(stiffnessForTolerance(loads, tolerance_m));
+  const double stiffness = softestContact(stiffnessForTolerance(loads, tolerance_m));
   const double thrown = meetingSpeed(scene);
   const double squaredSpeed = 2.0 * gravity * loads.askewFall_m + thrown * thrown;
   const double stiffening = mass * squaredSpeed / (depth * depth * stiffness);

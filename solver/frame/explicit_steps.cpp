@@ -56,7 +56,7 @@ int chooseSubsteps(IslandStep& step) {
   const double standing = record.spectralRadius;
   const ApproachEstimate approach =
       isReport ? ApproachEstimate{} : estimateApproach(step);  // contacts of method `report` have no stiffness
-  const double wanted = approach.stiffening;
+  const double stiffening = approach.stiffening;
   const double born = approach.pointRate;
   // Simultaneous contacts of a block add up: the step is stable either for all of them at resting stiffness, or for one with the
   // stiffening of the impact.
@@ -69,8 +69,8 @@ int chooseSubsteps(IslandStep& step) {
         stableSpectralRadius(settings.method, settings.frame_s / substeps, simulation.dampingTime_s, settings.stabilitySafety);
   } else {
     const TetherRates held = tetherRates(step);
-    const double begun = standing + (approach.meeting || wanted > 1.0 ? together * born : 0.0);
-    const double needed = std::max(begun, standing + (wanted > 1.0 ? wanted * born : 0.0));
+    const double begun = standing + (approach.meeting || stiffening > 1.0 ? together * born : 0.0);
+    const double needed = std::max(begun, standing + (stiffening > 1.0 ? stiffening * born : 0.0));
     const double margin = settings.stabilitySafety * (isReport ? tuning::kReportStepMargin : 1.0);
     const auto stepsFor = [&](double radius) {
       const double dt = stableStep(settings.method, radius + held.stiffness, simulation.dampingTime_s, margin) *
@@ -82,7 +82,7 @@ int chooseSubsteps(IslandStep& step) {
         stableSpectralRadius(settings.method, settings.frame_s / substeps, simulation.dampingTime_s, settings.stabilitySafety);
     if (held.stiffness > 0.0) allowed = std::min(allowed, needed);
   }
-  step.maxStiffening = born > 0.0 ? std::clamp((allowed - standing) / (together * born), 1.0, std::max(1.0, wanted)) : 1.0;
+  step.maxStiffening = born > 0.0 ? std::clamp((allowed - standing) / (together * born), 1.0, std::max(1.0, stiffening)) : 1.0;
   return substeps;
 }
 

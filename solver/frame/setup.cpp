@@ -14,7 +14,6 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-#include <limits>
 
 namespace springtower {
 
@@ -89,16 +88,16 @@ void chooseStiffness(Simulation& simulation) {
   simulation.stiffness = std::move(stiffness);
 }
 
-// Forces of the stiffest contacts change by so much when positions change by their rounding, over tuning::kNewtonResidual: no
-// iteration leaves less. It decides for towers of some hundred rows, whose stiffness grows as the cube of their height.
-double roundingResidual(const Simulation& simulation) {
-  double farthest_m = 0.0;
-  for (const BlockSpec& block : simulation.scene.blocks)
-    farthest_m = std::max(farthest_m, block.centre.norm() + block.dimensions.norm());
-  double lightest_kg = std::numeric_limits<double>::infinity();
-  for (const double mass_kg : simulation.model.mass) lightest_kg = std::min(lightest_kg, mass_kg);
-  const double error_n = tuning::kPositionRounding * farthest_m * largestStiffness(simulation.stiffness);
-  return error_n / (tuning::kNewtonResidual * lightest_kg * std::max(simulation.scene.gravity.magnitude, 1.0));
+// Factor by which a block's force error may exceed tuning::kNewtonResidual: forces of its stiffest contacts and springs change by
+// that much when positions change by their rounding, and no iteration leaves less. Above 1 for towers of some hundred rows, whose
+// stiffness grows as the cube of their height.
+double roundingFactor(const Simulation& simulation, std::size_t b) {
+  const BlockSpec& block = simulation.scene.blocks[b];
+  const BlockStiffness& of = simulation.stiffness;
+  const double distance_m = block.centre.norm() + block.dimensions.norm();
+  const double error_n = tuning::kPositionRounding * distance_m * std::max({of.stack_n_m[b], of.floor_n_m[b], of.edge_n_m[b]});
+  const double weight_n = block.mass * std::max(simulation.scene.gravity.magnitude, 1.0);
+  return std::clamp(error_n / (tuning::kNewtonResidual * weight_n), 1.0, tuning::kMaxRoundingFactor);
 }
 
 // Sizes the data that every method uses.
@@ -160,7 +159,7 @@ Simulation::Simulation(const Scene& given) : scene(given), engine(std::make_uniq
   for (std::size_t b = 0; b < count; ++b) setSprings(model, b, stiffness.edge_n_m[b], lengths.blockHeight_m, dampingTime_s);
 
   sizeEngine(*this);
-  engine->roundingResidual = roundingResidual(*this);
+  for (std::size_t b = 0; b < count; ++b) engine->roundingFactor.push_back(roundingFactor(*this, b));
   Engine& e = *engine;
   const MethodTraits traits = traitsOf(scene.settings.method);
   if (traits.family == MethodFamily::report) {

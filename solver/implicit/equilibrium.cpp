@@ -147,7 +147,12 @@ class EquilibriumSearch {
       if (!isIntact_ && !repeats(path)) return false;
     }
     tiltTo(share);
-    return settleInFullSteps(step_, tuning::kEquilibriumTolerance);
+    while (!settleInFullSteps(step_, tuning::kEquilibriumTolerance)) {
+      if (path.empty()) return false;
+      path.pop_back();
+      if (!repeats(path)) return false;
+    }
+    return true;
   }
 
   void startAgain() {
@@ -200,7 +205,7 @@ class EquilibriumSearch {
   Settle level_ = settleAtOnce;  // what finds the equilibrium on level ground
 };
 
-// The contact law of what does not move: no dashpots and no Maxwell branches, which only delay convergence. The branches follow
+// The contact law of what does not move: without dashpots and Maxwell branches, which only delay convergence. The branches follow
 // at once, so that they are without force in the equilibrium.
 ContactLaw staticLaw(ContactLaw law) {
   law.dampingTime_s = 0.0;

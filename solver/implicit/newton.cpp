@@ -89,7 +89,8 @@ double findResidual(IslandStep& step, NewtonSystem& island, double effective_s) 
         largest = std::max(largest, std::abs(r));
       }
     }
-    worst = std::max(worst, largest / (tuning::kNewtonResidual * step.simulation.model.mass[b] * gravity));
+    worst =
+        std::max(worst, largest / (tuning::kNewtonResidual * step.simulation.model.mass[b] * gravity * engine.roundingFactor[b]));
   }
   return worst;
 }
@@ -128,7 +129,7 @@ void applyStep(IslandStep& step, const NewtonSystem& island, double share, doubl
 }
 
 SPRINGTOWER_KERNEL
-void accept(IslandStep& step, NewtonSystem& island) {
+void acceptPoints(IslandStep& step, const NewtonSystem& island) {
   Engine& engine = step.engine;
   for (const std::int32_t at : island.touching) {
     const std::int32_t contact = engine.pairs.contact[static_cast<std::size_t>(at)];
@@ -136,6 +137,11 @@ void accept(IslandStep& step, NewtonSystem& island) {
     const PointRows trial = engine.contacts.trial(contact);
     for (std::size_t r = 0; r < kManifoldRows && points[r] != nullptr; ++r) *points[r] = *trial[r];
   }
+}
+
+void accept(IslandStep& step, const NewtonSystem& island) {
+  acceptPoints(step, island);
+  Engine& engine = step.engine;
   for (const std::int32_t block : step.blocks) {
     BlockHistory& history = engine.memo.blockHistory[static_cast<std::size_t>(block)];
     history.lastImplicitStep_s = step.drift_s;
@@ -263,11 +269,10 @@ bool solveStep(IslandStep& step, double effective_s, bool carried, const NewtonO
   double residual = island.exceedsFill || carried ? 0.0 : findResidual(step, island, effective_s);
   if (!island.exceedsFill && (carried || residual > tuning::kPredictorResidual))
     residual = beginPredicted(step, island, effective_s, how, clock);
-  const double least = std::max(how.leastEnough, step.engine.roundingResidual);
-  const double enough = std::clamp(how.enough * residual, least, std::max(least, tuning::kMaxMotionResidual));
+  const double enough = std::clamp(how.enough * residual, how.leastEnough, std::max(how.leastEnough, tuning::kMaxMotionResidual));
   const bool wide = step.blocks.size() > tuning::kNarrowBlocks && !island.exceedsFill;
   if (wide && !island.trialIsAhead) residual = evaluateInPlace(step, island, effective_s, clock);
-  bool converged = wide && residual <= std::max(tuning::kNewtonTolerance, step.engine.roundingResidual);
+  bool converged = wide && residual <= tuning::kNewtonTolerance;
   int most = island.exceedsFill || converged ? 0 : tuning::kMaxNewtonIterations;
   bool slow = false;
   double lowest = residual;
@@ -275,6 +280,7 @@ bool solveStep(IslandStep& step, double effective_s, bool carried, const NewtonO
   for (int iteration = 0; iteration < most; ++iteration) {
     island.useConsistentTangent = residual < how.near;
     island.assumesSupport = iteration == 0 && how.assumesSupport;
+    if (island.assumesSupport) island.factorised = false;
     const ActiveSet now = activeSetNow(step, island);
     if (now.changed || how.untilStalled) most = std::min(how.mostContactIterations, iteration + tuning::kMaxNewtonIterations);
     const bool old =
@@ -375,8 +381,9 @@ double slipAtRest(IslandStep& step, double effective_s) {
   evaluateForces(step, step.simulation.state, step.simulation.state.velocity, 0.0, PointUpdate::trial);
   predictEuler(step, effective_s);
   NewtonSystem& island = islandOf(step);
+  layOut(step, island);  // contacts may have been created since the step ended
   const double residual = findResidual(step, island, effective_s);
-  accept(step, island);
+  acceptPoints(step, island);
   return residual;
 }
 

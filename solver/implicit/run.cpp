@@ -129,8 +129,10 @@ void prepareImplicit(Simulation& simulation) {
 void setJacobians(IslandStep& step, double effective_s) {
   const BlockModel& model = step.simulation.model;
   NewtonSystem& island = step.engine.memo.newtonSystems[static_cast<std::size_t>(step.blocks.front())];
+  const std::vector<double>& edge_n_m = step.simulation.stiffness.edge_n_m;
   const auto fits = [&](std::size_t b, std::size_t kind) {
-    return model.dimensions[b] == island.blockClasses[kind].dimensions && model.mass[b] == island.blockClasses[kind].mass;
+    const NewtonSystem::BlockClass& known = island.blockClasses[kind];
+    return model.dimensions[b] == known.dimensions && model.mass[b] == known.mass && edge_n_m[b] == known.edge_n_m;
   };
   bool known = island.jacobianStep_s == effective_s && island.blockClassOf.size() == step.blocks.size();
   for (std::size_t i = 0; known && i < step.blocks.size(); ++i) {
@@ -145,7 +147,7 @@ void setJacobians(IslandStep& step, double effective_s) {
     if (count == 0 || !fits(b, count - 1)) {
       if (island.blockClasses.size() == count) island.blockClasses.emplace_back();
       island.blockClasses[count++] = {
-          model.dimensions[b], model.mass[b],
+          model.dimensions[b], model.mass[b], edge_n_m[b],
           blockJacobian(model, step.simulation.scene.settings.inertia, b, 1.0 / (effective_s * effective_s),
                         1.0 + step.simulation.dampingTime_s / effective_s)};
     }

@@ -10,19 +10,18 @@ namespace springtower {
 /// Stiffness of the contacts and springs of every block, N/m, all [blocks]. Part of the model: set once, from the loads that are
 /// expected (solver/world/stiffness).
 struct BlockStiffness {
-  std::vector<double> own_n_m;    ///< of a contact point that carries this block alone
   std::vector<double> stack_n_m;  ///< of one between blocks of the stack in which this block stands
   std::vector<double> floor_n_m;  ///< of one on the floor, which has fewer points: a tower's block rests on three others
   std::vector<double> edge_n_m;   ///< of an upright edge as long as the scene's least block is high
 };
 
-/// Stiffness of a contact point of two blocks, N/m, normal; `lower` is negative for the floor. Within a stack that of the stack.
-/// Between two stacks the softer of theirs, but enough for the heavier of the two blocks: it may come to lie on the other.
+/// Stiffness of a contact point of two blocks, N/m, normal; `lower` is negative for the floor. Between two stacks the stiffer of
+/// theirs: one may come to lie on the other.
 inline double pairStiffness(const BlockStiffness& of, std::int32_t upper, std::int32_t lower) {
   const auto a = static_cast<std::size_t>(upper);
   if (lower < 0) return of.floor_n_m[a];
   const auto b = static_cast<std::size_t>(lower);
-  return std::max({of.own_n_m[a], of.own_n_m[b], std::min(of.stack_n_m[a], of.stack_n_m[b])});
+  return std::max(of.stack_n_m[a], of.stack_n_m[b]);
 }
 
 /// Largest of the stiffnesses of blocks, N/m; 0 where there are none.
@@ -32,7 +31,7 @@ inline double largest(const std::vector<double>& stiffness_n_m) {
 
 /// Largest stiffness of any contact point between blocks, N/m.
 inline double largestStiffness(const BlockStiffness& of) {
-  return std::max(largest(of.stack_n_m), largest(of.own_n_m));
+  return largest(of.stack_n_m);
 }
 
 }  // namespace springtower

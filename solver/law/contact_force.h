@@ -39,7 +39,7 @@ struct ContactStep {
   /// which adds no energy; at 0 it starts at the surface, which an implicit step requires, as it evaluates the step's end only.
   /// The damping velocity is then limited to depth over step.
   double firstRestDepthShare = 1.0;
-  bool sticks = false;  ///< whether points that push stick, whatever the friction
+  bool sticks = false;  ///< whether points that push stick, where there is friction at all
   double kick_s = 0.0;  ///< s for which the force acts on the velocities of a leapfrog step; 0 in other steps
 };
 

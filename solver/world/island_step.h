@@ -29,7 +29,7 @@ struct IslandStep {
   bool usesActiveList = false;               ///< whether the steps are that short
   int activeListSteps = 0;                   ///< steps for which `activePairs` remains valid
   PointKind pointKind = PointKind::penalty;  ///< what the points of contacts made now store, by the kind of steps
-  bool sticks = false;                       ///< points that push stick, whatever the friction
+  bool sticks = false;                       ///< points that push stick, where there is friction at all
   bool unforced = false;                     ///< neither user forces nor the hand act: the equilibrium before the first frame
 };
 

@@ -133,13 +133,41 @@ double askewFall(const Scene& scene, const Footprint& footprint, const BlockSpec
   return std::max(0.0, footprint.lower_m - top);
 }
 
-// Blocks by the height of their middle, the highest first.
-std::vector<std::size_t> orderFromTop(const Scene& scene) {
+// The level of each block above the floor, by the longest path down. Supports first, depth first from the highest block on; what
+// closes a circle of blocks that lean on one another does not count.
+std::vector<std::size_t> levelsOf(const Scene& scene, const Supports& below) {
+  std::vector<std::size_t> fromTop(below.size());
+  std::iota(fromTop.begin(), fromTop.end(), std::size_t{0});
+  std::stable_sort(fromTop.begin(), fromTop.end(),
+                   [&](std::size_t p, std::size_t q) { return scene.blocks[p].centre.z() > scene.blocks[q].centre.z(); });
+  std::vector<std::size_t> level(below.size(), 0);
+  std::vector<std::size_t> visited(below.size(), 0);  // supports looked at, and 1
+  std::vector<std::size_t> path;
+  for (const std::size_t first : fromTop) {
+    if (visited[first] == 0) path.push_back(first);
+    while (!path.empty()) {
+      const std::size_t b = path.back();
+      if (visited[b] > below[b].size()) {
+        for (const Support& support : below[b]) {
+          if (visited[support.block] > below[support.block].size()) level[b] = std::max(level[b], level[support.block] + 1);
+        }
+        path.pop_back();
+        continue;
+      }
+      const std::size_t next = visited[b]++;
+      if (next < below[b].size() && visited[below[b][next].block] == 0) path.push_back(below[b][next].block);
+    }
+  }
+  return level;
+}
+
+// Blocks by level, then by the height of their middle, the highest first: every block before its supports.
+std::vector<std::size_t> orderFromTop(const Scene& scene, const std::vector<std::size_t>& level) {
   std::vector<std::size_t> fromTop(scene.blocks.size());
   std::iota(fromTop.begin(), fromTop.end(), std::size_t{0});
-  const auto middle = [&](std::size_t b) { return scene.blocks[b].centre.z(); };
-  std::sort(fromTop.begin(), fromTop.end(),
-            [&](std::size_t p, std::size_t q) { return middle(p) != middle(q) ? middle(p) > middle(q) : p < q; });
+  std::stable_sort(fromTop.begin(), fromTop.end(), [&](std::size_t p, std::size_t q) {
+    return level[p] != level[q] ? level[p] > level[q] : scene.blocks[p].centre.z() > scene.blocks[q].centre.z();
+  });
   return fromTop;
 }
 
@@ -160,7 +188,7 @@ void findStacks(const Supports& below, LoadEstimate& estimate) {
 struct StackSums {
   double level_n = 0.0;    // N, weight of its level blocks
   bool anyUneven = false;  // whether any block's supports differ in height
-  Polygon corners;         // m, of the outlines, then of their hull
+  Polygon corners;         // m, of the outlines
   double lower_m = 1e300;
   double upper_m = -1e300;
   double foot_m = 1e300;  // m, of the level ones
@@ -177,7 +205,6 @@ void weigh(const Scene& scene, const std::vector<Footprint>& footprints, const S
   for (const std::size_t b : fromTop) {
     const auto stack = static_cast<std::size_t>(estimate.stackOf[b]);
     const double own = scene.blocks[b].mass * weighing;
-    estimate.weight_n[b] = own;
     load[b] += own;
     if (isLevel(scene.blocks[b])) sums[stack].level_n += own;
     estimate.askewFall_m = std::max(estimate.askewFall_m, askewFall(scene, footprints[b], scene.blocks[b], below[b]));
@@ -200,19 +227,6 @@ void weigh(const Scene& scene, const std::vector<Footprint>& footprints, const S
     of.floor_n = std::max(of.floor_n, own / tuning::kLoadedPoints);
     for (const Support& support : below[b]) load[support.block] += load[b] * (support.overlap.area_m2 / area_m2);
   }
-}
-
-// The level of each block above the floor, by the longest path down.
-std::vector<std::size_t> findLevels(const Supports& below, const std::vector<std::size_t>& fromTop, LoadEstimate& estimate,
-                                    std::vector<StackSums>& sums) {
-  std::vector<std::size_t> level(fromTop.size(), 0);
-  for (auto b = fromTop.rbegin(); b != fromTop.rend(); ++b) {
-    for (const Support& support : below[*b]) level[*b] = std::max(level[*b], level[support.block] + 1);
-    std::size_t& levels = sums[static_cast<std::size_t>(estimate.stackOf[*b])].levels;
-    levels = std::max(levels, level[*b] + 1);
-    estimate.layers = std::max(estimate.layers, static_cast<int>(level[*b]) + 1);
-  }
-  return level;
 }
 
 // Moments of the contact points of one level of a stack: four points an overlap, at the corners of a rectangle of its area
@@ -296,7 +310,6 @@ double concentrationOf(const Gravity& gravity, const StackSums& of) {
 LoadEstimate estimateLoads(const Scene& scene) {
   const std::size_t count = scene.blocks.size();
   LoadEstimate estimate;
-  estimate.weight_n.resize(count);
   if (count == 0) return estimate;
   std::vector<Footprint> footprints;
   footprints.reserve(count);
@@ -304,17 +317,24 @@ LoadEstimate estimateLoads(const Scene& scene) {
   const Supports below = supportsOf(footprints);
   findStacks(below, estimate);
   std::vector<StackSums> sums(estimate.stacks.size());
-  const std::vector<std::size_t> fromTop = orderFromTop(scene);
-  weigh(scene, footprints, below, fromTop, estimate, sums);
-  const std::vector<std::size_t> level = findLevels(below, fromTop, estimate, sums);
+  const std::vector<std::size_t> level = levelsOf(scene, below);
+  for (std::size_t b = 0; b < count; ++b) {
+    std::size_t& levels = sums[static_cast<std::size_t>(estimate.stackOf[b])].levels;
+    levels = std::max(levels, level[b] + 1);
+    estimate.layers = std::max(estimate.layers, static_cast<int>(level[b]) + 1);
+  }
+  weigh(scene, footprints, below, orderFromTop(scene, level), estimate, sums);
   const auto joints = findJoints(scene, footprints, below, level, estimate, sums);
+  double heaviest_n = 0.0;
+  for (const BlockSpec& block : scene.blocks)
+    heaviest_n = std::max(heaviest_n, block.mass * scene.gravity.magnitude / tuning::kLoadedPoints);
   for (std::size_t s = 0; s < sums.size(); ++s) {
     StackLoad& of = estimate.stacks[s];
     of.sway_n_m = swayStiffness(joints[s], sums[s]);
     const double concentration = concentrationOf(scene.gravity, sums[s]);
     of.contact_n *= concentration;
-    of.floor_n *= concentration;
-    of.edge_n *= concentration;
+    of.floor_n = std::max(of.floor_n, heaviest_n) * concentration;
+    of.edge_n = std::max(of.edge_n, heaviest_n) * concentration;
   }
   return estimate;
 }

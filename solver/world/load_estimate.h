@@ -13,8 +13,8 @@ namespace springtower {
 /// others, if all fell straight down.
 struct StackLoad {
   double contact_n = 0.0;  ///< N, largest load of one contact point between its blocks: the one that the tolerance applies to
-  double floor_n = 0.0;    ///< N, largest load of one contact point on the floor
-  double edge_n = 0.0;     ///< N, largest load of one of a block's four upright edges
+  double floor_n = 0.0;    ///< N, largest load of one contact point on the floor, also under the heaviest block of the scene
+  double edge_n = 0.0;     ///< N, largest load of one of a block's four upright edges, also under the heaviest block
   double sway_n_m = 0.0;   ///< N/m, least contact stiffness at which the stack does not buckle under its own weight
 };
 
@@ -22,7 +22,6 @@ struct StackLoad {
 struct LoadEstimate {
   std::vector<StackLoad> stacks;
   std::vector<std::int32_t> stackOf;  ///< of each block, [blocks]
-  std::vector<double> weight_n;       ///< N, of each block, on Earth in a scene without gravity, [blocks]
   int layers = 0;                     ///< most blocks on top of one another
   double askewFall_m = 0.0;           ///< m, largest height from which a block that does not lie flat falls onto what is below it
 
@@ -32,6 +31,7 @@ struct LoadEstimate {
 /// Estimates loads from the blocks' true outlines, so that scenes turned about the vertical, mirrored or listed in another order
 /// have the same: every block passes its weight and the load on it to the highest blocks below it (as if all fell straight down),
 /// in proportion to the areas of overlap, each share to two of the four corners of an overlap, and more by the lever of tilted
+/// gravity. Any block of the scene may come to lie on any other, so floor and edges bear the heaviest, unless there is no
 /// gravity. Sway is the buckling of a column under its own weight (Greenhill 1881), with the bending stiffness of the overlaps'
 /// corners in series with the blocks and a safety factor of ten. O(n log n) for scattered scenes.
 LoadEstimate estimateLoads(const Scene& scene);

@@ -59,10 +59,11 @@ struct NewtonWork {
 /// What an island keeps from implicit step to implicit step: the factors of M / step^2 + K for the contacts when they were last
 /// assembled, and working space of the iteration.
 struct NewtonSystem : NewtonWork {
-  /// Blocks of equal size and mass share their own matrix.
+  /// Blocks of equal size, mass and springs share their own matrix.
   struct BlockClass {
     Vec3 dimensions;  ///< m
     double mass;      ///< kg
+    double edge_n_m;  ///< N/m, see BlockStiffness
     BlockJacobian jacobian;
   };
   std::uint64_t pattern = 0;  ///< hash of the pairs that touch, for which the matrix is laid out

@@ -12,7 +12,6 @@ BlockStiffness stiffnessForTolerance(const LoadEstimate& loads, double tolerance
   for (std::size_t b = 0; b < loads.stackOf.size(); ++b) {
     const StackLoad& stack = loads.of(b);
     const auto stiffness = [&](double load_n) { return std::max(load_n / tolerance_m, stack.sway_n_m); };
-    result.own_n_m.push_back(loads.weight_n[b] / (tuning::kLoadedPoints * tolerance_m));
     result.stack_n_m.push_back(stiffness(stack.contact_n));
     result.floor_n_m.push_back(stiffness(stack.floor_n));
     result.edge_n_m.push_back(stiffness(stack.edge_n));

@@ -65,13 +65,24 @@ TEST(LoadEstimate, ABlockOnTwoOthersRestsOnHalfItsWeightEach) {
 }
 
 TEST(LoadEstimate, UnequalOverlapsBearInProportionToTheirAreas) {
-  // The upper brick lies by 45 mm of its 60 on the one and by 15 on the other; each has nine more on top of what it shares.
-  const Scene scene = sceneOf({brick(Vec3(-0.015, 0.0, 0.01)), brick(Vec3(0.045, 0.0, 0.01)), brick(Vec3(0.0, 0.0, 0.03)),
-                               brick(Vec3(0.0, 0.0, 0.05), 9.0)});
+  // The upper brick lies by 45 mm of its 60 on the one and by 15 on the other, with ten more on top.
+  std::vector<BlockSpec> bricks = {brick(Vec3(-0.015, 0.0, 0.01)), brick(Vec3(0.045, 0.0, 0.01)), brick(Vec3(0.0, 0.0, 0.03))};
+  for (int i = 0; i < 10; ++i) bricks.push_back(brick(Vec3(0.0, 0.0, 0.05 + 0.02 * i)));
+  const Scene scene = sceneOf(bricks);
   const LoadEstimate loads = estimateLoads(scene);
-  const double upper_n = weightOf(scene, 9.1);
-  EXPECT_NEAR(loads.stacks[0].floor_n,
-              std::max((0.75 * upper_n + weightOf(scene, 0.1)), weightOf(scene, 9.0)) / tuning::kLoadedPoints, 1e-9);
+  EXPECT_NEAR(loads.stacks[0].floor_n, weightOf(scene, 0.75 * 1.1 + 0.1) / tuning::kLoadedPoints, 1e-12);
+}
+
+// A plank that leans over the edge of a column has a lower centre than the block that carries it.
+TEST(LoadEstimate, LoadsPassDownWhateverTheHeightOfTheCentres) {
+  BlockSpec plank = brick(Vec3(0.2, 0.0, 0.2), 1.0, Vec3(0.5, 0.02, 0.002));
+  plank.orientation = Eigen::Quaterniond(Eigen::AngleAxisd(0.6, Vec3::UnitY()));
+  std::vector<BlockSpec> blocks;
+  for (int i = 0; i < 14; ++i) blocks.push_back(brick(Vec3(0.0, 0.0, 0.01 + 0.02 * i)));
+  ASSERT_LT(plank.centre.z(), blocks.back().centre.z());
+  blocks.push_back(plank);
+  const LoadEstimate loads = estimateLoads(sceneOf(blocks));
+  EXPECT_EQ(loads.layers, 15);
 }
 
 // f01: one of two flush bricks a tenth of a millimetre taller; the other is no support of it.
@@ -128,12 +139,20 @@ TEST(LoadEstimate, ATowerIsAsStiffBesideOthersAsAlone) {
   expectSame(of.stack_n_m.back(), stiffnessOf(towerScene(6, {})).stack_n_m.back());
 }
 
-TEST(PairStiffness, BearsTheHeavierOfTwoBlocksThatDoNotStandTogether) {
+TEST(PairStiffness, IsThatOfTheStifferStack) {
   const Scene scene = sceneOf({brick(Vec3(0.0, 0.0, 0.01), 1e-3), brick(Vec3(1.0, 0.0, 0.01), 10.0)});
   const BlockStiffness of = stiffnessOf(scene);
-  EXPECT_NEAR(pairStiffness(of, 0, 1), weightOf(scene, 10.0) / (tuning::kLoadedPoints * kTolerance_m), 1e-6);
-  EXPECT_NEAR(pairStiffness(of, 1, 0), pairStiffness(of, 0, 1), 1e-12);
-  EXPECT_NEAR(pairStiffness(of, 0, -1), weightOf(scene, 1e-3) / (tuning::kLoadedPoints * kTolerance_m), 1e-9);
+  const double heavy_n_m = weightOf(scene, 10.0) / (tuning::kLoadedPoints * kTolerance_m);
+  EXPECT_NEAR(pairStiffness(of, 0, 1), heavy_n_m, 1e-6);
+  EXPECT_EQ(pairStiffness(of, 1, 0), pairStiffness(of, 0, 1));
+  EXPECT_NEAR(pairStiffness(of, 0, -1), heavy_n_m, 1e-6) << "the heavy one may come to lie on the light one";
+}
+
+TEST(PairStiffness, WithoutGravityALightBlockIsAsSoftAsAlone) {
+  Scene scene = sceneOf({brick(Vec3(0.0, 0.0, 0.01), 1e-3), brick(Vec3(1.0, 0.0, 0.01), 10.0)});
+  scene.gravity.magnitude = 0.0;
+  const BlockStiffness of = stiffnessOf(scene);
+  EXPECT_NEAR(of.edge_n_m[0], 1e-4 * of.edge_n_m[1], 1e-9 * of.edge_n_m[1]);
 }
 
 }  // namespace
