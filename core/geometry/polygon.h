@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <limits>
+#include <utility>
 #include <vector>
 
 namespace springtower {
@@ -30,25 +31,32 @@ std::vector<Point> clippedBy(const std::vector<Point>& polygon, const Point& dir
 /// A polygon in the plane; its corners, m, in order.
 using Polygon = std::vector<Eigen::Vector2d>;
 
-/// Twice the signed area of a triangle; positive where a, b, c turn to the left.
-inline double turnOf(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c) {
-  return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
+/// a x b; positive where b lies to the left of a.
+inline double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+  return a.x() * b.y() - a.y() * b.x();
 }
 
-/// The convex hull of points (m), counterclockwise, without those on its edges (monotone chain: Andrew 1979). O(n log n). Fewer
-/// than three corners where all points lie on a line.
-inline Polygon convexHull(Polygon points) {
-  std::sort(points.begin(), points.end(),
-            [](const Eigen::Vector2d& p, const Eigen::Vector2d& q) { return p.x() != q.x() ? p.x() < q.x() : p.y() < q.y(); });
-  Polygon hull;
-  const auto extend = [&](const Eigen::Vector2d& point, std::size_t fixed) {
-    while (hull.size() > fixed && turnOf(hull[hull.size() - 2], hull.back(), point) <= 0.0) hull.pop_back();
-    hull.push_back(point);
+/// The convex hull of points (m), counterclockwise, without those on its edges and those that follow another in order of x, then
+/// y, at a distance of `same` or less (monotone chain: Andrew 1979). O(n log n). Fewer than three corners where all points lie on
+/// a line.
+inline Polygon convexHull(Polygon points, double same = 0.0) {
+  const auto before = [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+    return std::pair(a.x(), a.y()) < std::pair(b.x(), b.y());
   };
-  for (const Eigen::Vector2d& point : points) extend(point, 1);
-  const std::size_t lower = hull.size();
-  for (std::size_t i = points.size(); i-- > 1;) extend(points[i - 1], lower);
-  if (hull.size() > 1) hull.pop_back();
+  const auto coincide = [&](const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return (a - b).norm() <= same; };
+  std::sort(points.begin(), points.end(), before);
+  points.erase(std::unique(points.begin(), points.end(), coincide), points.end());
+  if (points.size() < 3) return points;
+  Polygon hull;
+  for (const int pass : {0, 1}) {
+    const std::size_t start = hull.size();
+    for (const Eigen::Vector2d& point : points) {
+      while (hull.size() >= start + 2 && cross(hull.back() - hull[hull.size() - 2], point - hull.back()) <= 0.0) hull.pop_back();
+      hull.push_back(point);
+    }
+    hull.pop_back();
+    if (pass == 0) std::reverse(points.begin(), points.end());
+  }
   return hull;
 }
 
@@ -78,7 +86,7 @@ inline AreaMoments areaMoments(const Polygon& polygon) {
   for (std::size_t i = 2; i < polygon.size(); ++i) {
     const Eigen::Vector2d p = polygon[i - 1] - polygon[0];
     const Eigen::Vector2d q = polygon[i] - polygon[0];
-    const double area = 0.5 * turnOf(polygon[0], polygon[i - 1], polygon[i]);
+    const double area = 0.5 * cross(p, q);
     sum.area_m2 += area;
     sum.centroid += area * (p + q) / 3.0;
     const Eigen::Vector2d both = p + q;
@@ -100,7 +108,7 @@ inline double leastWidth(const Polygon& hull) {
     const Eigen::Vector2d& from = hull[i];
     const Eigen::Vector2d& to = hull[(i + 1) % hull.size()];
     double farthest = 0.0;
-    for (const Eigen::Vector2d& corner : hull) farthest = std::max(farthest, turnOf(from, to, corner));
+    for (const Eigen::Vector2d& corner : hull) farthest = std::max(farthest, cross(to - from, corner - from));
     least = std::min(least, farthest / (to - from).norm());
   }
   return least;

@@ -65,7 +65,7 @@ double advance(IslandStep& step, double effective_s, StepFromRest kind) {
 // Steps with Coulomb's friction that grow from `effective_s`, so that the weight comes to bear little by little.
 bool settleByGrowingSteps(IslandStep& step, double effective_s, StepFromRest kind) {
   const double last_s = tuning::kLastEquilibriumStep * step.simulation.lengths.fallTime_s;
-  constexpr double growth = tuning::kEquilibriumStepGrowth;
+  const double growth = kind == StepFromRest::asPlaced ? tuning::kEquilibriumStepGrowth : tuning::kSlipStepGrowth;
   int retries = 0;
   for (int i = 0; i < tuning::kMaxEquilibriumSteps; ++i) {
     const std::uint64_t failures = step.counters.newtonFailures;
@@ -95,9 +95,13 @@ bool settleInFullSteps(IslandStep& step, double tolerances) {
   return false;
 }
 
+double firstStep_s(const IslandStep& step) {
+  return tuning::kFirstEquilibriumStep * step.simulation.lengths.fallTime_s;
+}
+
 // The weight comes to bear as placed: row by row, from steps in which nothing moves far.
 bool settleAsPlaced(IslandStep& step) {
-  return settleByGrowingSteps(step, tuning::kFirstEquilibriumStep * step.simulation.lengths.fallTime_s, StepFromRest::asPlaced);
+  return settleByGrowingSteps(step, firstStep_s(step), StepFromRest::asPlaced);
 }
 
 // All of the weight comes to bear at once, in a step of full length in which nothing slips: from two or three solutions with the
@@ -107,7 +111,7 @@ bool settleAtOnce(IslandStep& step) {
   const double last_s = tuning::kLastEquilibriumStep * step.simulation.lengths.fallTime_s;
   if (!std::isfinite(advance(step, last_s, StepFromRest::supported))) return false;
   const bool slips = slipAtRest(step, last_s) > tuning::kSlipResidual;
-  return settleByGrowingSteps(step, slips ? tuning::kSlipStepShare * last_s : last_s, StepFromRest::coulomb);
+  return settleByGrowingSteps(step, slips ? firstStep_s(step) : last_s, StepFromRest::coulomb);
 }
 
 // The search for an island's equilibrium, at any share of the tilt of gravity.

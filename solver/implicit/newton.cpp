@@ -30,8 +30,7 @@ struct NewtonOptions {
   double enough;                // relative tolerance, of the initial residual
   bool assumesSupport = false;  // in the first iteration all points push and stick
   double leastEnough = tuning::kNewtonTolerance;
-  bool untilStalled =
-      false;  // goes on while the residual gets less: factors of tall towers are so rounded that it does so slowly
+  bool untilStalled = false;  // goes on while the residual gets less, as it does slowly with the rounded factors of tall towers
 };
 
 // Newton settings in motion. A share of the initial residual may remain, up to tuning::kMaxMotionResidual: a ten-thousandth of a
@@ -367,9 +366,8 @@ bool stepFromRest(IslandStep& step, double effective_s, StepFromRest kind) {
                     tuning::kConsistentTangentResidual, 0.0};
   how.untilStalled = kind != StepFromRest::asPlaced;
   how.assumesSupport = step.sticks;
-  // Narrow islands come to bear as placed on a way on which less slips. In wide ones, with thousands of slipping points, each
-  // iteration without the consistent tangent reduces the residual to three tenths only, and rounding decides whether that is
-  // enough.
+  // With the consistent tangent from the start, narrow islands of uneven height end up to twice as deep. In wide islands, with
+  // thousands of slipping points, an iteration without it reduces the residual to three tenths only.
   if (kind == StepFromRest::asPlaced && step.blocks.size() <= tuning::kNarrowBlocks) how.near = 0.0;
   if (step.sticks) how.leastEnough = tuning::kStickingResidual;
   const bool converged = solveStep(step, effective_s, false, how);

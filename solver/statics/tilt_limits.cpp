@@ -10,10 +10,6 @@
 namespace springtower {
 namespace {
 
-double cross(const Vec2& a, const Vec2& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
-
 // A group of blocks that moves as one body, and the edge it tips over: a line perpendicular to `direction`, which is horizontal.
 struct Tipping {
   std::vector<char> moves;  // [blocks]
@@ -123,25 +119,6 @@ class Limits {
 };
 
 }  // namespace
-
-std::vector<Vec2> convexHull(std::vector<Vec2> points, double same) {
-  const auto before = [](const Vec2& a, const Vec2& b) { return std::pair(a.x(), a.y()) < std::pair(b.x(), b.y()); };
-  std::sort(points.begin(), points.end(), before);
-  points.erase(std::unique(points.begin(), points.end(), [&](const Vec2& a, const Vec2& b) { return (a - b).norm() <= same; }),
-               points.end());
-  if (points.size() < 3) return points;
-  std::vector<Vec2> hull;
-  for (const int pass : {0, 1}) {
-    const std::size_t start = hull.size();
-    for (const Vec2& point : points) {
-      while (hull.size() >= start + 2 && cross(hull.back() - hull[hull.size() - 2], point - hull.back()) <= 0.0) hull.pop_back();
-      hull.push_back(point);
-    }
-    hull.pop_back();
-    if (pass == 0) std::reverse(points.begin(), points.end());
-  }
-  return hull;
-}
 
 std::vector<Vec2> keepTo(const std::vector<Vec2>& polygon, const GravityLimit& limit) {
   return clippedBy(polygon, limit.direction, limit.bound);

@@ -23,9 +23,6 @@ struct GravityLimit {
 /// one level after the other. If the former rest on flat contacts, their friction is a limit as well.
 std::vector<GravityLimit> gravityLimits(const StaticsModel& model, std::span<const std::size_t> usable);
 
-/// Convex hull of points in the plane, counterclockwise, without points nearer to each other than `same` (Andrew 1979).
-std::vector<Vec2> convexHull(std::vector<Vec2> points, double same);
-
 /// The part of a convex polygon within a limit (Sutherland & Hodgman 1974).
 std::vector<Vec2> keepTo(const std::vector<Vec2>& polygon, const GravityLimit& limit);
 

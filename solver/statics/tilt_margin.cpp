@@ -1,5 +1,6 @@
 #include "solver/statics/tilt_margin.h"
 
+#include "core/geometry/polygon.h"
 #include "core/tuning.h"
 #include "solver/statics/tilt_limits.h"
 

@@ -6,9 +6,7 @@
 #include "core/geometry/sweep.h"
 #include "core/tuning.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <numeric>
@@ -133,15 +131,15 @@ double askewFall(const Scene& scene, const Footprint& footprint, const BlockSpec
   return std::max(0.0, footprint.lower_m - top);
 }
 
-// The level of each block above the floor, by the longest path down. Supports first, depth first from the highest block on; what
-// closes a circle of blocks that lean on one another does not count.
+// The level of each block above the floor, by the longest path down. Supports first, depth first from the highest block on; a
+// support that leads back to a block on the path, as of blocks that lean on one another, does not count.
 std::vector<std::size_t> levelsOf(const Scene& scene, const Supports& below) {
   std::vector<std::size_t> fromTop(below.size());
   std::iota(fromTop.begin(), fromTop.end(), std::size_t{0});
   std::stable_sort(fromTop.begin(), fromTop.end(),
                    [&](std::size_t p, std::size_t q) { return scene.blocks[p].centre.z() > scene.blocks[q].centre.z(); });
   std::vector<std::size_t> level(below.size(), 0);
-  std::vector<std::size_t> visited(below.size(), 0);  // supports looked at, and 1
+  std::vector<std::size_t> visited(below.size(), 0);  // next support to follow, plus 1 once all are followed; 0: not reached
   std::vector<std::size_t> path;
   for (const std::size_t first : fromTop) {
     if (visited[first] == 0) path.push_back(first);

@@ -31,9 +31,10 @@ struct LoadEstimate {
 /// Estimates loads from the blocks' true outlines, so that scenes turned about the vertical, mirrored or listed in another order
 /// have the same: every block passes its weight and the load on it to the highest blocks below it (as if all fell straight down),
 /// in proportion to the areas of overlap, each share to two of the four corners of an overlap, and more by the lever of tilted
-/// gravity. Any block of the scene may come to lie on any other, so floor and edges bear the heaviest, unless there is no
-/// gravity. Sway is the buckling of a column under its own weight (Greenhill 1881), with the bending stiffness of the overlaps'
-/// corners in series with the blocks and a safety factor of ten. O(n log n) for scattered scenes.
+/// gravity. Any block of the scene may come to lie on any other, so the loads of floor and edges are at least those of the
+/// heaviest one, unless there is no gravity. Sway is the buckling of a column under its own weight (Greenhill 1881), with the
+/// bending stiffness of the overlaps' corners in series with the blocks and a safety factor of ten. O(n log n) for scattered
+/// scenes.
 LoadEstimate estimateLoads(const Scene& scene);
 
 }  // namespace springtower

@@ -99,8 +99,8 @@ TEST(Start, IsTheSameInAnyOrderOfTheBlocks) {
   }
 }
 
-// f01: one of two flush bricks is a tenth of a millimetre taller. It took the other for its support, on an overlap of rounding,
-// and diverged in the first step.
+// f01: one of two flush bricks is a tenth of a millimetre taller. The other counted as its support, by an overlap of rounding,
+// and it diverged in the first step.
 TEST(Start, TwoFlushBricksOfUnequalHeightStand) {
   Scene scene;
   for (const double height_m : {0.02, 0.0201}) {
@@ -114,6 +114,29 @@ TEST(Start, TwoFlushBricksOfUnequalHeightStand) {
   stepFor(simulation, 1.0);
   for (std::size_t b = 0; b < 2; ++b)
     EXPECT_LE((centre(simulation.state.position, b) - scene.blocks[b].centre).norm(), simulation.tolerance_m);
+}
+
+// Two columns of equal blocks side by side, one three times as high: one island, with springs of two stiffnesses. Blocks of one
+// stiffness share a matrix, and Newton's iteration converges in the few iterations of a right one.
+TEST(Start, TouchingStacksOfUnequalHeightHaveMatricesOfTheirOwn) {
+  Scene scene;
+  for (int i = 0; i < 8; ++i) {
+    BlockSpec block;
+    const bool first = i < 2;
+    block.centre = Vec3(0.0, first ? 0.0 : block.dimensions.y(), block.dimensions.z() * (first ? i + 0.5 : i - 1.5));
+    scene.blocks.push_back(block);
+  }
+  Simulation simulation(awake(scene));
+  stepFor(simulation, 1.0);
+  const Engine& engine = *simulation.engine;
+  ASSERT_EQ(engine.memo.islands.count(), 1U);
+  const NewtonSystem& island = engine.memo.newtonSystems.front();
+  ASSERT_EQ(island.blockClassOf.size(), 8U);
+  for (std::size_t b = 0; b < 8; ++b) {
+    const auto kind = static_cast<std::size_t>(island.blockClassOf[b]);
+    EXPECT_EQ(island.blockClasses[kind].edge_n_m, simulation.stiffness.edge_n_m[b]) << "block " << b;
+  }
+  EXPECT_LT(simulation.stiffness.edge_n_m.front(), 0.5 * simulation.stiffness.edge_n_m.back());
 }
 
 }  // namespace

@@ -60,7 +60,7 @@ TEST(WideIsland, APyramidOf40RowsBeginsInEquilibrium) {
   const Counters then = simulation.counters;
   EXPECT_LE(then.factorisations, 100U) << "170 when the weight came to bear row by row";
   stepFor(simulation, 0.5);
-  EXPECT_EQ(simulation.counters.newtonFailures, then.newtonFailures);
+  EXPECT_EQ(simulation.counters.newtonFailures, 0U);
   EXPECT_LE(deepest(simulation), simulation.tolerance_m);
   const ParticleArray before = simulation.state.position;
   stepFor(simulation, 0.5);

@@ -58,7 +58,7 @@ TEST(LoadEstimate, ABlockOnTwoOthersRestsOnHalfItsWeightEach) {
   const LoadEstimate loads = estimateLoads(scene);
   ASSERT_EQ(loads.stacks.size(), 1U);
   EXPECT_EQ(loads.layers, 2);
-  // One point of two bears the half of a block; the block itself may be put on one other.
+  // The largest loads are those of the upper block put on one other block, or on the floor: half its weight a point.
   EXPECT_NEAR(loads.stacks[0].contact_n, weightOf(scene, 1.0) / tuning::kLoadedPoints, 1e-12);
   EXPECT_NEAR(loads.stacks[0].floor_n, weightOf(scene, 1.0) / tuning::kLoadedPoints, 1e-12);
   EXPECT_NEAR(loads.stacks[0].edge_n, weightOf(scene, 1.0) / tuning::kLoadedPoints, 1e-12);
