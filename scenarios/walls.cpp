@@ -9,8 +9,9 @@ constexpr int kPileCells = 6;  // of three blocks side by side, in both directio
 static_assert(kPileRowBlocks == kPileCells * kPileCells * 3);
 constexpr double kPileFit = 1.002;  // spacing of the blocks of a row, in their lengths
 
-Scene pyramidOf(const BlockSpec& brick, int rows) {
-  const double pitch_m = brick.dimensions.x() + kWallGap_m;
+// `extent_m`: of a block along the pyramid.
+Scene pyramidOf(const BlockSpec& brick, double extent_m, int rows) {
+  const double pitch_m = extent_m + kWallGap_m;
   Scene scene;
   for (int row = 0; row < rows; ++row) {
     for (int i = row; i < rows; ++i) {
@@ -47,14 +48,20 @@ Scene wallScene(int columns, int courses) {
 }
 
 Scene pyramidScene(int rows) {
-  return pyramidOf({}, rows);
+  return pyramidOf({}, kBlockLength_m, rows);
+}
+
+Scene brickPyramidScene(int rows) {
+  BlockSpec brick;
+  brick.orientation = Eigen::Quaterniond(1.0, 0.0, 0.0, 1.0).normalized();  // a right angle about z
+  return pyramidOf(brick, kBlockWidth_m, rows);
 }
 
 Scene cubePyramidScene(int rows, double mass_kg) {
   BlockSpec cube;
   cube.dimensions = Vec3::Constant(kCubeSide_m);
   cube.mass = mass_kg;
-  return pyramidOf(cube, rows);
+  return pyramidOf(cube, kCubeSide_m, rows);
 }
 
 Scene pileScene(int rows, const PileStart& start) {

@@ -17,7 +17,10 @@ Scene wallScene(int columns, int courses);
 /// A pyramid of game blocks along x, each on two others except for the lowest row of `rows` blocks.
 Scene pyramidScene(int rows);
 
-/// The same with cubes of kCubeSide_m of the given mass, kg.
+/// The same with the blocks turned by a right angle, so that their lengths lie across the pyramid and their widths along it.
+Scene brickPyramidScene(int rows);
+
+/// The same as `pyramidScene` with cubes of kCubeSide_m of the given mass, kg.
 Scene cubePyramidScene(int rows, double mass_kg = kCubeMass_kg);
 
 /// Number of blocks in a row of a pile.

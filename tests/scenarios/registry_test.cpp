@@ -75,6 +75,23 @@ TEST(ScenarioName, MayHaveASize) {
   EXPECT_EQ(allowedSizes(*findScenario("wall")), "1 to 900 columns, 1 to 100 courses");
 }
 
+// Bricks lie across their pyramid, half a pitch aside from row to row: each on two of the row below, which touch it with a gap
+// between them.
+TEST(Scenarios, BricksLieAcrossTheirPyramid) {
+  const Scene pyramid = sceneNamed("bricks:3");
+  ASSERT_EQ(pyramid.blocks.size(), 6U);
+  const double pitch_m = kBlockWidth_m + kWallGap_m;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const BlockSpec& lowest = pyramid.blocks[i];
+    EXPECT_NEAR(lowest.centre.x(), (static_cast<double>(i) - 1.0) * pitch_m, kSameNumber);
+    EXPECT_NEAR(lowest.centre.z(), 0.5 * kBlockHeight_m, kSameNumber);
+    EXPECT_NEAR(std::abs((lowest.orientation * Vec3::UnitX()).y()), 1.0, kSameNumber) << "its length lies across";
+  }
+  EXPECT_NEAR(pyramid.blocks[3].centre.x(), -0.5 * pitch_m, kSameNumber);
+  EXPECT_NEAR(pyramid.blocks[5].centre.x(), 0.0, kSameNumber);
+  EXPECT_NEAR(pyramid.blocks[5].centre.z(), 2.5 * kBlockHeight_m, kSameNumber);
+}
+
 TEST(ScenarioName, MayBeABitCodeOrAFile) {
   EXPECT_EQ(sceneNamed("(010)-(101)").blocks.size(), 3U);
   EXPECT_EQ(sceneNamed(SPRINGTOWER_SOURCE_DIR "/scenes/report_t1.toml").blocks.size(), 6U);
