@@ -1,11 +1,13 @@
 #include "apps/plot/plot.h"
 
+#include "apps/common/output_file.h"
 #include "apps/plot/axis.h"
 #include "apps/plot/canvas.h"
 #include "core/error.h"
 
 #include <algorithm>
 #include <array>
+#include <cairo-pdf.h>
 #include <cairo-svg.h>
 #include <cairo.h>
 #include <cmath>
@@ -296,7 +298,7 @@ std::array<double, 2> sizeOf(const Plot& plot) {
   return {std::ceil(drawing.width), std::ceil(drawing.height)};
 }
 
-void advancePull(cairo_surface_t* surface, const Plot& plot, double scale) {
+void drawOn(cairo_surface_t* surface, const Plot& plot, double scale) {
   Canvas canvas(surface);
   cairo_scale(canvas.get(), scale, scale);
   Drawing drawing(canvas, plot);
@@ -331,7 +333,7 @@ void writeSvg(std::ostream& stream, const Plot& plot) {
   const auto [width, height] = sizeOf(plot);
   std::ostringstream text;
   const Surface surface(cairo_svg_surface_create_for_stream(toStream, &text, width, height), cairo_surface_destroy);
-  advancePull(surface.get(), plot, 1.0);
+  drawOn(surface.get(), plot, 1.0);
   cairo_surface_finish(surface.get());
   check(cairo_surface_status(surface.get()));
   // cairo numbers the surfaces of a process; the same chart shall be the same file.
@@ -340,13 +342,32 @@ void writeSvg(std::ostream& stream, const Plot& plot) {
   if (!stream) check(CAIRO_STATUS_WRITE_ERROR);
 }
 
+void writePdf(std::ostream& stream, const Plot& plot) {
+  // The surface says when it was made; the same chart shall be the same file.
+  constexpr const char* kNoDate = "2003-01-01T00:00:00Z";
+  const auto [width, height] = sizeOf(plot);
+  const Surface surface(cairo_pdf_surface_create_for_stream(toStream, &stream, width, height), cairo_surface_destroy);
+  cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_CREATE_DATE, kNoDate);
+  cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_TITLE, plot.title.c_str());
+  drawOn(surface.get(), plot, 1.0);
+  cairo_surface_finish(surface.get());
+  check(cairo_surface_status(surface.get()));
+  if (!stream) check(CAIRO_STATUS_WRITE_ERROR);
+}
+
 void writePng(std::ostream& stream, const Plot& plot) {
   const auto [width, height] = sizeOf(plot);
   const Surface surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24, kPixelsPerPoint * static_cast<int>(width),
                                                    kPixelsPerPoint * static_cast<int>(height)),
                         cairo_surface_destroy);
-  advancePull(surface.get(), plot, kPixelsPerPoint);
+  drawOn(surface.get(), plot, kPixelsPerPoint);
   check(cairo_surface_write_to_png_stream(surface.get(), toStream, &stream));
+}
+
+void writePlot(const std::string& folder, const std::string& name, const Plot& plot) {
+  writeOutputFile(folder, name + ".svg", [&](std::ostream& stream) { writeSvg(stream, plot); });
+  writeOutputFile(folder, name + ".png", [&](std::ostream& stream) { writePng(stream, plot); });
+  writeOutputFile(folder, name + ".pdf", [&](std::ostream& stream) { writePdf(stream, plot); });
 }
 
 }  // namespace springtower

@@ -74,9 +74,14 @@ struct Plot {
 /// Values that are not finite are left out.
 PlotBars histogram(const std::string& name, const std::vector<double>& values, std::size_t bins);
 
-/// Writes a chart as SVG (letters as outlines, so that it looks the same everywhere) and as PNG (three pixels a point). The same
-/// chart gives the same bytes. Throws InputError when the stream takes no more.
+/// Writes a chart as SVG (letters as outlines, so that it looks the same everywhere), as PNG (three pixels a point) and as PDF.
+/// The same chart gives the same bytes; so a PDF says nothing of when it was made. Throws InputError when the stream takes no
+/// more.
 void writeSvg(std::ostream& stream, const Plot& plot);
 void writePng(std::ostream& stream, const Plot& plot);
+void writePdf(std::ostream& stream, const Plot& plot);
+
+/// Writes a chart into that folder as NAME.svg, NAME.png and NAME.pdf. Throws InputError as OutputFile does.
+void writePlot(const std::string& folder, const std::string& name, const Plot& plot);
 
 }  // namespace springtower

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "apps/common/peer_process.h"
 #include "apps/common/provenance.h"
 #include "core/settings.h"
 
@@ -22,6 +23,8 @@ enum class ChartScene {
   collapse,    ///< the tower leans by a little more than it can stand
   spin,        ///< one block tumbles without gravity
   heavyLight,  ///< every other row ten times as heavy
+  wall,        ///< a wall in running bond
+  pyramid,     ///< a pyramid of cubes
   // Not charted: on these the choice of method `auto` is judged, which was made without them.
   holes,  ///< a tower of twelve rows, half of them with blocks missing
   lean,   ///< nine rows, gravity 9 degrees from straight down
@@ -32,9 +35,10 @@ enum class ChartScene {
 };
 
 /// Names as the command line spells them, in the order of the enumeration.
-inline constexpr std::array<std::string_view, 13> kChartSceneNames = {
-    "uniform", "heights", "pull", "drop", "collapse", "spin", "heavy-light", "holes", "lean", "tall", "slide", "heap", "thrown"};
-inline constexpr std::size_t kChartedScenes = 7;
+inline constexpr std::array<std::string_view, 15> kChartSceneNames = {"uniform", "heights",     "pull",  "drop",    "collapse",
+                                                                      "spin",    "heavy-light", "wall",  "pyramid", "holes",
+                                                                      "lean",    "tall",        "slide", "heap",    "thrown"};
+inline constexpr std::size_t kChartedScenes = 9;
 constexpr bool isCharted(ChartScene scene) {
   return static_cast<std::size_t>(scene) < kChartedScenes;
 }
@@ -62,13 +66,6 @@ inline constexpr std::array<ChartMeasureRow, kChartMeasures> kChartMeasureRows =
      {"energy_error", "energy gained, or lost where nothing rubs or strikes; of that at the start", 1e-10},
      {"error_mm", "largest distance of a corner from a converged run of the same model, mm", 1e-6}}};
 
-/// Another engine, which runs in the same chart where its program is (bench/peers_*.cpp).
-enum class Peer { none, bullet, ode };
-inline constexpr std::array<std::string_view, 3> kPeerNames = {"", "bullet", "ode"};
-constexpr std::string_view nameOf(Peer peer) {
-  return kPeerNames[static_cast<std::size_t>(peer)];
-}
-
 /// The parameter by which a method trades speed for accuracy.
 enum class Knob { tolerance, substeps };
 
@@ -91,6 +88,9 @@ struct ChartLimits {
   int samples = 5;        ///< by turns with those of the other cases, each from the same state
   int frames = 120;       ///< timed in a sample; the first after the state is restored is left out
   double sample_s = 0.2;  ///< s of processor time after which a sample ends early in scenes at rest; see measureChart
+  int wallColumns = 40;   ///< blocks in every other course of the wall
+  int wallCourses = 25;
+  int pyramidRows = 40;  ///< of the pyramid, and cubes in its lowest row
   bool operator==(const ChartLimits&) const = default;
 };
 
@@ -119,12 +119,14 @@ struct ChartResult {
 
 /// A figure of another engine, measured elsewhere.
 struct PeerResult {
+  ChartScene scene = ChartScene::uniform;
   std::string engine;
   std::string settings;
   std::string verdict;
   std::array<double, kChartMeasures> measured{};  ///< as above
   double frame_ms = 0.0;
-  double ratioToBullet = 0.0;  ///< of its time, to Bullet's with 16 steps on the machine it was measured on; NaN unknown
+  double ratioToBullet = 0.0;  ///< of its time, to Bullet's with 16 steps on the machine it was measured on; NaN unknown, and of
+                               ///< walls and pyramids, whose times are drawn as they were measured
 };
 
 struct Chart {
@@ -147,6 +149,14 @@ constexpr bool isInMotion(ChartScene scene) {
   return scene == ChartScene::pull || scene == ChartScene::drop || scene == ChartScene::collapse || scene == ChartScene::spin ||
          scene == ChartScene::slide || scene == ChartScene::heap || scene == ChartScene::thrown;
 }
+
+/// Whether a scene is a stack of hundreds of blocks in one island: it is looked at for a shorter time, with fewer methods.
+constexpr bool isStack(ChartScene scene) {
+  return scene == ChartScene::wall || scene == ChartScene::pyramid;
+}
+
+/// The size of a scene's blocks as in its name: "40x25" of a wall, else the number of rows.
+std::string sizeText(ChartScene scene, const ChartLimits& limits);
 
 /// Whether a scene is one of the kind that comes to rest, so that it can be held to a tolerance at rest.
 constexpr bool comesToRest(ChartScene scene) {

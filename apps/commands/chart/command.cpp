@@ -4,10 +4,11 @@
 #include "apps/commands/chart/files.h"
 #include "apps/commands/chart/maps.h"
 #include "apps/commands/chart/measure.h"
-#include "apps/commands/chart/peers.h"
+#include "apps/commands/chart/recorded_peers.h"
 #include "apps/commands/chart/scene.h"
 #include "apps/common/options.h"
 #include "apps/common/output_file.h"
+#include "apps/common/peer_process.h"
 #include "apps/common/progress.h"
 #include "core/error.h"
 #include "core/limits.h"
@@ -31,8 +32,10 @@ constexpr double kUnlimited_s = 1e9;
 
 constexpr std::string_view kChartExamples =
     R"help(scenes: uniform (equal blocks), heights (varying by 0.2 mm), pull (a block at 4 cm/s), drop (three rows from 2 cm), collapse
-(it leans more than it can stand), spin (one block in flight), heavy-light (every other row ten times as heavy); not charted:
-holes (blocks missing), lean (9 degrees), tall (36 rows), slide (over the floor), heap (eight fall askew), thrown (two meet)
+(it leans more than it can stand), spin (one block in flight), heavy-light (every other row ten times as heavy), wall (40 x 25 in
+running bond) and pyramid (40 rows of cubes), both by implicit steps, rigid-pgs, xpbd and other engines alone, for 2 s, with four
+times --case-limit; not charted: holes (blocks missing), lean (9 degrees), tall (36 rows), slide (over the floor), heap (eight
+fall askew), thrown (two meet)
 
 Each method is swept over its own parameter: a tolerance, or steps of a frame. Accuracy is measured first, cases side by side;
 then the speed, each case alone and by turns. A method that falls, diverges or times out is a result and is named on the chart.
@@ -40,7 +43,7 @@ A run that was broken off resumes where it was.
 
 examples:
   springtower chart --quick --out quick              a look in less than a minute
-  springtower chart --out figures --peers bench/data/peers/records.csv
+  springtower chart --out figures --peers bench/data/peers/records.csv,bench/data/peers/stacks.csv
                                                      everything, in minutes
   springtower chart --maps --out maps                where each method is stable
   springtower chart --scenes uniform --methods implicit,rigid-pgs --seconds 60 --case-limit 600)help";
@@ -98,7 +101,7 @@ std::vector<Peer> peersOf(const ChartCommand& command) {
 
 ChartLimits limitsOf(const ChartCommand& command) {
   ChartLimits limits;
-  if (command.quick) limits = {6, 1.0, 0.25, 2, 20, 0.02};
+  if (command.quick) limits = {6, 1.0, 0.25, 2, 20, 0.02, 10, 6, 10};
   if (command.rows) limits.rows = static_cast<int>(*command.rows);
   if (command.seconds) limits.seconds = *command.seconds;
   if (command.case_s) limits.case_s = *command.case_s;
@@ -123,13 +126,11 @@ void printChoice(const Chart& chart, ChartScene scene) {
              choice.passes ? "pass" : "fail");
 }
 
-// The plots of a folder, as SVG and PNG. Returns their names.
+// The plots of a folder, as SVG, PNG and PDF. Returns their names.
 std::vector<std::string> writePlots(const std::string& folder, const std::vector<std::pair<std::string, Plot>>& plots) {
   std::vector<std::string> names;
   for (const auto& [name, plot] : plots) {
-    const Plot& drawn = plot;
-    writeOutputFile(folder, name + ".svg", [&](std::ostream& stream) { writeSvg(stream, drawn); });
-    writeOutputFile(folder, name + ".png", [&](std::ostream& stream) { writePng(stream, drawn); });
+    writePlot(folder, name, plot);
     names.push_back(name);
   }
   return names;
@@ -180,8 +181,23 @@ int executeMaps(const ChartCommand& command) {
   writeOutputFile(command.out, "maps.csv", [&](std::ostream& stream) { writeMapsCsv(stream, maps, provenance); });
   const std::vector<std::string> names = writePlots(command.out, mapPlots(maps, provenance));
   writeOutputFile(command.out, "maps.md", [&](std::ostream& stream) { writeMapsIndex(stream, maps, names, provenance); });
-  fmt::print("{} maps (SVG and PNG), maps.csv and maps.md in {}\n", names.size(), onOneLine(command.out));
+  fmt::print("{} maps (SVG, PNG and PDF), maps.csv and maps.md in {}\n", names.size(), onOneLine(command.out));
   return 0;
+}
+
+// Figures of other engines, from every file that is given. A file without any for these sizes is named.
+void readAllPeers(const ChartCommand& command, const std::vector<Peer>& here, Chart& chart) {
+  const bool bullet = std::find(here.begin(), here.end(), Peer::bullet) != here.end();
+  for (const std::string& path : command.peers) {
+    const std::vector<PeerResult> found = readPeers(path, chart.limits);
+    chart.peers.insert(chart.peers.end(), found.begin(), found.end());
+    if (found.empty()) {
+      fmt::print("{}: no figures for {} rows, a wall of {} or a pyramid of {}, none are drawn\n", onOneLine(path),
+                 chart.limits.rows, sizeText(ChartScene::wall, chart.limits), sizeText(ChartScene::pyramid, chart.limits));
+    } else if (!isStack(found.front().scene) && !bullet) {
+      fmt::print("{}: not drawn, as they are carried over by their ratio to Bullet, which is not in this run\n", onOneLine(path));
+    }
+  }
 }
 
 }  // namespace
@@ -201,7 +217,8 @@ CLI::App* defineChart(CLI::App& program, ChartCommand& command) {
             "processor time after which a case has timed out, twice that where blocks move (default 3)");
   addWholeNumber(*chart, "--samples", command.samples, kChartSamplesRange, "of each case's speed, taken by turns (default 5)");
   chart->add_option("--peers", command.peers, "figures of other engines, drawn hollow beside ours; see bench/data/peers")
-      ->type_name("FILE.csv");
+      ->delimiter(',')
+      ->type_name("FILE.csv,...");
   chart->add_option("--out", command.out, "writes into this folder (default chart)")->type_name("DIR");
   chart->add_flag("--quick", command.quick, "small towers, few cases and short samples: less than a minute");
   CLI::Option* unlimited =
@@ -231,15 +248,7 @@ int executeChart(const ChartCommand& command) {
   Chart chart;
   chart.provenance = provenanceNow();
   chart.limits = limitsOf(command);
-  if (command.peers) {
-    chart.peers = readPeers(*command.peers, chart.limits.rows);
-    if (chart.peers.empty())
-      fmt::print("{}: no figures for {} rows, none are drawn\n", onOneLine(*command.peers), chart.limits.rows);
-    const bool bullet = std::find(peers.begin(), peers.end(), Peer::bullet) != peers.end();
-    if (!chart.peers.empty() && !bullet)
-      fmt::print("{}: not drawn, as they are carried over by their ratio to Bullet, which is not in this run\n",
-                 onOneLine(*command.peers));
-  }
+  readAllPeers(command, peers, chart);
   makeOutputFolder(command.out);
   const std::string resume = (std::filesystem::path(command.out) / "chart.json").string();
   // What an earlier run has measured stays, and so do scenes that this one does not measure.
@@ -278,7 +287,7 @@ int executeChart(const ChartCommand& command) {
     std::fflush(stdout);
     charts = writeAll(command.out, chart);
   }
-  fmt::print("{} cases, {} charts (SVG and PNG), chart.csv, chart.json and index.md in {}\n", chart.results.size(), charts,
+  fmt::print("{} cases, {} charts (SVG, PNG and PDF), chart.csv, chart.json and index.md in {}\n", chart.results.size(), charts,
              onOneLine(command.out));
   return 0;
 }

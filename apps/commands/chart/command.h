@@ -19,7 +19,7 @@ struct ChartCommand {
   std::optional<double> seconds;
   std::optional<double> case_s;
   std::optional<std::int64_t> samples;
-  std::optional<std::string> peers;
+  std::vector<std::string> peers;
   std::string out = "chart";
   bool quick = false;
   bool unlimited = false;

@@ -1,6 +1,6 @@
 #include "apps/commands/chart/draw.h"
 
-#include "apps/commands/chart/files.h"
+#include "apps/commands/chart/recorded_peers.h"
 #include "apps/commands/chart/scene.h"
 
 #include <algorithm>
@@ -26,7 +26,8 @@ bool drawn(const ChartResult& result, ChartMeasure measure) {
   return std::isfinite(result.of(measure)) && std::isfinite(result.frame_ms);
 }
 
-std::string describe(ChartScene scene, int rows) {
+std::string describe(ChartScene scene, const ChartLimits& limits) {
+  const int rows = limits.rows;
   switch (scene) {
     case ChartScene::uniform:
       return fmt::format("a tower of {} rows of equal blocks at rest", rows);
@@ -42,6 +43,10 @@ std::string describe(ChartScene scene, int rows) {
       return "one block tumbling without gravity";
     case ChartScene::heavyLight:
       return fmt::format("a tower of {} rows, every other row ten times as heavy, at rest", rows);
+    case ChartScene::wall:
+      return fmt::format("a wall of {} columns and {} courses in running bond at rest", limits.wallColumns, limits.wallCourses);
+    case ChartScene::pyramid:
+      return fmt::format("a pyramid of {} rows of cubes of 20 mm at rest", limits.pyramidRows);
     case ChartScene::holes:
       return "a tower of twelve rows, half of them with blocks missing";
     case ChartScene::lean:
@@ -64,8 +69,9 @@ std::string labelOf(const ChartResult& result, ChartMeasure measure) {
   return result.outcome == ChartOutcome::right ? "" : result.note;
 }
 
-std::string titleOf(ChartMeasure measure, const ChartLimits& limits) {
-  if (measure == ChartMeasure::creep) return fmt::format("creep from {:g} to {:g} s, mm", 0.5 * limits.seconds, limits.seconds);
+std::string titleOf(ChartScene scene, ChartMeasure measure, const ChartLimits& limits) {
+  const double end_s = timesOf(scene, limits).end_s;
+  if (measure == ChartMeasure::creep) return fmt::format("creep from {:g} to {:g} s, mm", 0.5 * end_s, end_s);
   return std::string(kChartMeasureRows[static_cast<std::size_t>(measure)].title);
 }
 
@@ -140,21 +146,28 @@ void addResults(const Chart& chart, ChartScene scene, ChartMeasure measure, Plot
   }
 }
 
+// A record of a stack says in a sentence which block has moved where.
+std::string labelOf(const PeerResult& peer) {
+  if (isStack(peer.scene)) return peer.verdict == "stands" ? "" : "fell";
+  return peer.verdict.starts_with("yes") ? "" : peer.verdict;
+}
+
 // Adds other engines as they were measured elsewhere.
-void addPeers(const Chart& chart, ChartMeasure measure, Plot& plot) {
+void addPeers(const Chart& chart, ChartScene scene, ChartMeasure measure, Plot& plot) {
   const ChartMeasureRow& row = kChartMeasureRows[static_cast<std::size_t>(measure)];
   int engines = 0;
   for (const PeerResult& peer : chart.peers) {
     const double value = peer.measured[static_cast<std::size_t>(measure)];
-    const double frame_ms = carriedOver_ms(chart, peer);
-    if (!std::isfinite(value) || !(frame_ms > 0.0) || measuredHere(chart, peer)) continue;
+    const double frame_ms = drawnTime_ms(chart, peer);
+    if (peer.scene != scene || !std::isfinite(value) || !(frame_ms > 0.0) || measuredHere(chart, peer)) continue;
     const std::string name = peer.engine + " (elsewhere)";
     if (plot.lines.empty() || plot.lines.back().name != name) {
       plot.lines.push_back({name, {}, Marker::hollow});
       plot.lines.back().style = kElsewhereStyle + engines++;
+      plot.lines.back().joined = !isStack(scene);  // these were measured more than once
     }
     plot.lines.back().points.push_back({std::max(value, row.floor), frame_ms});
-    plot.lines.back().labels.push_back(peer.verdict.starts_with("yes") ? "" : peer.verdict);
+    plot.lines.back().labels.push_back(labelOf(peer));
   }
 }
 
@@ -170,16 +183,16 @@ void addFront(const std::vector<const ChartResult*>& front, ChartMeasure measure
 Plot plotOf(const Chart& chart, ChartScene scene, ChartMeasure measure) {
   const ChartMeasureRow& row = kChartMeasureRows[static_cast<std::size_t>(measure)];
   Plot plot;
-  const std::string title = titleOf(measure, chart.limits);
+  const std::string title = titleOf(scene, measure, chart.limits);
   plot.title = "Speed against accuracy: " + title;
-  plot.subtitle = describe(scene, chart.limits.rows);
+  plot.subtitle = describe(scene, chart.limits);
   plot.x = {title, true};
   plot.y = {"processor time of a frame of 1/60 s, ms", true};
   plot.references = {{kFrame_ms, "16.7 ms: real time"}};
   std::string missing;
   std::string cut;
   addResults(chart, scene, measure, plot, missing, cut);
-  if (scene == ChartScene::uniform) addPeers(chart, measure, plot);
+  addPeers(chart, scene, measure, plot);
   const std::vector<const ChartResult*> front = paretoFront(chart, scene, measure);
   addFront(front, measure, plot);
   plot.footnote = fmt::format("Pareto front: {}. Values below {:g} are drawn there. ", listed(front), row.floor);
@@ -188,8 +201,11 @@ Plot plotOf(const Chart& chart, ChartScene scene, ChartMeasure measure) {
     plot.footnote +=
         fmt::format("Looked at for less time{}: {}. ", measure == ChartMeasure::creep ? ", and left out of the front" : "", cut);
   }
-  if (scene == ChartScene::uniform && !chart.peers.empty()) {
-    plot.footnote += "Hollow: other engines, measured elsewhere and carried over by their ratio to Bullet. ";
+  const bool elsewhere =
+      std::any_of(chart.peers.begin(), chart.peers.end(), [&](const PeerResult& peer) { return peer.scene == scene; });
+  if (elsewhere) {
+    plot.footnote += isStack(scene) ? "Hollow: other engines, measured elsewhere on an AMD EPYC (Zen 4), as they were recorded. "
+                                    : "Hollow: other engines, measured elsewhere and carried over by their ratio to Bullet. ";
   }
   plot.footnote += fmt::format(
       "One thread; mean over up to {} frames, of each the least of up to {} samples, or more where they are short. {}",
@@ -309,7 +325,7 @@ void writeChartIndex(std::ostream& stream, const Chart& chart, const std::vector
     }
   }
   stream << "\n## Charts\n";
-  for (const std::string& name : names) stream << fmt::format("\n![{}]({}.png) ([SVG]({}.svg))\n", name, name, name);
+  for (const std::string& name : names) stream << fmt::format("\n![{0}]({0}.png) ([SVG]({0}.svg), [PDF]({0}.pdf))\n", name);
   stream << "\n## Where methods fail\n\n| scene | method | outcome | what happened |\n|---|---|---|---|\n";
   for (const ChartResult& result : chart.results) {
     if (result.outcome == ChartOutcome::right) continue;

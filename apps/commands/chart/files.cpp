@@ -1,6 +1,6 @@
 #include "apps/commands/chart/files.h"
 
-#include "apps/common/options.h"
+#include "apps/commands/chart/recorded_peers.h"
 #include "apps/common/output_file.h"
 #include "core/error.h"
 #include "core/limits.h"
@@ -10,7 +10,6 @@
 #include <filesystem>
 #include <fmt/format.h>
 #include <fstream>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <ostream>
 
@@ -32,8 +31,15 @@ std::string_view nameOf(Knob knob) {
 }
 
 Json limitsJson(const ChartLimits& limits) {
-  return {{"rows", limits.rows},       {"seconds", limits.seconds}, {"case_s", limits.case_s},
-          {"samples", limits.samples}, {"frames", limits.frames},   {"sample_s", limits.sample_s}};
+  return {{"rows", limits.rows},
+          {"seconds", limits.seconds},
+          {"case_s", limits.case_s},
+          {"samples", limits.samples},
+          {"frames", limits.frames},
+          {"sample_s", limits.sample_s},
+          {"wall_columns", limits.wallColumns},
+          {"wall_courses", limits.wallCourses},
+          {"pyramid_rows", limits.pyramidRows}};
 }
 
 Json resultJson(const ChartResult& result) {
@@ -91,21 +97,6 @@ std::string csvNumber(double value) {
   return std::isfinite(value) ? fmt::format("{:.6g}", value) : std::string();
 }
 
-std::vector<std::string> fieldsOf(const std::string& line) {
-  std::vector<std::string> fields(1);
-  bool quoted = false;
-  for (const char c : line) {
-    if (c == '"') {
-      quoted = !quoted;
-    } else if (c == ',' && !quoted) {
-      fields.emplace_back();
-    } else if (c != '\r') {
-      fields.back() += c;
-    }
-  }
-  return fields;
-}
-
 }  // namespace
 
 void writeChartJson(std::ostream& stream, const Chart& chart) {
@@ -145,70 +136,21 @@ void writeChartCsv(std::ostream& stream, const Chart& chart) {
   const Provenance& from = chart.provenance;
   constexpr double kFramesInASecond = 60.0;
   for (const ChartResult& r : chart.results) {
-    stream << fmt::format("here,{},{},{},{},{:g},{},{},{},{:.6g},{:.6g},{},{},{},{}", nameOf(r.what.scene), chart.limits.rows,
-                          methodOf(r.what), nameOf(r.what.knob), r.what.value, r.what.iterations, csvText(nameOf(r.outcome)),
-                          csvText(r.note), r.simulated_s, r.from_s, r.frames, r.samples, csvNumber(r.frame_ms),
-                          csvNumber(1e-3 * kFramesInASecond * r.frame_ms));
+    stream << fmt::format("here,{},{},{},{},{:g},{},{},{},{:.6g},{:.6g},{},{},{},{}", nameOf(r.what.scene),
+                          sizeText(r.what.scene, chart.limits), methodOf(r.what), nameOf(r.what.knob), r.what.value,
+                          r.what.iterations, csvText(nameOf(r.outcome)), csvText(r.note), r.simulated_s, r.from_s, r.frames,
+                          r.samples, csvNumber(r.frame_ms), csvNumber(1e-3 * kFramesInASecond * r.frame_ms));
     for (const double value : r.measured) stream << ',' << csvNumber(value);
     stream << fmt::format(",{},{},{},{},{}\n", from.commit, csvText(from.compiler), csvText(from.flags), csvText(from.processor),
                           from.date);
   }
   for (const PeerResult& peer : chart.peers) {
-    stream << fmt::format("elsewhere,uniform,{},{},settings,{},,{},,,,,,{},{}", chart.limits.rows, csvText(peer.engine),
-                          csvText(peer.settings), csvText(peer.verdict), csvNumber(carriedOver_ms(chart, peer)),
-                          csvNumber(1e-3 * kFramesInASecond * carriedOver_ms(chart, peer)));
+    stream << fmt::format("elsewhere,{},{},{},settings,{},,{},,,,,,{},{}", nameOf(peer.scene), sizeText(peer.scene, chart.limits),
+                          csvText(peer.engine), csvText(peer.settings), csvText(peer.verdict),
+                          csvNumber(drawnTime_ms(chart, peer)), csvNumber(1e-3 * kFramesInASecond * drawnTime_ms(chart, peer)));
     for (const double value : peer.measured) stream << ',' << csvNumber(value);
     stream << ",elsewhere,,,,\n";
   }
-}
-
-double carriedOver_ms(const Chart& chart, const PeerResult& peer) {
-  const ChartCase bullet{ChartScene::uniform, Method::rigidPgs, Knob::substeps, 16.0, Peer::bullet, 0};
-  const auto found =
-      std::find_if(chart.results.begin(), chart.results.end(), [&](const ChartResult& result) { return result.what == bullet; });
-  const bool known = found != chart.results.end() && std::isfinite(found->frame_ms) && std::isfinite(peer.ratioToBullet);
-  return known ? peer.ratioToBullet * found->frame_ms : std::nan("");
-}
-
-std::vector<PeerResult> readPeers(const std::string& path, int rows) {
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) throw InputError(fmt::format("--peers: cannot read {}", inQuotes(path)));
-  std::string line;
-  std::getline(stream, line);
-  std::map<std::string, std::size_t> column;
-  const std::vector<std::string> names = fieldsOf(line);
-  for (std::size_t i = 0; i < names.size(); ++i) column[names[i]] = i;
-  for (const char* needed : {"engine", "version", "settings", "scene", "rows", "threads", "stands_60_s", "worst_penetration_mm",
-                             "top_height_error_mm", "creep_mm", "jitter_mm_s", "ms_per_frame", "ratio_to_bullet_16_substeps"}) {
-    if (!column.contains(needed)) throw InputError(fmt::format("{}: found no column {}", onOneLine(path), inQuotes(needed)));
-  }
-  std::vector<PeerResult> peers;
-  for (int number = 2; std::getline(stream, line); ++number) {
-    const std::vector<std::string> fields = fieldsOf(line);
-    if (fields.size() != names.size()) {
-      throw InputError(
-          fmt::format("{}:{}: found {} fields, allowed are {}", onOneLine(path), number, fields.size(), names.size()));
-    }
-    const auto text = [&](const char* name) { return fields[column[name]]; };
-    const auto value = [&](const char* name) { return parseNumber(text(name)).value_or(std::nan("")); };
-    if (text("scene") != "uniform" || value("rows") != rows || value("threads") != 1.0 || text("ms_per_frame").empty()) continue;
-    PeerResult peer;
-    peer.engine = text("engine");
-    peer.settings = text("version") + ", " + text("settings");
-    peer.verdict = text("stands_60_s");
-    peer.measured = {value("worst_penetration_mm"),
-                     std::abs(value("top_height_error_mm")) / rows,
-                     std::nan(""),
-                     value("creep_mm"),
-                     value("jitter_mm_s"),
-                     std::nan(""),
-                     std::nan(""),
-                     std::nan("")};
-    peer.frame_ms = value("ms_per_frame");
-    peer.ratioToBullet = value("ratio_to_bullet_16_substeps");
-    peers.push_back(peer);
-  }
-  return peers;
 }
 
 }  // namespace springtower

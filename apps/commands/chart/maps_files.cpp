@@ -120,7 +120,7 @@ void writeMapsIndex(std::ostream& stream, const std::vector<StabilityMap>& maps,
     }
   }
   stream << "\n## Maps\n";
-  for (const std::string& name : names) stream << fmt::format("\n![{0}]({0}.png) ([SVG]({0}.svg))\n", name);
+  for (const std::string& name : names) stream << fmt::format("\n![{0}]({0}.png) ([SVG]({0}.svg), [PDF]({0}.pdf))\n", name);
 }
 
 }  // namespace springtower

@@ -1,6 +1,5 @@
 #include "apps/commands/chart/measure.h"
 
-#include "apps/commands/chart/peers.h"
 #include "apps/commands/chart/scene.h"
 #include "apps/common/interruption.h"
 #include "core/error.h"
@@ -24,6 +23,7 @@ namespace {
 // A tower may be looked at from here on, s.
 constexpr double kEarliest_s = 1.0;
 constexpr double kMotionLimits = 2.0;
+constexpr double kStackLimits = 4.0;      // for a fifth of the simulated time, and twenty times the blocks
 constexpr double kShortSamples_s = 0.03;  // of a case in all, s of processor time, and no more than
 constexpr double kShortShare = 0.15;      // this share of what one sample may take
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
@@ -98,7 +98,8 @@ class ChartRun {
     closed_ = stackedReference(start_, row_, scene.floor);
     reference_ = fittedBoxes(closed_);
     if (what.method == Method::automatic) result.note = fmt::format("took {}", nameOf(scene.settings.method));
-    if (what.peer != Peer::none) peer_ = std::make_unique<PeerProcess>(what, scene);
+    if (what.peer != Peer::none)
+      peer_ = std::make_unique<PeerProcess>(what.peer, PeerSettings{static_cast<int>(what.value), what.iterations}, scene);
     pulled_ = pulledBlock(what.scene, scene);
     if (pulled_ >= 0) {
       leftOut_.assign(scene.blocks.size(), 0);
@@ -184,7 +185,10 @@ class ChartRun {
   [[nodiscard]] double halfFrame() const { return 0.5 * simulation_.scene.settings.frame_s; }
 
   // What is in motion is not timed beside, and has to be seen to its end.
-  [[nodiscard]] double caseLimit_s() const { return (isInMotion(result.what.scene) ? kMotionLimits : 1.0) * limits_.case_s; }
+  [[nodiscard]] double caseLimit_s() const {
+    const ChartScene scene = result.what.scene;
+    return (isInMotion(scene) ? kMotionLimits : isStack(scene) ? kStackLimits : 1.0) * limits_.case_s;
+  }
 
   // A slow method that comes to rest is looked at before its time, so that it has figures at all. Returns whether the run may go
   // on: for a quarter of its limit more.

@@ -2,6 +2,7 @@
 
 #include "scenarios/loose.h"
 #include "scenarios/towers.h"
+#include "scenarios/walls.h"
 #include "solver/frame/inputs.h"
 
 #include <algorithm>
@@ -20,6 +21,7 @@ constexpr int kLeanRows = 9;
 constexpr double kLean_deg = 9.0;
 constexpr int kTallRows = 36;
 constexpr double kMotion_s = 2.0;  // of scenes that do not come to rest
+constexpr double kStack_s = 2.0;   // in half of which a wall or pyramid has sunk as deep as an engine lets it
 
 // Blocks on their own.
 Scene looseBlocks(ChartScene kind) {
@@ -33,10 +35,14 @@ Scene looseBlocks(ChartScene kind) {
 }
 
 bool hasRows(ChartScene scene) {
-  return scene != ChartScene::spin && scene != ChartScene::slide && scene != ChartScene::heap && scene != ChartScene::thrown;
+  return !isStack(scene) && scene != ChartScene::spin && scene != ChartScene::slide && scene != ChartScene::heap &&
+         scene != ChartScene::thrown;
 }
 
-Scene blocksOf(ChartScene scene, int rows) {
+Scene blocksOf(ChartScene scene, const ChartLimits& limits) {
+  int rows = limits.rows;
+  if (scene == ChartScene::wall) return wallScene(limits.wallColumns, limits.wallCourses);
+  if (scene == ChartScene::pyramid) return cubePyramidScene(limits.pyramidRows);
   if (!hasRows(scene)) return looseBlocks(scene);
   if (scene == ChartScene::holes) return towerWithHolesScene();
   if (scene == ChartScene::lean) rows = kLeanRows;
@@ -84,6 +90,24 @@ const std::vector<StepsAndIterations> kPeerKnobs = {{1, 0}, {1, 200}, {4, 0}, {4
 const std::vector<StepsAndIterations> kQuickPeerKnobs = {{1, 0}, {16, 0}};
 const std::vector<StepsAndIterations> kMoreIterations = {{4, 16}, {8, 16}, {16, 16}};
 
+// Of a stack, whose frames take twenty times as long as a tower's: no explicit steps, which take seconds for one, no matrices of
+// pivoting or of Eigen's, and of what iterates a few settings. Bullet has all of its own.
+const std::vector<Sweep>& stackSweeps() {
+  static const std::vector<Sweep> all = {
+      {Method::implicit, Knob::tolerance, {2e-4, 1e-4, 5e-5, 2e-5, 1e-5, 5e-6, 1e-6}, {5e-5, 1e-5}},
+      {Method::implicitEuler, Knob::tolerance, {2e-4, 5e-5, 1e-5}, {5e-5}},
+      {Method::rigidPgs, Knob::substeps, {8, 16, 32, 64}, {16}},
+      {Method::xpbd, Knob::substeps, {12, 25, 50, 100}, {25}},
+  };
+  return all;
+}
+const std::vector<StepsAndIterations> kStackOdeKnobs = {{1, 0}, {4, 0}};
+
+const std::vector<StepsAndIterations>& peerKnobs(ChartScene scene, Peer peer, bool quick) {
+  if (quick) return kQuickPeerKnobs;
+  return isStack(scene) && peer == Peer::ode ? kStackOdeKnobs : kPeerKnobs;
+}
+
 }  // namespace
 
 std::string nameOf(const ChartCase& what) {
@@ -92,8 +116,13 @@ std::string nameOf(const ChartCase& what) {
   return what.iterations == 0 ? steps : fmt::format("{}, {} iterations", steps, what.iterations);
 }
 
+std::string sizeText(ChartScene scene, const ChartLimits& limits) {
+  if (scene == ChartScene::wall) return fmt::format("{}x{}", limits.wallColumns, limits.wallCourses);
+  return fmt::format("{}", scene == ChartScene::pyramid ? limits.pyramidRows : limits.rows);
+}
+
 Scene sceneOf(const ChartCase& what, const ChartLimits& limits) {
-  Scene scene = blocksOf(what.scene, limits.rows);
+  Scene scene = blocksOf(what.scene, limits);
   scene.settings.method = what.peer == Peer::none ? what.method : Method::rigidPgs;  // whose blocks are rigid as well
   scene.settings.sleep = Sleep::off;
   if (what.knob == Knob::tolerance) {
@@ -107,15 +136,15 @@ Scene sceneOf(const ChartCase& what, const ChartLimits& limits) {
 
 std::vector<ChartCase> casesOf(ChartScene scene, const std::vector<Method>& methods, const std::vector<Peer>& peers, bool quick) {
   std::vector<ChartCase> cases;
-  for (const Sweep& sweep : sweeps()) {
+  for (const Sweep& sweep : isStack(scene) ? stackSweeps() : sweeps()) {
     if (std::find(methods.begin(), methods.end(), sweep.method) == methods.end()) continue;
     for (const double value : quick ? sweep.quick : sweep.values) cases.push_back({scene, sweep.method, sweep.knob, value});
-    if (quick || (sweep.method != Method::rigidPgs && sweep.method != Method::xpbd)) continue;
+    if (quick || isStack(scene) || (sweep.method != Method::rigidPgs && sweep.method != Method::xpbd)) continue;
     for (const StepsAndIterations& knobs : kMoreIterations)
       cases.push_back({scene, sweep.method, Knob::substeps, knobs.substeps, Peer::none, knobs.iterations});
   }
   for (const Peer peer : peers) {
-    for (const StepsAndIterations& knobs : quick ? kQuickPeerKnobs : kPeerKnobs) {
+    for (const StepsAndIterations& knobs : peerKnobs(scene, peer, quick)) {
       cases.push_back({scene, Method::rigidPgs, Knob::substeps, knobs.substeps, peer, knobs.iterations});
     }
   }
@@ -132,6 +161,9 @@ ChartTimes timesOf(ChartScene scene, const ChartLimits& limits) {
     case ChartScene::lean:
     case ChartScene::tall:
       return {half_s, half_s, limits.seconds};
+    case ChartScene::wall:
+    case ChartScene::pyramid:
+      return {std::min(half_s, 0.5 * kStack_s), std::min(half_s, 0.5 * kStack_s), std::min(limits.seconds, kStack_s)};
     case ChartScene::pull:
       return {0.2 * limits.seconds, 0.2 * limits.seconds, 0.2 * limits.seconds + std::min(kMotion_s, half_s)};
     case ChartScene::drop:
@@ -148,11 +180,11 @@ ChartTimes timesOf(ChartScene scene, const ChartLimits& limits) {
 
 int towerRows(ChartScene scene, const ChartLimits& limits) {
   if (scene == ChartScene::tall) return kTallRows;
-  return isCharted(scene) && scene != ChartScene::drop && scene != ChartScene::spin ? limits.rows : 0;
+  return isCharted(scene) && !isStack(scene) && scene != ChartScene::drop && scene != ChartScene::spin ? limits.rows : 0;
 }
 
 std::optional<bool> expectedToStand(ChartScene scene) {
-  if (!hasRows(scene)) return {};
+  if (!hasRows(scene) && !isStack(scene)) return {};
   return scene != ChartScene::collapse;
 }
 

@@ -85,8 +85,7 @@ ValidationSection measured(const ValidationPart& part, const ValidationPlan& pla
   section.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   for (ValidationFigure& figure : section.figures) {
     figure.plot.footnote = footnote(provenance);
-    writeOutputFile(folder, figure.name + ".svg", [&](std::ostream& stream) { writeSvg(stream, figure.plot); });
-    writeOutputFile(folder, figure.name + ".png", [&](std::ostream& stream) { writePng(stream, figure.plot); });
+    writePlot(folder, figure.name, figure.plot);
   }
   return section;
 }

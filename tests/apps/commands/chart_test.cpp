@@ -284,5 +284,42 @@ TEST(Chart, RunsOtherEnginesAndCarriesOverThoseMeasuredElsewhere) {
   EXPECT_NEAR(ms, 0.5 * bullet_ms, 1e-3 * bullet_ms);
 }
 
+// Walls and pyramids, beside them what other engines took elsewhere: of these sizes, as it was recorded.
+TEST(Chart, DrawsAWallAndAPyramidBesideRecordedPoints) {
+  const ScratchFolder scratch;
+  const std::string records = std::string(SPRINGTOWER_SOURCE_DIR) + "/bench/data/peers/stacks.csv";
+  const ProgramResult result = chart({"--quick", "--scenes", "wall,pyramid", "--methods", "implicit,bullet", "--peers", records,
+                                      "--case-limit", "30", "--out", scratch.file("out")});
+  ASSERT_EQ(result.exitCode, 0) << result.error;
+  const Json file = Json::parse(contentOf(scratch.file("out/chart.json")));
+  ASSERT_EQ(file.at("cases").size(), 8U) << "two scenes, two tolerances, and two settings of Bullet";
+  for (const Json& one : file.at("cases")) {
+    SCOPED_TRACE(one.dump());
+    if (one.at("method") != "implicit") continue;
+    EXPECT_EQ(one.at("outcome"), "right");
+    EXPECT_LE(one.at("penetration_mm").get<double>(), 1e3 * one.at("value").get<double>());
+    EXPECT_LE(one.at("creep_mm").get<double>(), 1e-5);
+  }
+  const std::string table = contentOf(scratch.file("out/chart.csv"));
+  EXPECT_THAT(table, HasSubstr("here,wall,10x6,implicit,tolerance_m,5e-05,"));
+  EXPECT_THAT(table, HasSubstr("here,pyramid,10,bullet,substeps,16,"));
+  // Box3D with 32 substeps took 0.7386 ms for a pyramid of ten rows, 0.024 mm deep.
+  EXPECT_THAT(linesOf(table), ::testing::Contains(::testing::ContainsRegex(
+                                  "^elsewhere,pyramid,10,\"Box3D\",settings,\"[^\"]*substeps 32\",.*,0.7386,[^,]*,0.024,")));
+  EXPECT_THAT(table, ::testing::Not(HasSubstr("elsewhere,wall"))) << "none of ten columns and six courses";
+  for (const char* name : {"wall_penetration_mm.svg", "pyramid_penetration_mm.png", "pyramid_penetration_mm.pdf"})
+    EXPECT_GT(contentOf(scratch.file("out") + "/" + name).size(), 1000U) << name;
+}
+
+TEST(Chart, RefusesRecordsOfStacksWithoutTheirColumns) {
+  const ScratchFolder scratch;
+  std::ofstream(scratch.file("peers.csv"))
+      << "engine,version,settings,scene,threads,penetration_end_mm\nBox,1,a,cubes:40,1,0.1\n";
+  expectRefusal({"--peers", scratch.file("peers.csv"), "--out", scratch.file("out")}, "no column 'median_ms'");
+  std::ofstream(scratch.file("short.csv"))
+      << "engine,version,settings,scene,threads,median_ms,penetration_end_mm,verdict\nBox,1,a,cubes:40,1\n";
+  expectRefusal({"--peers", scratch.file("short.csv"), "--out", scratch.file("out")}, "found 5 fields, allowed are 8");
+}
+
 }  // namespace
 }  // namespace springtower

@@ -1,4 +1,4 @@
-#include "apps/commands/chart/peers.h"
+#include "apps/common/peer_process.h"
 
 #include "core/block.h"
 #include "core/error.h"
@@ -28,11 +28,11 @@ std::string programOf(Peer peer) {
 }
 
 // As bench/peers.h reads it.
-std::string textOf(const ChartCase& what, const Scene& scene) {
+std::string textOf(const PeerSettings& settings, const Scene& scene) {
   const Vec3 gravity = scene.gravity.at(0.0);
-  std::string text = fmt::format("{} {} {} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {}\n", scene.blocks.size(),
-                                 static_cast<int>(what.value), what.iterations, scene.settings.frame_s, scene.staticFriction,
-                                 gravity.x(), gravity.y(), gravity.z(), scene.floor ? 1 : 0);
+  std::string text = fmt::format("{} {} {} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {}\n", scene.blocks.size(), settings.substeps,
+                                 settings.iterations, scene.settings.frame_s, scene.staticFriction, gravity.x(), gravity.y(),
+                                 gravity.z(), scene.floor ? 1 : 0);
   for (const BlockSpec& block : scene.blocks) {
     const Eigen::Quaterniond& q = block.orientation;
     const Vec3 vectors[] = {block.velocity, block.spin, block.dimensions};
@@ -83,10 +83,10 @@ std::vector<Peer> peersHere() {
   return here;
 }
 
-PeerProcess::PeerProcess(const ChartCase& what, const Scene& scene)
+PeerProcess::PeerProcess(Peer peer, const PeerSettings& settings, const Scene& scene)
     : numbers_(1 + kNumbersPerBlock * scene.blocks.size()), frame_s_(scene.settings.frame_s) {
   for (const BlockSpec& block : scene.blocks) dimensions_.push_back(block.dimensions);
-  const std::string program = programOf(what.peer);
+  const std::string program = programOf(peer);
   int ends[2] = {-1, -1};
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
     throw InputError(fmt::format("{}: cannot be started: {}", program, std::strerror(errno)));
@@ -105,7 +105,7 @@ PeerProcess::PeerProcess(const ChartCase& what, const Scene& scene)
   posix_spawn_file_actions_destroy(&actions);
   close(ends[1]);
   socket_ = ends[0];
-  const std::string text = textOf(what, scene);
+  const std::string text = textOf(settings, scene);
   if (error == 0 && sendAll(socket_, text.data(), text.size())) return;
   close(socket_);
   throw InputError(fmt::format("{}: cannot be started: {}", program, std::strerror(error)));

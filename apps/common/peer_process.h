@@ -1,13 +1,28 @@
 #pragma once
 
-#include "apps/commands/chart/chart.h"
 #include "core/scene/scene.h"
 #include "core/state.h"
 
+#include <array>
+#include <cstddef>
+#include <string_view>
 #include <sys/types.h>
 #include <vector>
 
 namespace springtower {
+
+/// Another engine, which runs on our scenes where its program is (bench/peers_*.cpp).
+enum class Peer { none, bullet, ode };
+inline constexpr std::array<std::string_view, 3> kPeerNames = {"", "bullet", "ode"};
+constexpr std::string_view nameOf(Peer peer) {
+  return kPeerNames[static_cast<std::size_t>(peer)];
+}
+
+/// By which such an engine trades speed for accuracy.
+struct PeerSettings {
+  int substeps = 1;    ///< equal steps of a frame
+  int iterations = 0;  ///< of its solver of contacts; 0: its default
+};
 
 /// The engines whose programs (bench/peers_*.cpp) are beside this one.
 std::vector<Peer> peersHere();
@@ -15,8 +30,8 @@ std::vector<Peer> peersHere();
 /// Another engine at work on a scene, in a process of its own.
 class PeerProcess {
  public:
-  /// Starts it with a scene and values of its parameters. Throws InputError when the program cannot be started.
-  PeerProcess(const ChartCase& what, const Scene& scene);
+  /// Starts it with a scene. Precondition: `peer` is not none. Throws InputError when the program cannot be started.
+  PeerProcess(Peer peer, const PeerSettings& settings, const Scene& scene);
   PeerProcess(const PeerProcess&) = delete;
   PeerProcess& operator=(const PeerProcess&) = delete;
   ~PeerProcess();
