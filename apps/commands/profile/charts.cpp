@@ -1,6 +1,7 @@
 #include "apps/commands/profile/charts.h"
 
 #include "apps/commands/profile/report_figures.h"
+#include "apps/commands/profile/stacks.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -65,6 +66,10 @@ std::string describe(ProfileScene scene) {
       return "many towers at rest, all blocks awake";
     case ProfileScene::pile:
       return "one stack of 108 blocks a row, landing after a fall of 10 cm";
+    case ProfileScene::walls:
+      return "walls in running bond at rest, all blocks awake";
+    case ProfileScene::pyramids:
+      return "pyramids of cubes and of bricks at rest, all blocks awake";
   }
   return "";
 }
@@ -100,7 +105,7 @@ class Charts {
 
   std::vector<NamedPlot> all() {
     for (const auto& [scene, results] : byScene_) {
-      if (scene != ProfileScene::towers) rowsAgainstRate(scene, results);
+      if (scene != ProfileScene::towers && !isStack(scene)) rowsAgainstRate(scene, results);
       stages(scene, results);
       if (scene == ProfileScene::pull || scene == ProfileScene::pullSleep || scene == ProfileScene::collapse ||
           scene == ProfileScene::pile) {
@@ -109,6 +114,7 @@ class Charts {
     }
     if (const auto rest = byScene_.find(ProfileScene::rest); rest != byScene_.end()) figure623(rest->second);
     if (const auto many = byScene_.find(ProfileScene::towers); many != byScene_.end()) manyTowers(many->second);
+    stackGrowth();
     return std::move(charts_);
   }
 
@@ -155,7 +161,7 @@ class Charts {
       Plot chart = plot("Where the time of a frame goes", scene);
       chart.subtitle = fmt::format("{}: {}{}", nameOf(series_[i], series_), describe(scene), commonOf(series_));
       const bool many = scene == ProfileScene::towers;
-      chart.x.title = many ? "towers" : "rows";
+      chart.x.title = many ? "towers" : isStack(scene) ? "name and size" : "rows";
       chart.y = {"ms a frame, mean, wall time summed over threads", false, 0.0};
       for (const std::string_view name : kStageNames) {
         std::string label(name);
@@ -167,7 +173,8 @@ class Charts {
         if (seriesOf(*result) != series_[i]) continue;
         chart.bars.left.push_back(place - 0.38);
         chart.bars.right.push_back(place + 0.38);
-        chart.x.labels.emplace_back(place, fmt::format("{}", many ? result->what.towers : result->what.rows));
+        chart.x.labels.emplace_back(
+            place, isStack(scene) ? result->what.stack : fmt::format("{}", many ? result->what.towers : result->what.rows));
         for (std::size_t s = 0; s < kStages; ++s) chart.bars.layers[s].heights.push_back(result->stage_ms[s]);
         place += 1.0;
       }
@@ -202,6 +209,53 @@ class Charts {
     addLines(chart, results, [](const ProfileResult& r) { return PlotPoint{static_cast<double>(r.blocks), r.cost().median}; });
     chart.references = {{1e3 / kScreenRate_hz, "16.7 ms: a frame at 60 Hz"}};
     charts_.emplace_back("towers", std::move(chart));
+  }
+
+  // A line for each family and number of threads, and Bullet's points hollow.
+  void stackGrowth() {
+    Plot chart = plot("Walls and pyramids: blocks against time", ProfileScene::walls);
+    chart.subtitle = "at rest, all blocks awake" + commonOf(series_);
+    chart.x = {"blocks", true};
+    chart.y = {"ms a frame", true};
+    int style = 0;
+    for (const StackFamily& family : stackFamilies()) {
+      PlotLine peers{fmt::format("Bullet, {}", family.what), {}, Marker::hollow, false};
+      peers.style = style;
+      for (std::size_t i = 0; i < series_.size(); ++i) addFamily(family, i, style, chart, peers);
+      if (!peers.points.empty()) chart.lines.push_back(std::move(peers));
+    }
+    if (chart.lines.empty()) return;
+    std::string powers;
+    for (const StackGrowth& growth : springtower::stackGrowth(profile_)) {
+      powers += fmt::format("{}{:.2f} ({}, {} thread{})", powers.empty() ? "Times grow with blocks to the power " : ", ",
+                            growth.exponent, familyOf(growth.family).what, growth.threads, growth.threads == 1 ? "" : "s");
+    }
+    if (!powers.empty()) chart.footnote = powers + ". " + chart.footnote;
+    chart.references = {{1e3 / kScreenRate_hz, "16.7 ms: a frame at 60 Hz"}};
+    const bool peers = std::any_of(chart.lines.begin(), chart.lines.end(), [](const PlotLine& line) { return !line.joined; });
+    if (peers)
+      chart.footnote = "Hollow: Bullet with the steps nearest in depth, so many a frame, processor time. " + chart.footnote;
+    charts_.emplace_back("stacks_growth", std::move(chart));
+  }
+
+  // The results of a family in one series, if any, and what another engine made of them.
+  void addFamily(const StackFamily& family, std::size_t series, int& style, Plot& chart, PlotLine& peers) {
+    const auto scene = byScene_.find(family.scene);
+    if (scene == byScene_.end()) return;
+    PlotLine line{fmt::format("{}, {}", family.what, nameOf(series_[series], series_)), {}};
+    line.style = style;
+    for (const ProfileResult* result : scene->second) {
+      if (&familyOf(result->what.stack) != &family || seriesOf(*result) != series_[series]) continue;
+      line.points.push_back({static_cast<double>(result->blocks), result->cost().median});
+      const PeerFigures* const peer = nearestInAccuracy(*result);
+      if (peer == nullptr) continue;
+      peers.points.push_back({static_cast<double>(result->blocks), peer->frame_ms});
+      peers.labels.push_back(fmt::format("{}{}", peer->substeps, peer->stands ? "" : ", fell"));
+    }
+    if (line.points.empty()) return;
+    std::sort(line.points.begin(), line.points.end(), [](const PlotPoint& a, const PlotPoint& b) { return a.x < b.x; });
+    chart.lines.push_back(std::move(line));
+    ++style;
   }
 
   // Each frame of the tower nearest to the game's 18 rows, and how the frames are spread.

@@ -5,6 +5,7 @@
 #include "apps/commands/profile/measure.h"
 #include "apps/commands/profile/report_figures.h"
 #include "apps/commands/profile/scene.h"
+#include "apps/commands/profile/stacks.h"
 #include "apps/common/interruption.h"
 #include "apps/common/options.h"
 #include "apps/common/output_file.h"
@@ -32,6 +33,7 @@ constexpr Range kToleranceRange{1e-7, 1e-2, "m"};
 constexpr Range kProfileSamplesRange{1, 1000, ""};
 constexpr Range kFramesRange{2, 100000, ""};
 constexpr Range kLimitRange{0.0, 1e6, "s"};
+constexpr double kFullPeer_s = 60.0;
 constexpr int kTowersRows = 18;
 constexpr const char* kUnfinished = "profile.unfinished.json";
 
@@ -44,13 +46,17 @@ A run with --out that was broken off goes on where it was.
 
 scenes: rest (settled, awake), sway (gravity sways by 0.1 degree), heights (varying by 0.2 mm), pull (a block at 4 cm/s, all
 awake), pull-sleep (the same with sleep), collapse (gravity tilted by 14.5 degrees), asleep, towers (many of 18 rows, awake),
-pile (a connected stack of 108 blocks a row, dropped from 10 cm: its first frames on the floor)
+pile (a connected stack of 108 blocks a row, dropped from 10 cm: its first frames on the floor), walls (running bond, half
+blocks at the ends), pyramids (cubes of 20 mm; bricks laid across); of both: the first frame, depth, creep, what is required of
+some, Bullet with the steps that come nearest in depth, and the growth of cost with blocks; on one thread and two; some 2 minutes
 
 examples:
   springtower profile --quick                                     a look at rest and collapse in a few seconds
   springtower profile --out figures                               all default cases, with charts, CSV and JSON
   springtower profile --rows 18 --scenes rest --tolerances 1e-5 --threads 1,2
   springtower profile --rows 46 --scenes pile --tolerances 2e-4 --threads 1,2 --samples 1    some 5000 blocks; minutes
+  springtower profile --scenes walls,pyramids --quick             a look at their table in seconds
+  springtower profile --stacks wall:20x12,cubes:60 --peer-limit 0 these alone, without Bullet
   springtower profile --rows 18 --scenes pull --frames 60 --trace pull.json   then open pull.json at ui.perfetto.dev
   springtower profile --from figures/profile.json --out figures   draws the charts again without timing anything)help";
 
@@ -77,7 +83,28 @@ std::vector<double> numbers(const std::vector<std::string>& texts, const Range& 
   return values;
 }
 
+// Those of a scene: as given, or the usual ones.
+std::vector<std::string> stacksOf(const ProfileCommand& command, ProfileScene scene) {
+  if (command.stacks.empty()) {
+    return stacksOf(scene, command.quick ? StackChoice::quick : command.full ? StackChoice::full : StackChoice::usual);
+  }
+  std::vector<std::string> stacks;
+  for (const std::string& text : command.stacks) {
+    const std::string stack = stackFrom(text);
+    const bool isNew = std::find(stacks.begin(), stacks.end(), stack) == stacks.end();
+    if (isNew && familyOf(stack).scene == scene) stacks.push_back(stack);
+  }
+  return stacks;
+}
+
 std::vector<ProfileScene> scenesOf(const ProfileCommand& command) {
+  if (command.scenes.empty() && !command.stacks.empty()) {
+    std::vector<ProfileScene> scenes;
+    for (const ProfileScene scene : {ProfileScene::walls, ProfileScene::pyramids}) {
+      if (!stacksOf(command, scene).empty()) scenes.push_back(scene);
+    }
+    return scenes;
+  }
   if (command.scenes.empty()) {
     if (command.quick) return {ProfileScene::rest, ProfileScene::collapse};
     return {ProfileScene::rest, ProfileScene::pull, ProfileScene::collapse, ProfileScene::asleep, ProfileScene::towers};
@@ -111,12 +138,14 @@ std::vector<Method> methodsOf(const ProfileCommand& command, ProfileScene scene)
 
 ProfileLimits limitsOf(const ProfileCommand& command) {
   ProfileLimits limits;
-  if (command.quick) limits = {2, 20, 1.0, 2.0, 0.3};
+  if (command.quick) limits = {2, 20, 1.0, 2.0, 0.3, 0.5};
+  if (command.full) limits.peer_s = kFullPeer_s;
   if (command.samples) limits.samples = static_cast<int>(*command.samples);
   if (command.frames) limits.frames = static_cast<int>(*command.frames);
   if (command.settle_s) limits.settle_s = *command.settle_s;
   if (command.prepare_s) limits.prepare_s = *command.prepare_s;
   if (command.sample_s) limits.sample_s = *command.sample_s;
+  if (command.peer_s) limits.peer_s = *command.peer_s;
   return limits;
 }
 
@@ -134,23 +163,40 @@ std::vector<ProfileCase> casesOf(const ProfileCommand& command) {
   for (const ProfileScene scene : scenesOf(command)) {
     const bool many = scene == ProfileScene::towers;
     const std::vector<Method> methods = methodsOf(command, scene);
-    for (const double size : many ? towers : rows) {
+    const auto addAll = [&](ProfileCase what, const std::vector<double>& counts) {
       for (const Method method : methods) {
         for (const double tolerance : tolerances) {
-          for (const double count : threads) {
-            const int whole = static_cast<int>(size);
-            cases.push_back(
-                {scene, many ? kTowersRows : whole, many ? whole : 1, method, inertia, tolerance, static_cast<int>(count)});
+          for (const double count : counts) {
+            what.method = method;
+            what.inertia = inertia;
+            what.tolerance_m = tolerance;
+            what.threads = static_cast<int>(count);
+            cases.push_back(what);
           }
         }
       }
+    };
+    if (isStack(scene)) {
+      for (const std::string& stack : stacksOf(command, scene))
+        addAll({.scene = scene, .rows = 1, .stack = stack}, command.threads.empty() ? std::vector<double>{1, 2} : threads);
+      continue;
+    }
+    for (const double size : many ? towers : rows) {
+      const int whole = static_cast<int>(size);
+      addAll({.scene = scene, .rows = many ? kTowersRows : whole, .towers = many ? whole : 1}, threads);
     }
   }
   return cases;
 }
 
 std::string sizeOf(const ProfileCase& what) {
+  if (isStack(what.scene)) return what.stack.substr(what.stack.find(':') + 1);
   return what.scene == ProfileScene::towers ? fmt::format("{}x{}", what.towers, what.rows) : fmt::format("{}", what.rows);
+}
+
+// What the blocks do, or of a stack its family.
+std::string_view kindOf(const ProfileCase& what) {
+  return isStack(what.scene) ? familyOf(what.stack).name : nameOf(what.scene);
 }
 
 // A frame shows 1/60 s: whether it takes less.
@@ -164,8 +210,8 @@ void printTable(const Profile& profile) {
   fmt::print("{:<11}{:>7}{:>7} {:<22}{:>9}{:>8}{:>9}{:>10}{:>10}{:>10}{:>11}{:>10}{:>9}{:>11}  {}\n", "scene", "rows", "blocks",
              "method", "tol. mm", "threads", "steps", "ms median", "p99", "max", "frames/s", "us/block", "kN/m", "depth mm", "");
   for (const ProfileResult& result : profile.results) {
-    fmt::print("{:<11}{:>7}{:>7} {:<22}{:>9.3g}{:>8}", nameOf(result.what.scene), sizeOf(result.what), result.blocks,
-               result.methodName, 1e3 * result.what.tolerance_m, result.what.threads);
+    fmt::print("{:<11}{:>7}{:>7} {:<22}{:>9.3g}{:>8}", kindOf(result.what), sizeOf(result.what), result.blocks, result.methodName,
+               1e3 * result.what.tolerance_m, result.what.threads);
     if (!result.failure.empty()) {
       fmt::print("  {}\n", result.failure);
       continue;
@@ -181,7 +227,7 @@ void printTable(const Profile& profile) {
   fmt::print("\n");
   for (const ProfileResult& result : profile.results) {
     if (!result.failure.empty()) continue;
-    fmt::print("{:<11}{:>7} {:<22}{:>9.3g}{:>8}", nameOf(result.what.scene), sizeOf(result.what), result.methodName,
+    fmt::print("{:<11}{:>7} {:<22}{:>9.3g}{:>8}", kindOf(result.what), sizeOf(result.what), result.methodName,
                1e3 * result.what.tolerance_m, result.what.threads);
     for (const double value : result.stage_ms) fmt::print("{:>18.4g}", value);
     fmt::print("\n");
@@ -191,7 +237,7 @@ void printTable(const Profile& profile) {
       "adds for steps and rollbacks\n");
   for (const ProfileResult& result : profile.results) {
     if (!result.failure.empty() || result.what.threads != profile.results.front().what.threads) continue;
-    fmt::print("{:<11}{:>7} {:<22}{:>9.3g}{:>9.0f}{:>9.0f}{:>9.0f}{:>9.0f}{:>9.0f}{:>9.0f}\n", nameOf(result.what.scene),
+    fmt::print("{:<11}{:>7} {:<22}{:>9.3g}{:>9.0f}{:>9.0f}{:>9.0f}{:>9.0f}{:>9.0f}{:>9.0f}\n", kindOf(result.what),
                sizeOf(result.what), result.methodName, 1e3 * result.what.tolerance_m, result.stateBytes, result.contactBytes,
                result.allBytes, result.pairBytes, result.touchingBytes, result.touchingStepBytes);
   }
@@ -201,13 +247,13 @@ void writeFolder(const std::string& folder, const Profile& profile, bool measure
   if (measured) writeOutputFile(folder, "profile.json", [&](std::ostream& stream) { writeProfileJson(stream, profile); });
   writeOutputFile(folder, "profile.csv", [&](std::ostream& stream) { writeProfileCsv(stream, profile); });
   writeOutputFile(folder, "culling.csv", [&](std::ostream& stream) { writeCulling(stream, profile); });
+  const bool stacks =
+      std::any_of(profile.results.begin(), profile.results.end(), [](const ProfileResult& r) { return isStack(r.what.scene); });
+  if (stacks) writeOutputFile(folder, "stacks.csv", [&](std::ostream& stream) { writeStacksCsv(stream, profile); });
   const std::vector<NamedPlot> charts = profileCharts(profile);
-  for (const NamedPlot& chart : charts) {
-    writeOutputFile(folder, chart.first + ".svg", [&](std::ostream& stream) { writeSvg(stream, chart.second); });
-    writeOutputFile(folder, chart.first + ".png", [&](std::ostream& stream) { writePng(stream, chart.second); });
-  }
-  fmt::print("\n{} charts (SVG and PNG), profile.csv, culling.csv{} in {}\n", charts.size(), measured ? ", profile.json" : "",
-             onOneLine(folder));
+  for (const NamedPlot& chart : charts) writePlot(folder, chart.first, chart.second);
+  fmt::print("\n{} charts (SVG, PNG and PDF), profile.csv, culling.csv{}{} in {}\n", charts.size(), stacks ? ", stacks.csv" : "",
+             measured ? ", profile.json" : "", onOneLine(folder));
 }
 
 // The results that a run that was broken off has left in the folder.
@@ -246,7 +292,8 @@ bool measureAll(const ProfileCommand& command, const std::vector<ProfileCase>& c
       const std::vector<ProfileResult> results =
           measureProfile(group, profile.limits, begun, traced, [&](int done, int, const ProfileCase& next) {
             endIfInterrupted();
-            progress.update(before + done, fmt::format("{}, {} rows, {}", nameOf(next.scene), sizeOf(next), nameOf(next.method)));
+            progress.update(before + done, fmt::format("{}, {}{}, {}", kindOf(next), sizeOf(next),
+                                                       isStack(next.scene) ? "" : " rows", nameOf(next.method)));
           });
       std::erase_if(kept.results, [&](const ProfileResult& old) { return std::find(first, last, old.what) != last; });
       kept.results.insert(kept.results.end(), results.begin(), results.end());
@@ -262,7 +309,8 @@ bool measureAll(const ProfileCommand& command, const std::vector<ProfileCase>& c
 }  // namespace
 
 CLI::App* defineProfile(CLI::App& program, ProfileCommand& command) {
-  CLI::App* profile = program.add_subcommand("profile", "times frames of towers of many sizes and draws charts");
+  CLI::App* profile =
+      program.add_subcommand("profile", "times frames of towers, walls and pyramids of many sizes and draws charts");
   const auto list = [&](const std::string& name, std::vector<std::string>& target, const std::string& type,
                         const std::string& description) {
     profile->add_option(name, target, description)->delimiter(',')->type_name(type);
@@ -271,8 +319,11 @@ CLI::App* defineProfile(CLI::App& program, ProfileCommand& command) {
   list("--scenes", command.scenes, "NAME,...", "what the blocks do (default rest,pull,collapse,asleep,towers; see below)");
   list("--methods", command.methods, "NAME,...", "as in `run` (default: its default; at rest also report, for comparison)");
   list("--tolerances", command.tolerances_m, "METRES,...", "as in `run` (default 5e-05)");
-  list("--threads", command.threads, "N,N,...", "threads to use (default 1)");
+  list("--threads", command.threads, "N,N,...", "threads to use (default 1; of walls and pyramids 1,2)");
   list("--towers", command.towers, "N,N,...", "how many towers scene `towers` has (default 1,4,16,64)");
+  list("--stacks", command.stacks, "NAME:SIZE,...",
+       "walls and pyramids to time in scenes `walls` and `pyramids`, which it implies: wall:COLUMNSxCOURSES, cubes:ROWS, "
+       "bricks:ROWS (default those that have something to meet, 246 to 5050 blocks)");
   profile->add_option("--inertia", command.inertia, "cuboid (default) or lumped")->type_name("NAME");
   addWholeNumber(*profile, "--samples", command.samples, kProfileSamplesRange, "of each case, taken by turns (default 5)");
   addWholeNumber(*profile, "--frames", command.frames, kFramesRange, "timed in a sample (default 120)");
@@ -281,7 +332,11 @@ CLI::App* defineProfile(CLI::App& program, ProfileCommand& command) {
             "wall time after which a scene has settled enough, and as much again for a pull to begin (default 10)");
   addNumber(*profile, "--sample-limit", command.sample_s, kLimitRange, "S",
             "wall time after which a sample ends, with fewer frames (default 1)");
-  profile->add_flag("--quick", command.quick, "fewer cases, shorter samples: seconds instead of minutes");
+  addNumber(*profile, "--peer-limit", command.peer_s, kLimitRange, "S",
+            "processor time that Bullet may take for a wall or pyramid, where its program is (default 4; 0: it is left out)");
+  CLI::Option* full =
+      profile->add_flag("--full", command.full, "with the largest walls and pyramids (100,012 blocks), and more time for Bullet");
+  profile->add_flag("--quick", command.quick, "fewer cases, shorter samples: seconds instead of minutes")->excludes(full);
   CLI::Option* noResume = profile->add_flag("--no-resume", command.noResume,
                                             "times everything again, also what a run that was broken off has left in the folder");
   addFormerFlag(*profile, "--fresh", noResume, command.noResume);
@@ -302,6 +357,7 @@ int executeProfile(const ProfileCommand& command) {
     const Profile profile = readProfileJson(*command.from);
     makeOutputFolder(*command.out);
     printTable(profile);
+    printStacks(profile);
     writeFolder(*command.out, profile, false);
     return 0;
   }
@@ -325,6 +381,7 @@ int executeProfile(const ProfileCommand& command) {
   }
   printTable(profile);
   printCulling(profile);
+  printStacks(profile);
   if (command.out) {
     writeFolder(*command.out, profile, true);
     std::error_code ignored;

@@ -1,5 +1,6 @@
 #include "apps/commands/profile/files.h"
 
+#include "apps/commands/profile/stacks.h"
 #include "apps/common/output_file.h"
 #include "core/error.h"
 #include "core/limits.h"
@@ -22,6 +23,42 @@ Json costJson(const FrameCost& cost) {
 
 FrameCost costFromJson(const Json& json) {
   return {json.at("median").get<double>(), json.at("p99").get<double>(), json.at("max").get<double>()};
+}
+
+std::string sizeWithUnit(const ProfileCase& what) {
+  if (isStack(what.scene)) return what.stack;
+  return fmt::format("{} rows{}", what.rows, what.towers > 1 ? fmt::format(" x {}", what.towers) : "");
+}
+
+void addStack(const ProfileResult& result, Json& json) {
+  json["stack"] = result.what.stack;
+  json["first_frame_s"] = result.firstFrame_s;
+  json["creep_mm_per_minute"] = result.creep_mm_min;
+  json["peers"] = Json::array();
+  for (const PeerFigures& peer : result.peers) {
+    json["peers"].push_back({{"engine", peer.engine},
+                             {"substeps", peer.substeps},
+                             {"cpu_ms_median", peer.frame_ms},
+                             {"penetration_mm", peer.penetration_mm},
+                             {"simulated_s", peer.simulated_s},
+                             {"stands", peer.stands}});
+  }
+}
+
+void readStack(const Json& json, ProfileResult& result) {
+  result.what.stack = stackFrom(json.at("stack").get<std::string>());
+  json.at("first_frame_s").get_to(result.firstFrame_s);
+  json.at("creep_mm_per_minute").get_to(result.creep_mm_min);
+  for (const Json& one : json.at("peers")) {
+    PeerFigures peer;
+    one.at("engine").get_to(peer.engine);
+    one.at("substeps").get_to(peer.substeps);
+    one.at("cpu_ms_median").get_to(peer.frame_ms);
+    one.at("penetration_mm").get_to(peer.penetration_mm);
+    one.at("simulated_s").get_to(peer.simulated_s);
+    one.at("stands").get_to(peer.stands);
+    result.peers.push_back(peer);
+  }
 }
 
 Json resultJson(const ProfileResult& result) {
@@ -56,6 +93,7 @@ Json resultJson(const ProfileResult& result) {
   json["bytes_per_block"] = {{"state", result.stateBytes}, {"contacts", result.contactBytes}, {"all", result.allBytes}};
   json["bytes_per_pair"] = {
       {"near", result.pairBytes}, {"touching", result.touchingBytes}, {"touching_step", result.touchingStepBytes}};
+  if (isStack(result.what.scene)) addStack(result, json);
   json["frame_ms"] = result.frame_ms;
   return json;
 }
@@ -98,6 +136,7 @@ ProfileResult profileResultFromJson(const Json& json) {
     json.at("bytes_per_pair").at("touching").get_to(result.touchingBytes);
     json.at("bytes_per_pair").at("touching_step").get_to(result.touchingStepBytes);
   }
+  if (isStack(result.what.scene)) readStack(json, result);
   json.at("frame_ms").get_to(result.frame_ms);
   return result;
 }
@@ -106,11 +145,9 @@ ProfileResult profileResultFromJson(const Json& json) {
 
 void writeProfileJson(std::ostream& stream, const Profile& profile) {
   Json json = provenanceJson(profile.provenance);
-  json["limits"] = {{"samples", profile.limits.samples},
-                    {"frames", profile.limits.frames},
-                    {"settle_s", profile.limits.settle_s},
-                    {"prepare_s", profile.limits.prepare_s},
-                    {"sample_s", profile.limits.sample_s}};
+  json["limits"] = {{"samples", profile.limits.samples},   {"frames", profile.limits.frames},
+                    {"settle_s", profile.limits.settle_s}, {"prepare_s", profile.limits.prepare_s},
+                    {"sample_s", profile.limits.sample_s}, {"peer_s", profile.limits.peer_s}};
   json["cases"] = Json::array();
   for (const ProfileResult& result : profile.results) json["cases"].push_back(resultJson(result));
   stream << json.dump(1) << '\n';
@@ -130,6 +167,7 @@ Profile readProfileJson(const std::string& path) {
     limits.at("settle_s").get_to(profile.limits.settle_s);
     limits.at("prepare_s").get_to(profile.limits.prepare_s);
     limits.at("sample_s").get_to(profile.limits.sample_s);
+    if (limits.contains("peer_s")) limits.at("peer_s").get_to(profile.limits.peer_s);  // earlier profiles have no stacks
     for (const Json& result : json.at("cases")) profile.results.push_back(profileResultFromJson(result));
     return profile;
   } catch (const Json::exception& error) {
@@ -180,8 +218,8 @@ void writeTrace(std::ostream& stream, const Provenance& provenance, const std::v
     const int thread = static_cast<int>(i) + 1;
     name("process_name", process, 0, std::string(nameOf(what.scene)));
     name("thread_name", process, thread,
-         fmt::format("{} rows{}, {}, {:g} mm, {} thread{}", what.rows, what.towers > 1 ? fmt::format(" x {}", what.towers) : "",
-                     nameOf(what.method), 1e3 * what.tolerance_m, what.threads, what.threads == 1 ? "" : "s"));
+         fmt::format("{}, {}, {:g} mm, {} thread{}", sizeWithUnit(what), nameOf(what.method), 1e3 * what.tolerance_m,
+                     what.threads, what.threads == 1 ? "" : "s"));
     int number = 0;
     for (const TracedFrame& frame : traced[i].frames) {
       const auto slice = [&](std::string_view label, double start_us, double duration_us, Json arguments) {

@@ -1,5 +1,6 @@
 #include "apps/commands/profile/measure.h"
 
+#include "apps/commands/profile/peer_stacks.h"
 #include "apps/commands/profile/scene.h"
 #include "apps/common/interruption.h"
 #include "core/error.h"
@@ -28,7 +29,7 @@ double secondsBetween(Clock::time_point start, Clock::time_point end) {
 
 bool samePreparation(const ProfileCase& a, const ProfileCase& b) {
   return a.scene == b.scene && a.rows == b.rows && a.towers == b.towers && a.method == b.method && a.inertia == b.inertia &&
-         a.tolerance_m == b.tolerance_m;
+         a.tolerance_m == b.tolerance_m && a.stack == b.stack;
 }
 
 // A case under way.
@@ -127,11 +128,18 @@ void warmUp(Measured& measured, const ProfileLimits& limits) {
   scene.restore();
   const Clock::time_point begin = Clock::now();
   PenetrationWorkspace workspace;
+  const ParticleArray start = simulation.state.position;
+  const double start_s = simulation.time_s;
   for (int frame = 0; frame < limits.frames && (frame < 2 || secondsBetween(begin, Clock::now()) < limits.sample_s); ++frame) {
     endIfInterrupted();
     scene.step();
     const Penetration deepest = maxPenetration(simulation.state.position, simulation.scene.floor, workspace);
     result.penetration_mm = std::max(result.penetration_mm, 1e3 * deepest.depth);
+  }
+  constexpr double kMinute_s = 60.0;
+  if (isStack(result.what.scene)) {
+    const double creep_m_s = largestCornerMove(start, simulation.state.position) / (simulation.time_s - start_s);
+    result.creep_mm_min = 1e3 * kMinute_s * creep_m_s;
   }
   const MemoryUse use = memoryUse(simulation);
   const auto blocks = static_cast<double>(result.blocks);
@@ -156,6 +164,7 @@ void describePrepared(PreparedScene& scene, ProfileResult& result) {
                                                    bottomRow(scene.simulation.model, fresh.state.position, row));
   result.stiffness_n_m = largestStiffness(scene.simulation.stiffness);
   result.prepared_s = scene.simulation.time_s;
+  result.firstFrame_s = scene.firstFrame_s;
 }
 
 void finish(Measured& measured) {
@@ -241,6 +250,13 @@ std::vector<ProfileResult> measureProfile(const std::vector<ProfileCase>& cases,
         if (lastTurn) finish(measured);
       });
     }
+  }
+  for (Measured& measured : group) {
+    ProfileResult& result = *measured.result;
+    const bool isFirst = &result == results.data() || !samePreparation(result.what, (&result)[-1].what);
+    if (!isStack(result.what.scene) || !isFirst) continue;
+    result.peers = measurePeer(Peer::bullet, measured.scene->simulation, result.penetration_mm, limits.peer_s,
+                               [&] { progress(done, all, result.what); });
   }
   return results;
 }

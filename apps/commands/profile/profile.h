@@ -25,14 +25,21 @@ enum class ProfileScene {
   collapse,   ///< gravity leans by 14.5 degrees from the start
   asleep,     ///< all blocks asleep
   towers,     ///< many towers side by side at rest, awake
-  pile        ///< one wide stack of 108 blocks a row that lands after a fall of 10 cm
+  pile,       ///< one wide stack of 108 blocks a row that lands after a fall of 10 cm
+  walls,      ///< walls in running bond at rest, awake
+  pyramids    ///< pyramids of cubes and of bricks at rest, awake
 };
 
 /// Names as the command line spells them, in the order of the enumeration.
-inline constexpr std::array<std::string_view, 9> kProfileSceneNames = {"rest",     "sway",   "heights", "pull", "pull-sleep",
-                                                                       "collapse", "asleep", "towers",  "pile"};
+inline constexpr std::array<std::string_view, 11> kProfileSceneNames = {
+    "rest", "sway", "heights", "pull", "pull-sleep", "collapse", "asleep", "towers", "pile", "walls", "pyramids"};
 constexpr std::string_view nameOf(ProfileScene scene) {
   return kProfileSceneNames[static_cast<std::size_t>(scene)];
+}
+
+/// Whether a scene is of stacks by name and size (apps/commands/profile/stacks.h); the others are of towers and piles by rows.
+constexpr bool isStack(ProfileScene scene) {
+  return scene == ProfileScene::walls || scene == ProfileScene::pyramids;
 }
 
 /// One line of a profile's charts at one place: what is timed.
@@ -44,6 +51,8 @@ struct ProfileCase {
   Inertia inertia = Settings{}.inertia;
   double tolerance_m = 0.0;
   int threads = 1;
+  std::string stack =
+      {};  ///< its name and size, such as wall:20x12, where the scene is of stacks; `rows` and `towers` then mean nothing
   bool operator==(const ProfileCase&) const = default;
 };
 
@@ -54,6 +63,7 @@ struct ProfileLimits {
   double settle_s = 5.0;    ///< simulated before the state is kept
   double prepare_s = 10.0;  ///< s of wall time after which preparing ends, settled or not
   double sample_s = 1.0;    ///< s of wall time after which a sample ends early
+  double peer_s = 4.0;      ///< s of processor time that another engine may take for a stack, with all its settings
   bool operator==(const ProfileLimits&) const = default;
 };
 
@@ -62,6 +72,16 @@ struct FrameCost {
   double median = 0.0;
   double p99 = 0.0;
   double max = 0.0;
+};
+
+/// What another engine made of a stack, with one of its settings.
+struct PeerFigures {
+  std::string engine;
+  int substeps = 1;             ///< equal steps of a frame
+  double frame_ms = 0.0;        ///< median of processor time, one thread
+  double penetration_mm = 0.0;  ///< largest in the second half of the time it was looked at
+  double simulated_s = 0.0;     ///< that time
+  bool stands = true;           ///< at its end
 };
 
 /// The counters of a frame that a profile keeps, by name.
@@ -109,6 +129,9 @@ struct ProfileResult {
   double pairBytes = 0.0;                              ///< a near pair, touching or not
   double touchingBytes = 0.0;                          ///< that a touching pair adds
   double touchingStepBytes = 0.0;                      ///< and for steps and rollbacks
+  double firstFrame_s = 0.0;                           ///< processor time of the very first frame; of stacks alone, as are
+  double creep_mm_min = 0.0;                           ///< the largest move of a corner while measured, mm a minute, and
+  std::vector<PeerFigures> peers;                      ///< other engines; of the first case of those with one preparation
   std::vector<double> frame_ms;                        ///< `cost` of each frame, least over the samples
 
   /// What a frame costs, for charts: processor time on one thread, which other programs disturb least; wall time on more.

@@ -1,7 +1,9 @@
 #include "apps/commands/profile/scene.h"
 
+#include "apps/commands/profile/stacks.h"
 #include "apps/common/interruption.h"
 #include "core/error.h"
+#include "core/processor_time.h"
 #include "scenarios/towers.h"
 #include "scenarios/walls.h"
 
@@ -85,15 +87,9 @@ void startPulling(PreparedScene& scene, const Deadline& deadline) {
   }
 }
 
-}  // namespace
-
-void PreparedScene::step() {
-  const BlockId held = hand.hand.block;
-  if (held != kFloor) advancePull(hand, contactForcesOn(simulation, held), simulation);
-  stepFrame(simulation);
-}
-
-Scene sceneOf(const ProfileCase& what) {
+// The blocks, and how gravity acts on them.
+Scene blocksOf(const ProfileCase& what) {
+  if (isStack(what.scene)) return stackScene(what.stack);
   TowerOptions options;
   if (what.scene == ProfileScene::heights) options.heightsSigma_m = kUnevenHeightsSigma_m;
   Scene scene = towerScene(what.rows, options);
@@ -104,6 +100,19 @@ Scene sceneOf(const ProfileCase& what) {
   if (what.scene == ProfileScene::pile) layPile(what.rows, scene);
   if (what.scene == ProfileScene::collapse) scene = leaning(std::move(scene), kTopplingTilt_deg);
   if (what.scene == ProfileScene::sway) scene = swaying(std::move(scene), kSway_deg, kSway_hz);
+  return scene;
+}
+
+}  // namespace
+
+void PreparedScene::step() {
+  const BlockId held = hand.hand.block;
+  if (held != kFloor) advancePull(hand, contactForcesOn(simulation, held), simulation);
+  stepFrame(simulation);
+}
+
+Scene sceneOf(const ProfileCase& what) {
+  Scene scene = blocksOf(what);
   Settings& settings = scene.settings;
   settings.method = what.method;
   settings.inertia = what.inertia;
@@ -117,8 +126,13 @@ std::unique_ptr<PreparedScene> prepareScene(const ProfileCase& what, const Profi
   auto scene = std::make_unique<PreparedScene>(what);
   // None of a pile's blocks has a place to keep.
   if (what.scene == ProfileScene::pile) scene->leftOut.assign(scene->simulation.scene.blocks.size(), 1);
-  const Deadline deadline(limits.prepare_s);
   try {
+    if (isStack(what.scene)) {
+      const double begin_s = processorTime_s();
+      scene->step();  // it looks for the equilibrium that the stack starts from, which may take longer than all else
+      scene->firstFrame_s = processorTime_s() - begin_s;
+    }
+    const Deadline deadline(limits.prepare_s);
     if (what.scene == ProfileScene::asleep) {
       fallAsleep(*scene, deadline);
     } else if (what.scene == ProfileScene::collapse) {

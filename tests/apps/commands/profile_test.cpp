@@ -202,10 +202,10 @@ TEST_F(ProfileFiles, ChartsAreDrawnAgainToTheByte) {
       const std::string name = entry.path().filename().string();
       if (name == "profile.json") continue;
       EXPECT_TRUE(contentOf(entry.path()) == contentOf(path(again) + "/" + name)) << name;
-      charts += name.ends_with(".svg") || name.ends_with(".png") ? 1U : 0U;
+      charts += name.ends_with(".svg") || name.ends_with(".png") || name.ends_with(".pdf") ? 1U : 0U;
     }
   }
-  EXPECT_GE(charts, 2U * 2U * 7U);
+  EXPECT_GE(charts, 2U * 3U * 7U);
 }
 
 // Width and height in a PNG's header, pixels.
@@ -230,6 +230,9 @@ TEST_F(ProfileFiles, ChartsAreWholeFiles) {
     EXPECT_EQ(png.substr(1, 3), "PNG");
     EXPECT_EQ(png.substr(png.size() - 8, 4), "IEND");
     const auto [width, height] = pngSize(png);
+    const std::string pdf = contentOf(std::filesystem::path(entry.path()).replace_extension(".pdf"));
+    EXPECT_THAT(pdf, StartsWith("%PDF"));
+    EXPECT_NE(pdf.find("%%EOF"), std::string::npos);
     EXPECT_NE(svg.find("width=\"" + std::to_string(width / 3) + "pt\" height=\"" + std::to_string(height / 3) + "pt\""),
               std::string::npos);
   }
