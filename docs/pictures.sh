@@ -18,5 +18,10 @@ picture collapse 38 -14:20:1.0 --scene "$scratch/tilted.toml" --no-sleep
 picture load 120 -52:18:0.44 --scene tower:9 --overlay load --arrows
 picture hints 120 -52:18:0.44 --scene tower:9 --overlay hints
 
-build/release/bin/springtower chart --scenes uniform --peers bench/data/peers/records.csv --out "$scratch/chart"
+build/release/bin/springtower chart --scenes uniform,wall --out "$scratch/chart" \
+  --peers bench/data/peers/records.csv,bench/data/peers/stacks.csv
 cp "$scratch/chart/uniform_penetration_mm.png" docs/pictures/speed_accuracy.png
+cp "$scratch/chart/wall_penetration_mm.png" docs/pictures/speed_accuracy_wall.png
+
+build/release/bin/springtower profile --scenes rest --rows 3,6,7,9,12,18,24,36,54,72 --out "$scratch/profile"
+cp "$scratch/profile/figure_6_23.png" docs/pictures/figure_6_23.png

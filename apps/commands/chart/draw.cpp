@@ -161,13 +161,14 @@ void addPeers(const Chart& chart, ChartScene scene, ChartMeasure measure, Plot& 
     const double frame_ms = drawnTime_ms(chart, peer);
     if (peer.scene != scene || !std::isfinite(value) || !(frame_ms > 0.0) || measuredHere(chart, peer)) continue;
     const std::string name = peer.engine + " (elsewhere)";
-    if (plot.lines.empty() || plot.lines.back().name != name) {
-      plot.lines.push_back({name, {}, Marker::hollow});
-      plot.lines.back().style = kElsewhereStyle + engines++;
-      plot.lines.back().joined = !isStack(scene);  // these were measured more than once
+    auto line = std::find_if(plot.lines.begin(), plot.lines.end(), [&](const PlotLine& one) { return one.name == name; });
+    if (line == plot.lines.end()) {
+      line = plot.lines.insert(line, {name, {}, Marker::hollow});
+      line->style = kElsewhereStyle + engines++;
+      line->joined = !isStack(scene);  // these were measured more than once
     }
-    plot.lines.back().points.push_back({std::max(value, row.floor), frame_ms});
-    plot.lines.back().labels.push_back(labelOf(peer));
+    line->points.push_back({std::max(value, row.floor), frame_ms});
+    line->labels.push_back(labelOf(peer));
   }
 }
 

@@ -334,8 +334,8 @@ CLI::App* defineProfile(CLI::App& program, ProfileCommand& command) {
             "wall time after which a sample ends, with fewer frames (default 1)");
   addNumber(*profile, "--peer-limit", command.peer_s, kLimitRange, "S",
             "processor time that Bullet may take for a wall or pyramid, where its program is (default 4; 0: it is left out)");
-  CLI::Option* full =
-      profile->add_flag("--full", command.full, "with the largest walls and pyramids (100,012 blocks), and more time for Bullet");
+  CLI::Option* full = profile->add_flag("--full", command.full,
+                                        "with the largest walls and pyramids (99,987 blocks), and more time for Bullet; minutes");
   profile->add_flag("--quick", command.quick, "fewer cases, shorter samples: seconds instead of minutes")->excludes(full);
   CLI::Option* noResume = profile->add_flag("--no-resume", command.noResume,
                                             "times everything again, also what a run that was broken off has left in the folder");
