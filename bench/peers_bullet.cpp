@@ -1,6 +1,7 @@
 // Bullet (bulletphysics.org) on a scene of `springtower chart`: see bench/peers.h.
 #include "bench/peers.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <exception>
@@ -50,6 +51,14 @@ Body bodyOf(const PeerBlock& block, double friction) {
   return made;
 }
 
+// Side of the cube that is the floor, in units: all blocks lie on it, and have as far to go again.
+double floorExtent(const PeerScene& scene) {
+  double farthest = 25.0;
+  for (const PeerBlock& block : scene.blocks)
+    farthest = std::max({farthest, std::abs(block.centre[0]), std::abs(block.centre[1])});
+  return 4.0 * farthest;
+}
+
 int run() {
   const PeerScene scene = readPeerScene();
   btDefaultCollisionConfiguration configuration;
@@ -62,8 +71,8 @@ int run() {
   std::vector<Body> bodies;
   for (const PeerBlock& block : scene.blocks) bodies.push_back(bodyOf(block, scene.friction));
   if (scene.floor) {
-    constexpr double kFloor = 100.0;
-    bodies.push_back(bodyOf({{0, 0, -0.5 * kFloor}, {1, 0, 0, 0}, {}, {}, {kFloor, kFloor, kFloor}, 0.0}, scene.friction));
+    const double extent = floorExtent(scene);
+    bodies.push_back(bodyOf({{0, 0, -0.5 * extent}, {1, 0, 0, 0}, {}, {}, {extent, extent, extent}, 0.0}, scene.friction));
   }
   for (const Body& made : bodies) world.addRigidBody(made.body.get());
   const auto step_s = static_cast<btScalar>(scene.frame_s / scene.substeps);

@@ -17,7 +17,7 @@ constexpr int kLeastFrames = 10;  // in less time a stack has not yet sunk
 constexpr int kLeastSteps = 4;
 constexpr int kMaxSteps = 256;
 
-// One run, broken off after `limit_s` of processor time.
+// One run, which ends when the stack has fallen, or after `limit_s` of processor time.
 PeerFigures runPeer(Peer peer, int substeps, const Simulation& simulation, double limit_s) {
   const Scene& scene = simulation.scene;
   PeerProcess process(peer, {substeps, 0}, scene);
@@ -27,11 +27,15 @@ PeerFigures runPeer(Peer peer, int substeps, const Simulation& simulation, doubl
   std::vector<double> times_s;
   std::vector<double> depths_m;
   double spent_s = 0.0;
-  for (int frame = 0; frame < kFrames && (frame < kLeastFrames || spent_s < limit_s); ++frame) {
+  const Simulation fresh(scene);
+  const std::vector<FittedBox> start = fittedBoxes(fresh.state.position);
+  bool stands = true;
+  for (int frame = 0; stands && frame < kFrames && (frame < kLeastFrames || spent_s < limit_s); ++frame) {
     endIfInterrupted();
     times_s.push_back(process.step(state));
     spent_s += times_s.back();
     depths_m.push_back(maxPenetration(state.position, scene.floor, workspace).depth);
+    stands = standing(simulation.model, start, state.position).stands;
   }
   PeerFigures figures;
   figures.engine = nameOf(peer);
@@ -40,8 +44,7 @@ PeerFigures runPeer(Peer peer, int substeps, const Simulation& simulation, doubl
   const auto half = depths_m.begin() + static_cast<std::ptrdiff_t>(depths_m.size() / 2);
   figures.penetration_mm = 1e3 * *std::max_element(half, depths_m.end());
   figures.simulated_s = static_cast<double>(times_s.size()) * scene.settings.frame_s;
-  const Simulation fresh(scene);
-  figures.stands = standing(simulation.model, fittedBoxes(fresh.state.position), state.position).stands;
+  figures.stands = stands;
   return figures;
 }
 
