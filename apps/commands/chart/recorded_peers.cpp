@@ -15,7 +15,7 @@
 namespace springtower {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNotRecorded = std::numeric_limits<double>::quiet_NaN();
 
 constexpr const char* kTowerColumns[] = {"engine",
                                          "version",
@@ -54,7 +54,7 @@ class TableLine {
   TableLine(const std::map<std::string, std::size_t>& column, const std::vector<std::string>& fields)
       : column_(column), fields_(fields) {}
   [[nodiscard]] const std::string& text(const char* name) const { return fields_[column_.at(name)]; }
-  [[nodiscard]] double value(const char* name) const { return parseNumber(text(name)).value_or(kNone); }
+  [[nodiscard]] double value(const char* name) const { return parseNumber(text(name)).value_or(kNotRecorded); }
 
  private:
   const std::map<std::string, std::size_t>& column_;
@@ -67,7 +67,7 @@ PeerResult described(const TableLine& line, ChartScene scene, const char* verdic
   peer.engine = line.text("engine");
   peer.settings = line.text("version") + ", " + line.text("settings");
   peer.verdict = line.text(verdict);
-  peer.measured.fill(kNone);
+  peer.measured.fill(kNotRecorded);
   return peer;
 }
 
@@ -90,7 +90,7 @@ std::optional<PeerResult> stackResult(const TableLine& line, const ChartLimits& 
     PeerResult peer = described(line, scene, "verdict");
     peer.measured[static_cast<std::size_t>(ChartMeasure::penetration)] = line.value("penetration_end_mm");
     peer.frame_ms = line.value("median_ms");
-    peer.ratioToBullet = kNone;
+    peer.ratioToBullet = kNotRecorded;
     return peer;
   }
   return {};
@@ -104,7 +104,7 @@ double drawnTime_ms(const Chart& chart, const PeerResult& peer) {
   const auto found =
       std::find_if(chart.results.begin(), chart.results.end(), [&](const ChartResult& result) { return result.what == bullet; });
   const bool known = found != chart.results.end() && std::isfinite(found->frame_ms) && std::isfinite(peer.ratioToBullet);
-  return known ? peer.ratioToBullet * found->frame_ms : kNone;
+  return known ? peer.ratioToBullet * found->frame_ms : kNotRecorded;
 }
 
 std::vector<PeerResult> readPeers(const std::string& path, const ChartLimits& limits) {

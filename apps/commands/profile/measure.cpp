@@ -139,7 +139,7 @@ void warmUp(Measured& measured, const ProfileLimits& limits) {
   constexpr double kMinute_s = 60.0;
   if (isStack(result.what.scene)) {
     const double creep_m_s = largestCornerMove(start, simulation.state.position) / (simulation.time_s - start_s);
-    result.creep_mm_min = 1e3 * kMinute_s * creep_m_s;
+    result.creepPerMinute_mm = 1e3 * kMinute_s * creep_m_s;
   }
   const MemoryUse use = memoryUse(simulation);
   const auto blocks = static_cast<double>(result.blocks);

@@ -12,10 +12,10 @@
 namespace springtower {
 namespace {
 
-constexpr int kFrames = 60;       // of a run: a simulated second, in which a stack has sunk and its lowest blocks have met
-constexpr int kLeastFrames = 10;  // in less time a stack has not yet sunk
-constexpr int kLeastSteps = 4;
-constexpr int kMaxSteps = 256;
+constexpr int kPeerFrames = 60;       // of a run: a simulated second, in which a stack has sunk and its lowest blocks have met
+constexpr int kLeastPeerFrames = 10;  // in less time a stack has not yet sunk
+constexpr int kLeastPeerSteps = 4;
+constexpr int kMaxPeerSteps = 256;
 
 // One run, which ends when the stack has fallen, or after `limit_s` of processor time.
 PeerFigures runPeer(Peer peer, int substeps, const Simulation& simulation, double limit_s) {
@@ -30,7 +30,7 @@ PeerFigures runPeer(Peer peer, int substeps, const Simulation& simulation, doubl
   const Simulation fresh(scene);
   const std::vector<FittedBox> start = fittedBoxes(fresh.state.position);
   bool stands = true;
-  for (int frame = 0; stands && frame < kFrames && (frame < kLeastFrames || spent_s < limit_s); ++frame) {
+  for (int frame = 0; stands && frame < kPeerFrames && (frame < kLeastPeerFrames || spent_s < limit_s); ++frame) {
     endIfInterrupted();
     times_s.push_back(process.step(state));
     spent_s += times_s.back();
@@ -56,7 +56,7 @@ std::vector<PeerFigures> measurePeer(Peer peer, const Simulation& simulation, do
   std::vector<PeerFigures> all;
   if (limit_s <= 0.0 || std::find(here.begin(), here.end(), peer) == here.end()) return all;
   double left_s = limit_s;
-  for (int substeps = kLeastSteps; substeps <= kMaxSteps; substeps *= 2) {
+  for (int substeps = kLeastPeerSteps; substeps <= kMaxPeerSteps; substeps *= 2) {
     beforeRun();
     try {
       all.push_back(runPeer(peer, substeps, simulation, left_s));
@@ -67,7 +67,7 @@ std::vector<PeerFigures> measurePeer(Peer peer, const Simulation& simulation, do
     if (last.penetration_mm <= penetration_mm) break;
     left_s -= 1e-3 * last.frame_ms * last.simulated_s / simulation.scene.settings.frame_s;
     // Twice as many steps take twice as long.
-    if (2e-3 * last.frame_ms * kLeastFrames > left_s) break;
+    if (2e-3 * last.frame_ms * kLeastPeerFrames > left_s) break;
   }
   return all;
 }

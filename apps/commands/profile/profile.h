@@ -130,7 +130,7 @@ struct ProfileResult {
   double touchingBytes = 0.0;                          ///< that a touching pair adds
   double touchingStepBytes = 0.0;                      ///< and for steps and rollbacks
   double firstFrame_s = 0.0;                           ///< processor time of the very first frame; of stacks alone, as are
-  double creep_mm_min = 0.0;                           ///< the largest move of a corner while measured, mm a minute, and
+  double creepPerMinute_mm = 0.0;                      ///< the largest move of a corner while measured, mm a minute, and
   std::vector<PeerFigures> peers;                      ///< other engines; of the first case of those with one preparation
   std::vector<double> frame_ms;                        ///< `cost` of each frame, least over the samples
 

@@ -14,7 +14,7 @@
 namespace springtower {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNotSet = std::numeric_limits<double>::quiet_NaN();
 
 constexpr std::array<StackFamily, kStackFamilies> kFamilies = {
     {{"wall",
@@ -33,12 +33,12 @@ constexpr std::array<StackFamily, kStackFamilies> kFamilies = {
         return brickPyramidScene(rows);
       }}}};
 
-constexpr auto kGoals = std::to_array<StackGoal>({{"wall:20x12", {0.4, kNone}, {0.3, kNone}, kNone},
-                                                  {"wall:40x25", {3.0, kNone}, {2.0, kNone}, 0.12},
+constexpr auto kGoals = std::to_array<StackGoal>({{"wall:20x12", {0.4, kNotSet}, {0.3, kNotSet}, kNotSet},
+                                                  {"wall:40x25", {3.0, kNotSet}, {2.0, kNotSet}, 0.12},
                                                   {"wall:200x25", {17.0, 11.0}, {12.0, 7.0}, 0.8},
-                                                  {"bricks:40", {3.5, kNone}, {2.5, kNone}, kNone},
-                                                  {"bricks:60", {kNone, kNone}, {kNone, kNone}, 1.0},
-                                                  {"cubes:40", {4.0, kNone}, {1.5, kNone}, kNone},
+                                                  {"bricks:40", {3.5, kNotSet}, {2.5, kNotSet}, kNotSet},
+                                                  {"bricks:60", {kNotSet, kNotSet}, {kNotSet, kNotSet}, 1.0},
+                                                  {"cubes:40", {4.0, kNotSet}, {1.5, kNotSet}, kNotSet},
                                                   {"cubes:100", {16.0, 10.0}, {9.0, 5.0}, 6.0}});
 
 // The size after the colon: as many whole numbers as the family has, with an x between, each within its range.

@@ -41,7 +41,7 @@ struct StackGoal {
 std::span<const StackGoal> stackGoals();
 
 /// Bounds for every stack, besides that none is deeper than its tolerance.
-inline constexpr double kMaxStackCreep_mm_min = 0.001;
+inline constexpr double kMaxStackCreepPerMinute_mm = 0.001;
 inline constexpr double kMaxGrowthExponent = 1.25;
 inline constexpr std::size_t kGrowthLeastBlocks = 240;  ///< smaller stacks are left out of it
 

@@ -81,7 +81,7 @@ std::string verdictOf(const StackRow& row) {
   if (!result.stands) add(misses, "it fell");
   if (result.what.method != Settings{}.method) return misses.empty() ? "stands" : misses;
   if (result.penetration_mm > 1e3 * result.what.tolerance_m) add(misses, "depth");
-  if (result.creep_mm_min > kMaxStackCreep_mm_min) add(misses, "creep");
+  if (result.creepPerMinute_mm > kMaxStackCreepPerMinute_mm) add(misses, "creep");
   const StackGoal* const goal = goalOf(result.what.stack);
   if (goal == nullptr) return misses.empty() ? "meets" : "misses: " + misses;
   judgeTimes(row, goal->required_ms, misses);
@@ -137,8 +137,8 @@ void printRow(const StackRow& row, const std::vector<int>& threads) {
       fmt::print("  {:>8.3g}{:>8.3g}{:>8.3g}", one->wall_ms.median, one->wall_ms.p99, one->processor_ms.median);
     }
   }
-  fmt::print("  {:>16}{:>10.2g}{:>9.1g}  {:>11}  {:<20}  {}\n", requiredText(row), result.penetration_mm, result.creep_mm_min,
-             firstText(row), verdictOf(row), peerText(result));
+  fmt::print("  {:>16}{:>10.2g}{:>9.1g}  {:>11}  {:<20}  {}\n", requiredText(row), result.penetration_mm,
+             result.creepPerMinute_mm, firstText(row), verdictOf(row), peerText(result));
 }
 
 void printGrowth(const Profile& profile) {
@@ -160,7 +160,7 @@ void printStacks(const Profile& profile) {
       "each frame\nthe least of the samples), required and in brackets the goal, judged by processor time on one thread and by "
       "wall time on more;\ndepth mm (at most the tolerance), creep mm a minute (at most {:g}), first frame s of processor time "
       "(what is allowed);\nBullet: steps a frame nearest in depth, processor time, depth, and for how long it was looked at\n",
-      kMaxStackCreep_mm_min);
+      kMaxStackCreepPerMinute_mm);
   fmt::print("{:<14}{:>7}", "stack", "blocks");
   for (const int count : threads) fmt::print("  {:>8}{:>8}{:>8}", fmt::format("{} thr.", count), "p99", "cpu");
   fmt::print("  {:>16}{:>10}{:>9}  {:>11}  {:<20}  {}\n", "required (goal)", "depth", "creep", "first", "verdict", "Bullet");
@@ -185,7 +185,7 @@ void writeStacksCsv(std::ostream& stream, const Profile& profile) {
       stream << fmt::format("springtower,{},{},{},{:g},{},{:g},{},{},{},{},{},{},{},{},{},{},{},{},{},{}", what.stack,
                             result->blocks, result->methodName, what.tolerance_m, what.threads, result->substeps,
                             result->wall_ms.median, result->wall_ms.p99, result->processor_ms.median, result->processor_ms.p99,
-                            result->penetration_mm, result->creep_mm_min, result->firstFrame_s, result->prepared_s,
+                            result->penetration_mm, result->creepPerMinute_mm, result->firstFrame_s, result->prepared_s,
                             result->stands ? "yes" : "no", judged ? set(goal->required_ms[at]) : "",
                             judged ? set(goal->goal_ms[at]) : "", goal != nullptr ? set(goal->firstFrame_s) : "",
                             csvText(result->failure.empty() ? verdictOf(row) : result->failure), origin);
