@@ -33,7 +33,7 @@ constexpr double kUnlimited_s = 1e9;
 constexpr std::string_view kChartExamples =
     R"help(scenes: uniform (equal blocks), heights (varying by 0.2 mm), pull (a block at 4 cm/s), drop (three rows from 2 cm), collapse
 (it leans more than it can stand), spin (one block in flight), heavy-light (every other row ten times as heavy), wall (40 x 25 in
-running bond) and pyramid (40 rows of cubes), both by implicit steps, rigid-pgs, xpbd and other engines alone, for 2 s, with three
+running bond) and pyramid (40 rows of cubes), both by implicit steps, rigid-pgs, xpbd and other engines alone, for 2 s, with four
 times --case-limit; not charted: holes (blocks missing), lean (9 degrees), tall (36 rows), slide (over the floor), heap (eight
 fall askew), thrown (two meet)
 

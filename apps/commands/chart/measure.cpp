@@ -23,7 +23,7 @@ namespace {
 // A tower may be looked at from here on, s.
 constexpr double kEarliest_s = 1.0;
 constexpr double kMotionLimits = 2.0;
-constexpr double kStackLimits = 3.0;      // for a fifth of the simulated time, and twenty times the blocks
+constexpr double kStackLimits = 4.0;      // for a fifth of the simulated time, and twenty times the blocks
 constexpr double kShortSamples_s = 0.03;  // of a case in all, s of processor time, and no more than
 constexpr double kShortShare = 0.15;      // this share of what one sample may take
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
