@@ -136,10 +136,19 @@ std::vector<std::string> writePlots(const std::string& folder, const std::vector
   return names;
 }
 
-// The table, the charts and the index, of what there is so far. Returns the number of charts.
-std::size_t writeAll(const std::string& folder, const Chart& chart) {
+// The table and the index, of what there is so far, and the charts of the scene that has been measured: those of the others are
+// there. Returns the number of charts.
+std::size_t writeAll(const std::string& folder, const Chart& chart, ChartScene measured) {
   writeOutputFile(folder, "chart.csv", [&](std::ostream& stream) { writeChartCsv(stream, chart); });
-  const std::vector<std::string> names = writePlots(folder, chartPlots(chart));
+  std::string prefix = fmt::format("{}_", nameOf(measured));
+  std::replace(prefix.begin(), prefix.end(), '-', '_');
+  const std::vector<std::pair<std::string, Plot>> plots = chartPlots(chart);
+  std::vector<std::string> names;
+  names.reserve(plots.size());
+  for (const auto& [name, plot] : plots) {
+    if (name.starts_with(prefix)) writePlot(folder, name, plot);
+    names.push_back(name);
+  }
   writeOutputFile(folder, "index.md", [&](std::ostream& stream) { writeChartIndex(stream, chart, names); });
   return names.size();
 }
@@ -285,7 +294,7 @@ int executeChart(const ChartCommand& command) {
     printScene(chart, cases.front().scene);
     printChoice(chart, cases.front().scene);
     std::fflush(stdout);
-    charts = writeAll(command.out, chart);
+    charts = writeAll(command.out, chart, cases.front().scene);
   }
   fmt::print("{} cases, {} charts (SVG, PNG and PDF), chart.csv, chart.json and index.md in {}\n", chart.results.size(), charts,
              onOneLine(command.out));
