@@ -4,6 +4,7 @@
 #include "core/limits.h"
 #include "core/version.h"
 #include "solver/block/inertia.h"
+#include "solver/frame/prepare.h"
 
 #include <bit>
 #include <fmt/format.h>
@@ -82,6 +83,10 @@ void stepWithPassingForces(WorldImpl& impl) {
   forces.resize(lasting);
 }
 
+void requirePrepared(const WorldImpl& impl) {
+  if (!isPrepared(impl.simulation)) throw InputError("step: found a world that is not prepared, allowed is one after prepare()");
+}
+
 }  // namespace
 
 WorldImpl& WorldAccess::impl(World& world) {
@@ -126,12 +131,38 @@ World::World(const Scene& scene) {
   });
 }
 
+Preparation World::prepare(const PrepareOptions& options) {
+  WorldImpl& impl = WorldAccess::running(*this);
+  if (isPrepared(impl.simulation)) throw InputError("prepare: found a world that is prepared, allowed is one that is not");
+  springtower::PrepareOptions how;
+  how.budget_s = options.budget_s;
+  if (options.goesOn) {
+    how.goesOn = [&](const springtower::PrepareProgress& now) {
+      return options.goesOn({static_cast<int>(now.blocks), static_cast<int>(now.blocksDone), now.iterations, now.elapsed_s});
+    };
+  }
+  Preparation done;
+  withPublicErrors([&] {
+    try {
+      const springtower::PrepareResult result = springtower::prepare(impl.simulation, how);
+      done = {static_cast<Preparation::End>(result.end), static_cast<int>(result.blocks),
+              static_cast<int>(result.blocksInBalance), result.wall_s};
+    } catch (const DivergenceError& error) {
+      fail(impl);  // also where there is no memory for the message
+      impl.divergence = {error.block, error.time_s, error.what()};
+      done.end = Preparation::End::diverged;
+    }
+  });
+  return done;
+}
+
 World::~World() = default;
 World::World(World&& other) noexcept = default;
 World& World::operator=(World&& other) noexcept = default;
 
 std::optional<Divergence> World::step() {
   WorldImpl& impl = WorldAccess::impl(*this);
+  requirePrepared(impl);
   if (!impl.divergence) stepWithPassingForces(impl);
   return impl.divergence;
 }
@@ -139,6 +170,7 @@ std::optional<Divergence> World::step() {
 std::optional<Divergence> World::step(int frames) {
   if (frames < 0) throw InputError(fmt::format("step: found {} frames, allowed 0 or more", frames));
   WorldImpl& impl = WorldAccess::impl(*this);
+  requirePrepared(impl);
   for (int done = 0; done < frames && !impl.divergence; ++done) stepWithPassingForces(impl);
   return impl.divergence;
 }

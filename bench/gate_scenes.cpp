@@ -10,6 +10,7 @@
 #include "scenarios/gate.h"
 #include "scenarios/towers.h"
 #include "solver/frame/inputs.h"
+#include "solver/frame/prepare.h"
 #include "solver/metrics/measures.h"
 #include "solver/metrics/penetration.h"
 #include "solver/world/simulation.h"
@@ -58,6 +59,7 @@ void pull(Simulation& simulation, std::size_t block, double speed_m_s, double& f
 
 void runGate(const GateTower& gate, Method method, int frames) {
   Simulation simulation(sceneOf(gate, method));
+  prepare(simulation);
   const ParticleArray start = simulation.state.position;
   const std::size_t pulled = middleBlock(simulation.scene);
   double friction_n = kFirstPull_n;

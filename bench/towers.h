@@ -2,6 +2,7 @@
 
 #include "core/scene/scene.h"
 #include "scenarios/towers.h"
+#include "solver/frame/prepare.h"
 #include "solver/world/engine.h"
 #include "solver/world/simulation.h"
 
@@ -29,6 +30,7 @@ inline Simulation startedScene(const std::string& name, const Scene& scene, int 
   if (snapshot) {
     restoreSnapshot(simulation, *snapshot);
   } else {
+    prepare(simulation);
     for (int frame = 0; frame < frames; ++frame) stepFrame(simulation);
     snapshot = takeSnapshot(simulation);
   }

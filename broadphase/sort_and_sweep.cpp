@@ -1,5 +1,8 @@
 #include "broadphase/sort_and_sweep.h"
 
+#include "core/parallel.h"
+#include "core/tuning.h"
+
 #include <algorithm>
 #include <bit>
 #include <cassert>
@@ -193,6 +196,36 @@ void update(SortAndSweep& sweep, const SweptBoxes& boxes, std::span<const std::u
   }
 }
 
+// Finds the pairs of these awake blocks, ascending ones sorted; the others as found.
+void findPairsOf(const SortAndSweep& sweep, std::span<const std::int32_t> awake, SortAndSweep::Found& found) {
+  found.tests = 0;
+  found.ascending.clear();
+  found.outOfOrder.clear();
+  const Entry* const order = sweep.order.data();
+  for (const std::int32_t block : awake) {
+    const Entry& entry = order[sweep.place[static_cast<std::size_t>(block)]];
+    const std::size_t first = found.ascending.size();
+    visitColumns(sweep, entry, [&](const Column& column) {
+      const Entry* const begin = order + column.begin;
+      const Entry* const end = order + (&column + 1)->begin;
+      const double from = entry.lower[2] - column.thickest;
+      const Entry* other = std::lower_bound(begin, end, from, [](const Entry& e, double value) { return e.lower[2] < value; });
+      for (; other != end && other->lower[2] <= entry.upper[2]; ++other) {
+        // Two awake blocks find one another twice; the pair is counted for the first.
+        if (other->asleep == 0 && other->block <= block) continue;
+        ++found.tests;
+        if (!overlap(entry, *other)) continue;
+        if (block < other->block) {
+          found.ascending.push_back({block, other->block});
+        } else {
+          found.outOfOrder.push_back({other->block, block});
+        }
+      }
+    });
+    std::sort(found.ascending.begin() + static_cast<std::ptrdiff_t>(first), found.ascending.end());
+  }
+}
+
 }  // namespace
 
 void reset(SortAndSweep& sweep, const SweptBoxes& boxes) {
@@ -222,32 +255,30 @@ std::uint64_t findPairs(SortAndSweep& sweep, const SweptBoxes& boxes, std::span<
                         std::vector<BlockPair>& pairs) {
   assert(boxes.blockCount() == sweep.order.size() && asleep.size() == sweep.order.size());
   update(sweep, boxes, asleep);
-  auto& ascending = sweep.ascending;
+  // The pairs of parts, one after another, are those of all.
+  const std::size_t parts = 1 + sweep.awake.size() / tuning::kSweepPart;
+  if (sweep.found.size() < parts) sweep.found.resize(parts);
+  const std::size_t size = (sweep.awake.size() + parts - 1) / parts;
+  forRanges(parts, 1, parts > 1, [&](std::size_t firstPart, std::size_t lastPart) {
+    for (std::size_t part = firstPart; part < lastPart; ++part) {
+      const std::size_t first = std::min(part * size, sweep.awake.size());
+      findPairsOf(sweep, std::span(sweep.awake).subspan(first, std::min(size, sweep.awake.size() - first)), sweep.found[part]);
+    }
+  });
+  std::uint64_t tests = 0;
+  std::vector<BlockPair>& ascending = sweep.ascending;
   ascending.clear();
   sweep.outOfOrder.clear();
-  const Entry* const order = sweep.order.data();
-  std::uint64_t tests = 0;
-  for (const std::int32_t block : sweep.awake) {
-    const Entry& entry = order[sweep.place[static_cast<std::size_t>(block)]];
-    const std::size_t first = ascending.size();
-    visitColumns(sweep, entry, [&](const Column& column) {
-      const Entry* const begin = order + column.begin;
-      const Entry* const end = order + (&column + 1)->begin;
-      const double from = entry.lower[2] - column.thickest;
-      const Entry* other = std::lower_bound(begin, end, from, [](const Entry& e, double value) { return e.lower[2] < value; });
-      for (; other != end && other->lower[2] <= entry.upper[2]; ++other) {
-        // Two awake blocks find one another twice; the pair is counted for the first.
-        if (other->asleep == 0 && other->block <= block) continue;
-        ++tests;
-        if (!overlap(entry, *other)) continue;
-        if (block < other->block) {
-          ascending.push_back({block, other->block});
-        } else {
-          sweep.outOfOrder.push_back({other->block, block});
-        }
-      }
-    });
-    std::sort(ascending.begin() + static_cast<std::ptrdiff_t>(first), ascending.end());
+  for (std::size_t part = 0; part < parts; ++part) {
+    SortAndSweep::Found& found = sweep.found[part];
+    tests += found.tests;
+    if (parts == 1) {
+      ascending.swap(found.ascending);
+      found.ascending.reserve(ascending.capacity());  // the two are swapped, so both need the larger capacity
+    } else {
+      ascending.insert(ascending.end(), found.ascending.begin(), found.ascending.end());
+    }
+    sweep.outOfOrder.insert(sweep.outOfOrder.end(), found.outOfOrder.begin(), found.outOfOrder.end());
   }
   if (sweep.outOfOrder.empty()) {
     pairs.swap(ascending);

@@ -42,8 +42,15 @@ struct SortAndSweep {
   std::vector<Column> columns;        ///< in the order of their keys; the last one is a sentinel
   std::vector<std::int32_t> awake;    ///< blocks awake in the last call, ascending
   std::vector<std::int32_t> renewed;  ///< working space: blocks whose boxes were updated in this call
-  std::vector<BlockPair> ascending;   ///< working space: pairs found with a < b in ascending order
-  std::vector<BlockPair> outOfOrder;  ///< working space: the others
+  /// Working space: what the search of some blocks has found.
+  struct Found {
+    std::vector<BlockPair> ascending;   ///< pairs found with a < b in ascending order
+    std::vector<BlockPair> outOfOrder;  ///< the others
+    std::uint64_t tests = 0;            ///< pairs of boxes compared
+  };
+  std::vector<Found> found;           ///< [parts of the awake blocks]
+  std::vector<BlockPair> ascending;   ///< working space: those of all parts
+  std::vector<BlockPair> outOfOrder;  ///< working space: those of all parts
 };
 
 /// Resets the structure for these boxes; call it when the number of blocks changes or sleeping blocks were moved. The sweep axis

@@ -1,15 +1,18 @@
 #include "broadphase/swept_boxes.h"
 
+#include "core/parallel.h"
+#include "core/tuning.h"
+
 #include <Eigen/Core>
 #include <cassert>
 #include <cmath>
 
 namespace springtower {
+namespace {
 
-void computeSweptBoxes(const MotionState& state, std::span<const std::int32_t> blocks, double gravity, double duration_s,
-                       double margin_m, SweptBoxes& boxes, std::span<double> reach) {
+void sweepBoxes(const MotionState& state, std::span<const std::int32_t> blocks, double gravity, double duration_s,
+                double margin_m, SweptBoxes& boxes, std::span<double> reach) {
   using Corners = Eigen::Map<const Eigen::Array<double, static_cast<int>(kCorners), 1>>;
-  assert(boxes.blockCount() == state.position.blockCount() && reach.size() == boxes.blockCount());
   const double common = 0.5 * gravity * duration_s * duration_s + margin_m;
   for (const std::int32_t block : blocks) {
     const auto b = static_cast<std::size_t>(block);
@@ -24,6 +27,17 @@ void computeSweptBoxes(const MotionState& state, std::span<const std::int32_t> b
       boxes.upper[a][b] = x.maxCoeff() + reach[b];
     }
   }
+}
+
+}  // namespace
+
+void computeSweptBoxes(const MotionState& state, std::span<const std::int32_t> blocks, double gravity, double duration_s,
+                       double margin_m, SweptBoxes& boxes, std::span<double> reach) {
+  assert(boxes.blockCount() == state.position.blockCount() && reach.size() == boxes.blockCount());
+  forRanges(blocks.size(), tuning::kBlockGrain, blocks.size() >= tuning::kParallelBlocks,
+            [&](std::size_t first, std::size_t last) {
+              sweepBoxes(state, blocks.subspan(first, last - first), gravity, duration_s, margin_m, boxes, reach);
+            });
 }
 
 }  // namespace springtower

@@ -28,12 +28,13 @@ inline constexpr Range kGravityRange{0.0, 1e3, "m/s2"};
 inline constexpr Range kTiltRange{-180.0, 180.0, "deg"};
 inline constexpr Range kDirectionRange{-360.0, 360.0, "deg"};
 inline constexpr Range kFrequencyRange{0.0, 1e3, "Hz"};
-inline constexpr std::size_t kMaxBlocks = 100000;
+inline constexpr std::size_t kMaxBlocks = 200000;
 
 // What a tower may vary. Three standard deviations, where the variation is cut off, leave half the height and a tenth of the
 // mass.
 inline constexpr Range kHeightsSigmaRange{0.0, 0.003, "m"};
 inline constexpr Range kMassSigmaRange{0.0, 0.0059, "kg"};
+inline constexpr Range kPrepareBudgetRange{0.0, 1e7, "s"};
 inline constexpr Range kStartGapRange{0.0, 1.0, "m"};
 inline constexpr Range kOffsetRange{-1.0, 1.0, "m"};
 inline constexpr Range kLooseRange{0.0, 0.009, "m"};

@@ -13,6 +13,7 @@ int main() {
   const int rows = 6;
   const int block = 3 * (rows / 2) + 1;  // an odd row: it lies along y
   st::World world(st::towerScene(rows));
+  world.prepare();
   const auto fails = [&](int frames) {
     const auto failed = world.step(frames);
     if (failed) std::fprintf(stderr, "%s\n", failed->cause.c_str());

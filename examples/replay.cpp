@@ -23,6 +23,7 @@ std::uint64_t play(st::World& world) {
 int main() {
   const st::Scene scene = st::towerScene(4);
   st::World world(scene);
+  world.prepare();
   if (world.step(30)) return 3;
   const st::Snapshot before = world.snapshot();
 
@@ -32,6 +33,7 @@ int main() {
 
   const st::ThreadLimit oneThread(1);
   st::World other(scene);
+  other.prepare();
   other.restore(before);
   const std::uint64_t elsewhere = play(other);
 

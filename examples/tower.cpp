@@ -13,6 +13,7 @@ int main() {
   if (st::verdict(scene) != st::Verdict::stands) return 1;
 
   st::World world(scene);
+  world.prepare();
   if (const auto failed = world.step(120)) {
     std::fprintf(stderr, "%s\n", failed->cause.c_str());
     return 3;

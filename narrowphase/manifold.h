@@ -37,6 +37,11 @@ struct PenaltyRow {
   FourValues slipRatio;  ///< 0 where it sticks; otherwise the share of friction left by the cone
 };
 
+/// The largest stiffening of four points.
+inline double stiffestOf(const PenaltyRow& row) {
+  return *std::max_element(row.stiffening.begin(), row.stiffening.end());
+}
+
 /// Four points as impulses (methods rigid-pgs and rigid-lcp, and islands in rigid mode).
 struct ImpulseRow {
   FourVectors friction;    ///< N, mean over the step, on upper

@@ -96,7 +96,7 @@ constexpr Scenario kScenarios[] = {
      [](const ScenarioSize&, const TowerOptions&) { return sleeperHitScene(); }},
     {"wall",
      "a wall of blocks in running bond, half blocks at the ends",
-     {SizeNumber{"columns", 20, 1, 900}, SizeNumber{"courses", 12, 1, 100}},
+     {SizeNumber{"columns", 20, 1, 4000}, SizeNumber{"courses", 12, 1, 100}},
      false,
      [](const ScenarioSize& size, const TowerOptions&) { return wallScene(size[0], size[1]); }},
     {"pyramid",

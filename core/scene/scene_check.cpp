@@ -57,7 +57,7 @@ bool isInside(const Vec3& value, const Range& range) {
   return isInside(value.x(), range) && isInside(value.y(), range) && isInside(value.z(), range);
 }
 
-// Composes its messages only when something is wrong, as a scene may have a hundred thousand blocks.
+// Composes its messages only when something is wrong, as a scene may have two hundred thousand blocks.
 void checkBlock(const Scene& scene, std::size_t b, std::string_view source) {
   constexpr Range kUnit{1.0 - 1e-9, 1.0 + 1e-9, ""};
   const BlockSpec& block = scene.blocks[b];

@@ -68,7 +68,7 @@ struct Gravity {
 /// A whole scene: what there is, how it starts, what acts on it, and how it is simulated.
 struct Scene {
   std::string name;           ///< in messages
-  std::vector<Block> blocks;  ///< 1 to 100000; none inside another or in the floor (touching is fine)
+  std::vector<Block> blocks;  ///< 1 to 200000; none inside another or in the floor (touching is fine)
   std::vector<Force> forces;  ///< that are known beforehand; see inputs.h for others
   Gravity gravity;
   bool floor = true;             ///< whether there is the plane z = 0

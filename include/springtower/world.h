@@ -3,6 +3,8 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -31,6 +33,32 @@ struct Divergence {
   int block = kFloor;   ///< the block found first
   double time_s = 0.0;  ///< simulated time
   std::string cause;    ///< one line for people
+};
+
+/// How far World::prepare has come.
+struct PrepareProgress {
+  int blocks = 0;                ///< that may move
+  int blocksDone = 0;            ///< of islands whose search has ended
+  std::uint64_t iterations = 0;  ///< linear systems solved
+  double elapsed_s = 0.0;        ///< s, wall time
+};
+
+/// Limits of World::prepare.
+struct PrepareOptions {
+  /// s, wall time, 0 or more. What has no equilibrium by then starts as placed: how it goes on depends on the machine's speed.
+  double budget_s = std::numeric_limits<double>::infinity();
+  /// Called at the beginning and about ten times a second, on whatever thread, one call at a time; false ends the search, as the
+  /// budget does. May be empty; must not throw, nor call the world.
+  std::function<bool(const PrepareProgress&)> goesOn = {};
+};
+
+/// How World::prepare has ended.
+struct Preparation {
+  enum class End { complete, outOfTime, cancelled, diverged };
+  End end = End::complete;
+  int blocks = 0;           ///< that may move
+  int blocksInBalance = 0;  ///< that start in static equilibrium; the others start as placed
+  double wall_s = 0.0;      ///< s
 };
 
 /// What has happened since a world was made, counted.
@@ -87,8 +115,7 @@ class Snapshot {
 class World {
  public:
   /// Makes a world of a scene, which is copied. Throws InputError where checkScene does, and for a tolerance that does not fit
-  /// the substeps. Costs a sort of the blocks; the search for the equilibrium from which the blocks start is part of the first
-  /// step.
+  /// the substeps. Costs a sort of the blocks.
   explicit World(const Scene& scene);
   ~World();
   World(World&& other) noexcept;             ///< `other` may only be destroyed or assigned to afterwards
@@ -96,10 +123,15 @@ class World {
   World(const World&) = delete;              ///< a copy is another world of the same scene that restores a snapshot
   World& operator=(const World&) = delete;
 
+  /// Lays what touches and does not move into the static equilibrium next to its placement, where there is one: blocks as placed
+  /// carry no forces, and would drop by about the tolerance. To be called once, before the first step; from milliseconds for a
+  /// tower to seconds for thousands of blocks. Throws InputError for a negative budget and after the first call.
+  Preparation prepare(const PrepareOptions& options = {});
+
   /// Advances by one frame of frame_s(). Returns nothing where all is well, else how it failed; a world that has failed stays as
-  /// it is and returns the same again.
+  /// it is and returns the same again. Throws InputError before prepare().
   [[nodiscard]] std::optional<Divergence> step();
-  /// Advances by so many frames, or until it fails. Throws InputError for a negative number.
+  /// Advances by so many frames, or until it fails. Throws InputError for a negative number, and before prepare().
   [[nodiscard]] std::optional<Divergence> step(int frames);
   /// How it has failed, if it has.
   [[nodiscard]] const std::optional<Divergence>& divergence() const;

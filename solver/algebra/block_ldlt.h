@@ -2,15 +2,14 @@
 
 #include "core/ids.h"
 #include "core/vector.h"
+#include "solver/algebra/block_size.h"
+#include "solver/algebra/elimination_tasks.h"
 
 #include <cstdint>
 #include <span>
 #include <vector>
 
 namespace springtower {
-
-inline constexpr std::size_t kNodeSize = 12;                       // degrees of freedom of a node
-inline constexpr std::size_t kNodeMatrix = kNodeSize * kNodeSize;  // floats of a block of the matrix, row by row
 
 /// Position of a pair of nodes in the matrix: which stored block, and whether the pair's first node is that block's row.
 struct BlockSlot {
@@ -33,6 +32,9 @@ struct BlockCholesky {
   AlignedVector<float> lower;             ///< [blocks][144]; after factorisation the transposed blocks of L
   std::vector<std::int32_t> mark, firstChild, nextChild, edgeStart, edgeRow;  ///< working space of `analyse`
   AlignedVector<float> work;                                                  ///< working space of solutions, [nodes][12]
+  EliminationTasks tasks;                                                     ///< of a wide matrix; else empty
+  AlignedVector<float> divided;  ///< working space of the top's eliminations, [tallest column][144]
+  AlignedVector<float> taken;    ///< working space of solutions: what tasks take from values of the top, [tasks][top][12]
 
   [[nodiscard]] std::size_t nodeCount() const { return node.size(); }
   [[nodiscard]] std::size_t blockCount() const { return row.size(); }
@@ -43,8 +45,8 @@ struct BlockCholesky {
 bool findPattern(std::span<const std::int32_t> order, std::span<const BlockPair> edges, std::size_t mostProducts,
                  BlockCholesky& matrix);
 
-/// Lists the updates of each elimination and sizes the matrix, for the pattern that `findPattern` found; the second part of
-/// `analyse`.
+/// Lists the updates of each elimination, divides a wide matrix into tasks, and sizes the matrix, for the pattern that
+/// `findPattern` found; the second part of `analyse`.
 void listUpdates(BlockCholesky& matrix);
 
 /// Lays out the matrix for an elimination order (a permutation: order[k] is the k-th node) of nodes coupled by `edges`, including
@@ -61,11 +63,11 @@ BlockSlot slotOf(const BlockCholesky& matrix, std::int32_t first, std::int32_t s
 /// Sets all entries to zero.
 void clear(BlockCholesky& matrix);
 
-/// Factorises the matrix in `diagonal` (full blocks) and `lower`. Precondition: positive definite. Returns false where a pivot is
-/// not positive.
+/// Factorises the matrix in `diagonal` (full blocks) and `lower`, a wide one on many threads, with the same bits on any number.
+/// Precondition: positive definite. Returns false where a pivot is not positive.
 bool factorise(BlockCholesky& matrix);
 
-/// Solves A x = b in place; `values` holds 12 numbers a node, by node.
+/// Solves A x = b in place, a wide system on many threads as above; `values` holds 12 numbers a node, by node.
 void solve(BlockCholesky& matrix, std::span<double> values);
 
 }  // namespace springtower

@@ -24,6 +24,11 @@ struct SparseFactors {
   SparseFactors& operator=(const SparseFactors& other);
 };
 
+/// Makes the factors of an island that is gone those of an island to come.
+inline void reset(SparseFactors& sparse) {
+  sparse.analysed = false;
+}
+
 /// Factorises the matrix as assembled, before `factorise` of block_ldlt.h overwrites it. `coupled` are the slots of its pairs (at
 /// = -1: none); all other blocks below the diagonal are only room for fill. Returns false where the matrix is not positive
 /// definite. Precondition: where `sparse.analysed`, pattern and elimination order are those of the last call.

@@ -4,6 +4,7 @@
 #include "solver/block/inertia.h"
 #include "solver/contact/create.h"
 #include "solver/world/checkpoint.h"
+#include "solver/world/over_island.h"
 
 #include <algorithm>
 #include <cmath>
@@ -270,11 +271,9 @@ ApproachEstimate estimateApproach(const IslandStep& step) {
 
 bool bounces(const IslandStep& step, double step_s) {
   const double most = tuning::kMaxImplicitClosing * step.simulation.tolerance_m / step_s;
-  double fastest = 0.0;
-  for (const std::int32_t block : step.blocks) fastest = std::max(fastest, speedOf(step, block));
+  const double fastest = largestOfBlocks(step, [&](std::size_t b) { return speedOf(step, static_cast<std::int32_t>(b)); });
   if (2.0 * fastest <= most) return false;
-  return std::any_of(step.pairs.begin(), step.pairs.end(), [&](std::int32_t pair) {
-    const auto at = static_cast<std::size_t>(pair);
+  return anyPair(step, [&](std::size_t at) {
     if (!step.engine.pairs.touches(at)) return false;
     const BlockPair& key = step.engine.pairs.key[at];
     if (speedOf(step, key.a) + speedOf(step, key.b) <= most) return false;
@@ -289,8 +288,7 @@ bool isAboutToCollide(const IslandStep& step, double step_s) {
     const double reach = frame_s * (std::max(0.0, closing.speed) + 0.5 * frame_s * simulation.scene.gravity.magnitude);
     return closing.gap < reach && closing.speed * step_s > tuning::kMaxImplicitClosing * simulation.tolerance_m;
   };
-  return std::any_of(step.pairs.begin(), step.pairs.end(), [&](std::int32_t pair) {
-    const auto at = static_cast<std::size_t>(pair);
+  return anyPair(step, [&](std::size_t at) {
     if (step.engine.pairs.touches(at)) return false;
     const BlockPair& key = step.engine.pairs.key[at];
     return soon(closingOf(simulation, at)) && (key.b < 0 || soon(closingOfShapes(simulation, key)));
@@ -299,8 +297,7 @@ bool isAboutToCollide(const IslandStep& step, double step_s) {
 
 FirstContact findFirstContacts(IslandStep& step) {
   const double most = tuning::kMaxFirstOverlap * step.simulation.tolerance_m;
-  double longest = 0.0;
-  for (const std::int32_t block : step.blocks) longest = std::max(longest, displacementOf(step, block));
+  const double longest = largestOfBlocks(step, [&](std::size_t b) { return displacementOf(step, static_cast<std::int32_t>(b)); });
   if (2.0 * longest <= most) return FirstContact::none;
   FirstContact found = FirstContact::none;
   PairTable& pairs = step.engine.pairs;

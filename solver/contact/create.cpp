@@ -243,6 +243,28 @@ void updateSeparated(IslandStep& step, std::size_t at, Counters& counters, Stage
   storeContact(step.engine, at, fresh);
 }
 
+void createAhead(IslandStep& step, std::size_t at, double reach_m) {
+  PairTable& pairs = step.engine.pairs;
+  const BlockPair pair = pairs.key[at];
+  const CornerView a = cornersOf(step.simulation.state.position, static_cast<std::size_t>(pair.a));
+  if (pair.b < 0) {
+    if (lowestCorner(a) > reach_m) return;
+    Manifold fresh;
+    fresh.upper = pair.a;
+    fresh.kind = step.pointKind;
+    buildFloorManifold(a, limitsOf(step.simulation), fresh);
+    storeContact(step.engine, at, fresh);
+    return;
+  }
+  const CornerView b = cornersOf(step.simulation.state.position, static_cast<std::size_t>(pair.b));
+  const Separation apart = findSeparation(a, b);
+  if (apart.best() > reach_m || 2.0 * std::pow(apart.bestNormal().dot(step.gravity.normalized()), 2) < 1.0) return;
+  Manifold fresh;
+  fresh.kind = step.pointKind;
+  chooseManifold(apart, a, b, limitsOf(step.simulation), 0.0, edgeSlackOf(step.simulation), pair, {}, fresh);
+  if (fresh.count > 0) storeContact(step.engine, at, fresh);
+}
+
 double clearanceNow(const Simulation& simulation, std::size_t at) {
   const PairTable& pairs = simulation.engine->pairs;
   const BlockPair& pair = pairs.key[at];

@@ -9,6 +9,9 @@ namespace springtower {
 /// created. The time of the cubic tests is added to `times`.
 void updateSeparated(IslandStep& step, std::size_t at, Counters& counters, StageTimes& times);
 
+/// Makes a separated pair no farther apart than `reach_m` a contact, of points that do not touch.
+void createAhead(IslandStep& step, std::size_t at, double reach_m);
+
 /// Present gap (m) of a separated pair along its stored axis, at least 0.
 double clearanceNow(const Simulation& simulation, std::size_t at);
 

@@ -1,31 +1,18 @@
 #include "solver/contact/evaluate_forces.h"
 
+#include "core/parallel.h"
 #include "core/tuning.h"
 #include "solver/block/inertia.h"
 #include "solver/block/springs.h"
-#include "solver/world/island_step.h"
+#include "solver/world/over_island.h"
 #include "solver/world/stage_clock.h"
 
 #include <algorithm>
-#include <oneapi/tbb/blocked_range.h>
-#include <oneapi/tbb/parallel_for.h>
+#include <functional>
 
 namespace springtower {
 
 namespace {
-
-using IndexRange = tbb::blocked_range<std::size_t>;
-
-// Runs a kernel over the island's blocks: in one call, or in ranges on many threads.
-template <class Kernel>
-void overBlocks(const IslandStep& step, bool parallel, const Kernel& kernel) {
-  if (!parallel) {
-    kernel(step.blocks);
-    return;
-  }
-  tbb::parallel_for(IndexRange(0, step.blocks.size(), tuning::kBlockGrain),
-                    [&](const IndexRange& range) { kernel(step.blocks.subspan(range.begin(), range.size())); });
-}
 
 ContactSide sideOf(const Engine& engine, std::int32_t block, bool sameMotion) {
   if (block < 0) return {};
@@ -78,16 +65,16 @@ std::uint64_t contactsInOrder(IslandStep& step, const Evaluation& evaluation) {
 // The same sums in the same order: first all pairs, then each block sums its own.
 std::uint64_t contactsInParallel(IslandStep& step, const Evaluation& evaluation) {
   Engine& engine = step.engine;
-  tbb::parallel_for(IndexRange(0, step.activePairs.size(), tuning::kPairGrain), [&](const IndexRange& range) {
-    for (std::size_t i = range.begin(); i < range.end(); ++i) {
+  forRanges(step.activePairs.size(), tuning::kPairGrain, true, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
       const auto at = static_cast<std::size_t>(step.activePairs[i]);
       if (!engine.pairs.touches(at)) continue;
       const std::int32_t contact = engine.pairs.contact[at];
       evaluatePair(step, evaluation, engine.contacts.edit(contact, engine.pairs[at]), engine.contacts.pairForce(contact));
     }
   });
-  tbb::parallel_for(IndexRange(0, step.blocks.size(), tuning::kBlockGrain), [&](const IndexRange& range) {
-    for (std::size_t i = range.begin(); i < range.end(); ++i) {
+  forRanges(step.blocks.size(), tuning::kBlockGrain, true, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
       const std::int32_t block = step.blocks[i];
       const auto b = static_cast<std::size_t>(block);
       AffineField sum{};
@@ -101,12 +88,15 @@ std::uint64_t contactsInParallel(IslandStep& step, const Evaluation& evaluation)
       engine.scratch.contactForce[b] = sum;
     }
   });
-  std::uint64_t points = 0;
-  for (const std::int32_t pair : step.activePairs) {
-    const auto at = static_cast<std::size_t>(pair);
-    if (engine.pairs.touches(at)) points += static_cast<std::uint64_t>(shapeOf(engine, at).count);
-  }
-  return points;
+  const auto pointsIn = [&](std::size_t first, std::size_t last) {
+    std::uint64_t points = 0;
+    for (std::size_t i = first; i < last; ++i) {
+      const auto at = static_cast<std::size_t>(step.activePairs[i]);
+      if (engine.pairs.touches(at)) points += static_cast<std::uint64_t>(engine.contacts.shape(engine.pairs.contact[at]).count);
+    }
+    return points;
+  };
+  return mergeRanges(step.activePairs.size(), tuning::kPairGrain, true, std::uint64_t{0}, pointsIn, std::plus<>());
 }
 
 void addUserForces(IslandStep& step) {
@@ -137,21 +127,23 @@ void evaluateForces(IslandStep& step, const MotionState& state, const ParticleAr
                     PointUpdate update) {
   StageClock clock(step.times);
   Engine& engine = step.engine;
-  const bool parallel = step.blocks.size() >= tuning::kParallelBlocks;
   const bool sameMotion = &carried == &state.velocity;
   const double kick_s = sameMotion && update == PointUpdate::store ? step.kick_s : 0.0;
   const Evaluation evaluation{
-      {advance_s, step.maxStiffening, update == PointUpdate::trial ? 0.0 : 1.0, step.sticks, kick_s}, sameMotion, update};
-  using Blocks = std::span<const std::int32_t>;
-  overBlocks(step, parallel, [&](Blocks blocks) {
+      {advance_s, step.maxStiffening, update == PointUpdate::trial ? 0.0 : 1.0, step.sticks, kick_s, step.blur_j},
+      sameMotion,
+      update};
+  overBlocks(step, [&](std::size_t first, std::size_t last) {
+    const auto blocks = step.blocks.subspan(first, last - first);
     computeFrames(state.position, blocks, engine.memo.frames);
     computeMotions(state.velocity, blocks, engine.memo.motion);
     if (!evaluation.sameMotion) computeMotions(carried, blocks, engine.memo.carriedMotion);
   });
-  step.counters.contactEvaluations += parallel ? contactsInParallel(step, evaluation) : contactsInOrder(step, evaluation);
+  step.counters.contactEvaluations += isWide(step) ? contactsInParallel(step, evaluation) : contactsInOrder(step, evaluation);
   clock.lap(Stage::contacts);
-  overBlocks(step, parallel, [&](Blocks blocks) {
-    springForces(step.simulation.model, state, blocks, engine.scratch.contactForce, engine.memo.force);
+  overBlocks(step, [&](std::size_t first, std::size_t last) {
+    springForces(step.simulation.model, state, step.blocks.subspan(first, last - first), engine.scratch.contactForce,
+                 engine.memo.force);
   });
   if (!step.unforced) addUserForces(step);
   // Implicit steps evaluate forces at their end.

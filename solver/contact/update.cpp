@@ -5,15 +5,13 @@
 #include "core/tuning.h"
 #include "solver/contact/create.h"
 #include "solver/world/checkpoint.h"
-#include "solver/world/island_step.h"
+#include "solver/world/over_island.h"
 #include "solver/world/stage_clock.h"
 
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <limits>
-#include <oneapi/tbb/blocked_range.h>
-#include <oneapi/tbb/parallel_for.h>
 
 namespace springtower {
 
@@ -55,34 +53,50 @@ bool isInSweptBox(const IslandStep& step, std::size_t block) {
   return true;
 }
 
-// Adds the path of each block's fastest corner; `inside` is set to whether all blocks are in their swept boxes. A block has
-// diverged when its corners move relative to one another by half its least side in one step; free flight may have any speed. The
-// condition is written so that NaN, which fails every comparison, counts as diverged. Returns the first block that has diverged,
-// or -1.
+// What the paths of a step have led to.
+struct Paths {
+  std::int32_t diverged = std::numeric_limits<std::int32_t>::max();  // the first block that has diverged
+  bool inside = true;                                                // all blocks are in their swept boxes
+  bool asAssumed = true;  // none has a longer path than the list of active pairs assumes
+};
+
+// Adds the path of each block's fastest corner. A block has diverged when its corners move relative to one another by half its
+// least side in one step; free flight may have any speed. The condition is written so that NaN, which fails every comparison,
+// counts as diverged.
 SPRINGTOWER_KERNEL
-std::int32_t addPaths(IslandStep& step, bool& inside) {
-  inside = true;
-  for (const std::int32_t block : step.blocks) {
+Paths addPathsOf(IslandStep& step, std::span<const std::int32_t> blocks) {
+  Paths paths;
+  for (const std::int32_t block : blocks) {
     const auto b = static_cast<std::size_t>(block);
     const auto [path, deformed] = blockTravel(step.simulation.state.position, step.engine.memo.previous, b);
     const double most = tuning::kMaxDeformationPerStep * step.simulation.model.dimensions[b].minCoeff();
-    if (!(deformed < static_cast<double>(kCorners) * most * most)) return block;
+    if (!(deformed < static_cast<double>(kCorners) * most * most)) paths.diverged = std::min(paths.diverged, block);
     BlockHistory& history = step.engine.memo.blockHistory[b];
     history.travel += path;
     step.engine.scratch.path[b] = path;
-    if (path > step.engine.scratch.assumedPath[b]) step.activeListSteps = 0;
+    paths.asAssumed = paths.asAssumed && !(path > step.engine.scratch.assumedPath[b]);
     if (history.travel - step.engine.memo.travelAtSweep[b] > step.engine.scratch.reach[b])
-      inside = inside && isInSweptBox(step, b);
+      paths.inside = paths.inside && isInSweptBox(step, b);
   }
-  return -1;
+  return paths;
+}
+
+Paths addPaths(IslandStep& step) {
+  return mergeRanges(
+      step.blocks.size(), tuning::kBlockGrain, isWide(step), Paths{},
+      [&](std::size_t first, std::size_t last) { return addPathsOf(step, step.blocks.subspan(first, last - first)); },
+      [](const Paths& a, const Paths& b) {
+        return Paths{std::min(a.diverged, b.diverged), a.inside && b.inside, a.asAssumed && b.asAssumed};
+      });
 }
 
 }  // namespace
 
 bool addTravel(IslandStep& step) {
-  bool inside = true;
-  const std::int32_t diverged = addPaths(step, inside);
-  if (diverged < 0) return inside;
+  const Paths paths = addPaths(step);
+  if (!paths.asAssumed) step.activeListSteps = 0;
+  const std::int32_t diverged = paths.diverged;
+  if (diverged == Paths{}.diverged) return paths.inside;
   const double deformed =
       blockTravel(step.simulation.state.position, step.engine.memo.previous, static_cast<std::size_t>(diverged)).deformed;
   const double time = step.time_s + step.drift_s;
@@ -287,7 +301,7 @@ bool updateContacts(IslandStep& step, const RefreshTravel& renewal) {
   const bool list = step.usesActiveList && step.activeListSteps == 0;
   if (step.activeListSteps == 0) step.activePairs = step.pairs;
   const double least = minRefreshTravel(renewal);
-  if (step.blocks.size() < tuning::kParallelBlocks) {
+  if (!isWide(step)) {
     for (const std::int32_t pair : step.activePairs) {
       const auto at = static_cast<std::size_t>(pair);
       if (isDue(step.engine, at, least)) updatePair(step, at, renewal, step.counters, step.times);
@@ -303,16 +317,18 @@ bool updateContacts(IslandStep& step, const RefreshTravel& renewal) {
   std::vector<StageTimes>& timed = step.engine.scratch.chunkTimes;
   if (counted.size() < chunks) counted.resize(chunks);
   if (timed.size() < chunks) timed.resize(chunks);
-  tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t chunk) {
-    counted[chunk] = Counters{};
-    timed[chunk] = StageTimes{};
-    StageClock all(timed[chunk]);
-    const std::size_t last = std::min(step.activePairs.size(), (chunk + 1) * tuning::kPairChunk);
-    for (std::size_t i = chunk * tuning::kPairChunk; i < last; ++i) {
-      const auto at = static_cast<std::size_t>(step.activePairs[i]);
-      if (isDue(step.engine, at, least)) updatePair(step, at, renewal, counted[chunk], timed[chunk]);
+  forRanges(chunks, 1, true, [&](std::size_t firstChunk, std::size_t lastChunk) {
+    for (std::size_t chunk = firstChunk; chunk < lastChunk; ++chunk) {
+      counted[chunk] = Counters{};
+      timed[chunk] = StageTimes{};
+      StageClock all(timed[chunk]);
+      const std::size_t last = std::min(step.activePairs.size(), (chunk + 1) * tuning::kPairChunk);
+      for (std::size_t i = chunk * tuning::kPairChunk; i < last; ++i) {
+        const auto at = static_cast<std::size_t>(step.activePairs[i]);
+        if (isDue(step.engine, at, least)) updatePair(step, at, renewal, counted[chunk], timed[chunk]);
+      }
+      all.lap(Stage::candidates);
     }
-    all.lap(Stage::candidates);
   });
   StageTimes sum;
   for (std::size_t chunk = 0; chunk < chunks; ++chunk) {

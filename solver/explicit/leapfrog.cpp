@@ -1,12 +1,8 @@
 #include "solver/explicit/leapfrog.h"
 
-#include "core/tuning.h"
 #include "solver/contact/evaluate_forces.h"
-#include "solver/world/island_step.h"
+#include "solver/world/over_island.h"
 #include "solver/world/stage_clock.h"
-
-#include <oneapi/tbb/blocked_range.h>
-#include <oneapi/tbb/parallel_for.h>
 
 namespace springtower {
 
@@ -35,12 +31,7 @@ void stepSemiImplicitEuler(IslandStep& step) {
       }
     }
   };
-  if (step.blocks.size() >= tuning::kParallelBlocks) {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, step.blocks.size(), 128),
-                      [&](const tbb::blocked_range<std::size_t>& range) { integrate(range.begin(), range.end()); });
-  } else {
-    integrate(0, step.blocks.size());
-  }
+  overBlocks(step, integrate);
   clock.lap(Stage::integration);
 }
 

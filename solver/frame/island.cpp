@@ -38,10 +38,6 @@ IslandOutcome advanceIsland(IslandStep& step) {
   const Settings& settings = step.simulation.scene.settings;
   const MethodFamily family = traitsOf(settings.method).family;
   step.pointKind = pointKindOf(settings.method);
-  if (step.simulation.frame == 0 && family != MethodFamily::report) {
-    findTouching(step);
-    if (family != MethodFamily::rigid) startInEquilibrium(step);
-  }
   switch (family) {
     case MethodFamily::implicit:
       return runByModes(step);

@@ -165,7 +165,7 @@ IslandOutcome runRigidMode(IslandStep& step, double begin_s) {
     IslandHistory& island = step.engine.memo.islandHistory[static_cast<std::size_t>(block)];
     island.explicitFrames = std::max(0, island.explicitFrames - 1);
   }
-  step.engine.memo.newtonSystems[static_cast<std::size_t>(step.blocks.front())].forcesKnown = false;
+  step.engine.memo.newtonSystems.of(step.blocks.front()).forcesKnown = false;
   return outcome;
 }
 

@@ -117,6 +117,8 @@ std::int32_t islandOf(const Engine& engine, const BlockPair& pair) {
 // Lists the pairs of each island, in order; for islands that run on many threads those of each block as well.
 void listIslandPairs(Simulation& simulation) {
   Engine& engine = *simulation.engine;
+  engine.memo.newtonSystems.assign(engine.memo.islands);
+  engine.memo.sparseFactors.assign(engine.memo.islands);
   const std::size_t islands = engine.memo.islands.count();
   engine.memo.pairStart.assign(islands + 1, 0);
   for (const BlockPair& pair : engine.pairs.key) {
@@ -181,6 +183,12 @@ void findNearPairs(Simulation& simulation, double margin_m) {
   engine.memo.topologyChanged =
       updateIslands(engine.memo.islands, engine.memo.sweptPairs, simulation.asleep) || engine.memo.topologyChanged;
   if (engine.memo.topologyChanged) listIslandPairs(simulation);
+  // A snapshot restores islands, and the places of their factors, but no scratch.
+  if (!engine.memo.newtonSystems.isUsed()) {
+    engine.scratch.rigidIslands.assign(engine.memo.islands);
+  } else if (engine.scratch.rigidIslands.isUsed()) {
+    engine.scratch.rigidIslands.follow(engine.memo.newtonSystems);
+  }
   engine.scratch.watchedPairs.resize(engine.memo.islandPairs.size());  // also where a snapshot has restored other lists
 }
 

@@ -2,6 +2,7 @@
 
 #include "core/lanes.h"
 #include "solver/contact/evaluate_forces.h"
+#include "solver/world/over_island.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,38 +13,13 @@ namespace {
 
 constexpr double kThird = 1.0 / 3.0;
 
-}  // namespace
-
-void synchronise(IslandStep& step) {
-  Engine& engine = step.engine;
-  double behind_s = 0.0;
-  for (const std::int32_t block : step.blocks)
-    behind_s = std::max(behind_s, engine.memo.blockHistory[static_cast<std::size_t>(block)].lastExplicitStep_s);
-  if (behind_s == 0.0) return;
-  ParticleArray& velocity = step.simulation.state.velocity;
-  step.kick_s = behind_s;
-  evaluateForces(step, step.simulation.state, velocity, behind_s, PointUpdate::store);
-  for (const std::int32_t block : step.blocks) {
-    const auto b = static_cast<std::size_t>(block);
-    const double half_s = 0.5 * engine.memo.blockHistory[b].lastExplicitStep_s;
-    double acceleration[3][kCorners];
-    accelerate(step, b, acceleration);
-    for (std::size_t a = 0; a < 3; ++a) {
-      double* v = velocity.values(a, b);
-      for (std::size_t c = 0; c < kCorners; ++c) v[c] += half_s * acceleration[a][c];
-    }
-    engine.memo.blockHistory[b].lastExplicitStep_s = 0.0;
-  }
-  step.engine.memo.newtonSystems[static_cast<std::size_t>(step.blocks.front())].forcesKnown = false;
-}
-
 SPRINGTOWER_KERNEL
-void predictBdf2(IslandStep& step, double effective_s) {
+void predictBdf2Of(IslandStep& step, std::span<const std::int32_t> blocks, double effective_s) {
   Engine& engine = step.engine;
   MotionState& state = step.simulation.state;
   const double h = step.drift_s;
   const double mostAcceleration = 2.0 * std::max(step.simulation.scene.gravity.magnitude, 1.0);
-  for (const std::int32_t block : step.blocks) {
+  for (const std::int32_t block : blocks) {
     const auto b = static_cast<std::size_t>(block);
     // The step before may have had another length: its mean acceleration gives the change of velocity in a step of this length.
     const double past_s = engine.memo.blockHistory[b].lastImplicitStep_s;
@@ -78,10 +54,10 @@ void predictBdf2(IslandStep& step, double effective_s) {
   }
 }
 
-void predictEuler(IslandStep& step, double effective_s) {
+void predictEulerOf(IslandStep& step, std::span<const std::int32_t> blocks, double effective_s) {
   Engine& engine = step.engine;
   const MotionState& state = step.simulation.state;
-  for (const std::int32_t block : step.blocks) {
+  for (const std::int32_t block : blocks) {
     const auto b = static_cast<std::size_t>(block);
     for (std::size_t a = 0; a < 3; ++a) {
       const double pull = effective_s * effective_s * step.gravity[static_cast<Eigen::Index>(a)];
@@ -94,6 +70,43 @@ void predictEuler(IslandStep& step, double effective_s) {
       std::copy_n(v, kCorners, engine.memo.previousVelocity.values(a, b));
     }
   }
+}
+
+}  // namespace
+
+void synchronise(IslandStep& step) {
+  Engine& engine = step.engine;
+  double behind_s = 0.0;
+  for (const std::int32_t block : step.blocks)
+    behind_s = std::max(behind_s, engine.memo.blockHistory[static_cast<std::size_t>(block)].lastExplicitStep_s);
+  if (behind_s == 0.0) return;
+  ParticleArray& velocity = step.simulation.state.velocity;
+  step.kick_s = behind_s;
+  evaluateForces(step, step.simulation.state, velocity, behind_s, PointUpdate::store);
+  for (const std::int32_t block : step.blocks) {
+    const auto b = static_cast<std::size_t>(block);
+    const double half_s = 0.5 * engine.memo.blockHistory[b].lastExplicitStep_s;
+    double acceleration[3][kCorners];
+    accelerate(step, b, acceleration);
+    for (std::size_t a = 0; a < 3; ++a) {
+      double* v = velocity.values(a, b);
+      for (std::size_t c = 0; c < kCorners; ++c) v[c] += half_s * acceleration[a][c];
+    }
+    engine.memo.blockHistory[b].lastExplicitStep_s = 0.0;
+  }
+  step.engine.memo.newtonSystems.of(step.blocks.front()).forcesKnown = false;
+}
+
+void predictBdf2(IslandStep& step, double effective_s) {
+  overBlocks(step, [&](std::size_t first, std::size_t last) {
+    predictBdf2Of(step, step.blocks.subspan(first, last - first), effective_s);
+  });
+}
+
+void predictEuler(IslandStep& step, double effective_s) {
+  overBlocks(step, [&](std::size_t first, std::size_t last) {
+    predictEulerOf(step, step.blocks.subspan(first, last - first), effective_s);
+  });
 }
 
 }  // namespace springtower

@@ -5,7 +5,7 @@
 #include "solver/implicit/friction_tangent.h"
 #include "solver/implicit/gmres.h"
 #include "solver/implicit/system.h"
-#include "solver/world/island_step.h"
+#include "solver/world/over_island.h"
 
 #include <algorithm>
 #include <limits>
@@ -25,11 +25,10 @@ SPRINGTOWER_INLINE void turn(const std::array<std::array<double, 3>, 3>& axes, b
   }
 }
 
-// The Newton direction up to a residual of `allowed_n`; returns whether that was reached.
+// Reduces the residuals of these nodes to their affine parts, island.affine. They are left in the blocks' frames.
 SPRINGTOWER_KERNEL
-bool solveForCorrection(IslandStep& step, NewtonSystem& island, double allowed_n) {
-  const std::size_t count = island.residual.size();
-  for (std::size_t i = 0; i < count; ++i) {
+void reduceResiduals(NewtonSystem& island, std::size_t first, std::size_t last) {
+  for (std::size_t i = first; i < last; ++i) {
     turn(island.axes[i], false, kCorners, island.residual[i]);
     ModeVectors reduced = island.residual[i];
     eliminateWarps(jacobianOf(island, i), reduced);
@@ -37,8 +36,12 @@ bool solveForCorrection(IslandStep& step, NewtonSystem& island, double allowed_n
     for (std::size_t m = 0; m < kAffine; ++m)
       std::copy(reduced[m].begin(), reduced[m].end(), island.affine.data() + kNodeSize * i + 3 * m);
   }
-  const bool reached = solveCoupled(step, island, allowed_n);
-  for (std::size_t i = 0; i < count; ++i) {
+}
+
+// The Newton direction of these nodes from their affine displacements; turns their residuals back into the world's frame.
+SPRINGTOWER_KERNEL
+void recoverDirections(NewtonSystem& island, std::size_t first, std::size_t last) {
+  for (std::size_t i = first; i < last; ++i) {
     ModeVectors& change = island.direction[i];
     for (std::size_t m = 0; m < kAffine; ++m) std::copy_n(island.affine.data() + kNodeSize * i + 3 * m, 3, change[m].begin());
     turn(island.axes[i], false, kAffine, change);
@@ -46,6 +49,13 @@ bool solveForCorrection(IslandStep& step, NewtonSystem& island, double allowed_n
     turn(island.axes[i], true, kCorners, change);
     turn(island.axes[i], true, kCorners, island.residual[i]);
   }
+}
+
+// The Newton direction up to a residual of `allowed_n`; returns whether that was reached.
+bool solveForCorrection(IslandStep& step, NewtonSystem& island, double allowed_n) {
+  overBlocks(step, [&](std::size_t first, std::size_t last) { reduceResiduals(island, first, last); });
+  const bool reached = solveCoupled(step, island, allowed_n);
+  overBlocks(step, [&](std::size_t first, std::size_t last) { recoverDirections(island, first, last); });
   return reached;
 }
 
@@ -57,14 +67,16 @@ double lightest(const IslandStep& step) {
 
 }  // namespace
 
-double directionalDerivative(const NewtonSystem& island) {
-  double work = 0.0;
-  for (std::size_t i = 0; i < island.residual.size(); ++i) {
-    for (std::size_t m = 0; m < kCorners; ++m) {
-      for (std::size_t k = 0; k < 3; ++k) work += island.residual[i][m][k] * island.direction[i][m][k];
+double directionalDerivative(const IslandStep& step, const NewtonSystem& island) {
+  return sumRanges(step.blocks.size(), tuning::kBlockGrain, isWide(step), [&](std::size_t first, std::size_t last) {
+    double work = 0.0;
+    for (std::size_t i = first; i < last; ++i) {
+      for (std::size_t m = 0; m < kCorners; ++m) {
+        for (std::size_t k = 0; k < 3; ++k) work += island.residual[i][m][k] * island.direction[i][m][k];
+      }
     }
-  }
-  return work;
+    return work;
+  });
 }
 
 bool findCorrection(IslandStep& step, NewtonSystem& island, double effective_s, double allowed, bool differ) {
@@ -73,7 +85,7 @@ bool findCorrection(IslandStep& step, NewtonSystem& island, double effective_s, 
   if (differ) findTangents(step, island, effective_s);
   const bool reached = solveForCorrection(step, island, allowed_n);
   // With the symmetric matrix alone the derivative is always positive.
-  if (!island.tangents.empty() && !(directionalDerivative(island) > 0.0)) {
+  if (!island.tangents.empty() && !(directionalDerivative(step, island) > 0.0)) {
     island.tangents.clear();
     solveForCorrection(step, island, allowed_n);
   }

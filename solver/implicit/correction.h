@@ -11,6 +11,6 @@ struct NewtonSystem;
 bool findCorrection(IslandStep& step, NewtonSystem& island, double effective_s, double allowed, bool differ);
 
 /// Directional derivative: the residual times the Newton direction, J.
-double directionalDerivative(const NewtonSystem& island);
+double directionalDerivative(const IslandStep& step, const NewtonSystem& island);
 
 }  // namespace springtower

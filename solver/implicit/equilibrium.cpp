@@ -4,7 +4,10 @@
 #include "solver/block/inertia.h"
 #include "solver/contact/create.h"
 #include "solver/contact/update.h"
+#include "solver/implicit/blurred.h"
 #include "solver/implicit/run.h"
+#include "solver/implicit/search_monitor.h"
+#include "solver/implicit/waypoint.h"
 #include "solver/world/checkpoint.h"
 
 #include <algorithm>
@@ -35,21 +38,6 @@ bool mayRest(const IslandStep& step) {
   });
 }
 
-// Sets the velocities to zero; returns the displacement of the fastest corner in the step.
-double stop(IslandStep& step) {
-  MotionState& state = step.simulation.state;
-  double farthest = 0.0;
-  for (const std::int32_t block : step.blocks) {
-    const auto b = static_cast<std::size_t>(block);
-    for (std::size_t c = 0; c < kCorners; ++c) {
-      farthest = std::max(farthest, (state.position.at(b, c) - step.engine.memo.previous.at(b, c)).norm());
-      state.velocity.set(b, c, Vec3::Zero());
-    }
-    step.engine.memo.blockHistory[b].lastImplicitStep_s = 0.0;
-  }
-  return farthest;
-}
-
 // Takes a step from rest and updates the contacts; returns the displacement of the fastest corner over the tolerance, infinity
 // where the step fails or the island falls.
 double advance(IslandStep& step, double effective_s, StepFromRest kind) {
@@ -62,56 +50,49 @@ double advance(IslandStep& step, double effective_s, StepFromRest kind) {
   return farthest < most && updateContacts(step, {travel_m, travel_m, travel_m}) ? farthest : kFailed;
 }
 
-// Steps with Coulomb's friction that grow from `effective_s`, so that the weight comes to bear little by little.
-bool settleByGrowingSteps(IslandStep& step, double effective_s, StepFromRest kind) {
-  const double last_s = tuning::kLastEquilibriumStep * step.simulation.lengths.fallTime_s;
-  const double growth = kind == StepFromRest::asPlaced ? tuning::kEquilibriumStepGrowth : tuning::kSlipStepGrowth;
+double lastStep_s(const IslandStep& step) {
+  return tuning::kLastEquilibriumStep * step.simulation.lengths.fallTime_s;
+}
+
+// Steps with Coulomb's friction, from `effective_s` on longer and longer, until nothing moves in one of full length.
+bool settleWithFriction(IslandStep& step, double effective_s) {
+  const double last_s = lastStep_s(step);
   int retries = 0;
   for (int i = 0; i < tuning::kMaxEquilibriumSteps; ++i) {
     const std::uint64_t failures = step.counters.newtonFailures;
-    const double farthest = advance(step, effective_s, kind);
+    const double farthest = advance(step, effective_s, StepFromRest::coulomb);
     if (step.counters.newtonFailures != failures) {
       if (++retries > tuning::kMaxEquilibriumRetries) return false;
-      effective_s /= growth * growth;
+      effective_s /= tuning::kSlipStepGrowth * tuning::kSlipStepGrowth;
       continue;
     }
-    retries = 0;
     if (!std::isfinite(farthest)) return false;
     if (effective_s >= last_s && farthest < tuning::kEquilibriumTolerance) return true;
-    effective_s = std::min(last_s, growth * effective_s);
+    effective_s = std::min(last_s, tuning::kSlipStepGrowth * effective_s);
   }
   return false;
 }
 
-// Steps of full length with Coulomb's friction from an equilibrium nearby, until no corner moves farther than this many
-// tolerances.
-bool settleInFullSteps(IslandStep& step, double tolerances) {
-  const double last_s = tuning::kLastEquilibriumStep * step.simulation.lengths.fallTime_s;
-  for (int i = 0; i < tuning::kMaxEquilibriumSteps; ++i) {
-    const double farthest = advance(step, last_s, StepFromRest::coulomb);
-    if (!std::isfinite(farthest)) return false;
-    if (farthest < tolerances) return true;
-  }
-  return false;
-}
-
-double firstStep_s(const IslandStep& step) {
-  return tuning::kFirstEquilibriumStep * step.simulation.lengths.fallTime_s;
-}
-
-// The weight comes to bear as placed: row by row, from steps in which nothing moves far.
-bool settleAsPlaced(IslandStep& step) {
-  return settleByGrowingSteps(step, firstStep_s(step), StepFromRest::asPlaced);
+// Whether more would slip at rest than a step of full length resolves.
+bool slipsMuch(IslandStep& step) {
+  return slipAtRest(step, lastStep_s(step)) > tuning::kSlipResidual;
 }
 
 // All of the weight comes to bear at once, in a step of full length in which nothing slips: from two or three solutions with the
 // same factors, the normal forces that it makes. Then friction is cut down to what these allow. False where blocks turn or slip
 // far before they rest.
 bool settleAtOnce(IslandStep& step) {
-  const double last_s = tuning::kLastEquilibriumStep * step.simulation.lengths.fallTime_s;
-  if (!std::isfinite(advance(step, last_s, StepFromRest::supported))) return false;
-  const bool slips = slipAtRest(step, last_s) > tuning::kSlipResidual;
-  return settleByGrowingSteps(step, slips ? firstStep_s(step) : last_s, StepFromRest::coulomb);
+  return std::isfinite(advance(step, lastStep_s(step), StepFromRest::supported)) && !slipsMuch(step) &&
+         settleWithFriction(step, lastStep_s(step));
+}
+
+// From steps with blurred contacts that get sharper, to steps with friction.
+bool settleAfterBlur(IslandStep& step) {
+  return settleWithFriction(
+      step, slipsMuch(step) ? tuning::kFirstEquilibriumStep * step.simulation.lengths.fallTime_s : lastStep_s(step));
+}
+bool settleBlurred(IslandStep& step) {
+  return approachBlurred(step) && settleAfterBlur(step);
 }
 
 // The search for an island's equilibrium, at any share of the tilt of gravity.
@@ -120,16 +101,12 @@ class EquilibriumSearch {
   explicit EquilibriumSearch(IslandStep& step) : step_(step), before_(step.counters), gravity_(step.simulation.scene.gravity) {}
 
   // Moves the island into equilibrium; false, and everything as placed, where none is found. `mayFall`: whether an island that
-  // falls under tilted gravity is put into the equilibrium at nearly the largest share of the tilt at which it stands.
+  // falls under tilted gravity is put into an equilibrium at nearly the largest share of the tilt at which it stands.
   bool find(bool mayFall) {
-    if (settles(1.0, settleAtOnce)) return true;
-    if (!mayFall) return settles(1.0, settleAsPlaced);
-    if (!settles(0.0, settleAtOnce)) {
-      if (settles(1.0, settleAsPlaced)) return true;
-      level_ = settleAsPlaced;
-      if (!settles(0.0, level_)) return false;
-    }
-    if (raiseTilt()) return true;
+    tiltTo(mayFall ? 0.0 : 1.0);
+    if (!settles(settleAtOnce) && !settles(settleBlurred)) return false;
+    if (mayFall) raiseTilt();
+    if (!isStopped()) return true;
     startAgain();
     return false;
   }
@@ -137,26 +114,39 @@ class EquilibriumSearch {
  private:
   using Settle = bool (*)(IslandStep&);
 
-  // From the equilibrium on level ground, under gravity that is tilted further and further, in steps that get shorter where one
-  // fails.
-  bool raiseTilt() {
-    std::vector<double> path;
-    double share = 0.0;
-    for (double rise = tuning::kFirstTiltRise; rise > tuning::kLeastTiltRise; rise *= tuning::kTiltRiseShortening) {
-      while (share < 1.0 && follows(std::min(1.0, share + rise))) {
-        share = std::min(1.0, share + rise);
-        path.push_back(share);
+  [[nodiscard]] bool isStopped() const { return step_.monitor != nullptr && step_.monitor->isStopped(); }
+
+  // A share of the tilt with an equilibrium near the present state.
+  struct Standing {
+    double share;
+    Waypoint state;
+  };
+
+  // From the equilibrium on level ground, under gravity that is tilted as far as the island stands: at once, or else by halving
+  // the rise.
+  void raiseTilt() {
+    std::vector<Standing> path;
+    path.push_back({0.0, Waypoint(step_)});
+    tiltTo(1.0);
+    if (settleBlurred(step_)) return;
+    path.back().state.restore(step_);
+    double falls = 1.0;  // the least share at which it was found to fall
+    while (falls - path.back().share > tuning::kTiltGap && !isStopped()) {
+      const double next = 0.5 * (path.back().share + falls);
+      tiltTo(next);
+      if (approachBlurred(step_)) {
+        path.push_back({next, Waypoint(step_)});
+      } else {
+        falls = next;
+        path.back().state.restore(step_);
       }
-      if (share == 1.0) break;
-      if (!isIntact_ && !repeats(path)) return false;
     }
-    tiltTo(share);
-    while (!settleInFullSteps(step_, tuning::kEquilibriumTolerance)) {
-      if (path.empty()) return false;
+    while (path.size() > 1) {
+      tiltTo(path.back().share);
+      if (settleAfterBlur(step_)) return;
       path.pop_back();
-      if (!repeats(path)) return false;
+      path.back().state.restore(step_);
     }
-    return true;
   }
 
   void startAgain() {
@@ -177,27 +167,9 @@ class EquilibriumSearch {
     step_.gravity = gravity.at(step_.simulation.time_s);
   }
 
-  // Whether the equilibrium at this share of the tilt is found from the present one. isIntact_: or the present one is left as it
-  // was, which is so where the first step fails.
-  bool follows(double share) {
-    tiltTo(share);
-    const Counters before = step_.counters;
-    const bool found = settleInFullSteps(step_, tuning::kTiltTolerance);
-    isIntact_ = found || (step_.counters.implicitSteps == before.implicitSteps &&
-                          step_.counters.newtonFailures == before.newtonFailures + 1);
-    return found;
-  }
-
-  // Goes to the last of these shares of the tilt again, from the blocks as placed.
-  bool repeats(const std::vector<double>& path) {
-    startAgain();
-    return settles(0.0, level_) && std::all_of(path.begin(), path.end(), [&](double share) { return follows(share); });
-  }
-
-  // Whether the island, as placed, settles at this share of the tilt; it is left as placed where not.
-  bool settles(double share, Settle settle) {
-    tiltTo(share);
-    if (settle(step_)) return true;
+  // Whether the island, as placed, settles; it is left as placed where not.
+  bool settles(Settle settle) {
+    if (!isStopped() && settle(step_)) return true;
     startAgain();
     return false;
   }
@@ -205,8 +177,6 @@ class EquilibriumSearch {
   IslandStep& step_;
   Counters before_;
   Gravity gravity_;
-  bool isIntact_ = true;
-  Settle level_ = settleAtOnce;  // what finds the equilibrium on level ground
 };
 
 // The contact law of what does not move: without dashpots and Maxwell branches, which only delay convergence. The branches follow
@@ -216,6 +186,17 @@ ContactLaw staticLaw(ContactLaw law) {
   law.maxwellRatio = 0.0;
   law.maxwellTime_s = std::numeric_limits<double>::min();
   return law;
+}
+
+// Separates pairs that blurred contacts joined across a gap and that have stayed apart: as contacts without points that touch,
+// they would count as hit when the blocks come near in a later step.
+void dropOpenContacts(IslandStep& step) {
+  for (const std::int32_t pair : step.pairs) {
+    const auto at = static_cast<std::size_t>(pair);
+    if (!step.engine.pairs.touches(at) || anyPointTouches(contactOf(step.engine, at))) continue;
+    savePair(step.engine, at);
+    refreshManifold(step, at, step.counters);
+  }
 }
 
 }  // namespace
@@ -231,6 +212,7 @@ bool startInEquilibrium(IslandStep& step) {
   const bool mayFall = step.simulation.scene.gravity.tilt_deg != 0.0 && step.blocks.size() > 1 &&
                        isImplicit(step.simulation.scene.settings.method);
   const bool rests = EquilibriumSearch(step).find(mayFall);
+  dropOpenContacts(step);
   step.unforced = false;
   step.law = law;
   return rests;

@@ -1,9 +1,10 @@
 #include "solver/implicit/friction_tangent.h"
 
 #include "solver/implicit/system.h"
-#include "solver/world/island_step.h"
+#include "solver/world/over_island.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace springtower {
 
@@ -29,9 +30,17 @@ double pushOf(const ContactLaw& law, const ContactView& trial, std::size_t i, do
   return std::max(0.0, stiffness * row.stiffening[lane] * (elastic + law.maxwellRatio * (elastic - row.maxwellDepth[lane])));
 }
 
-void addPair(const IslandStep& step, const NewtonSystem& island, std::size_t at, ActiveSetBits mask, Part part, double step_s,
-             AlignedVector<ContactTangent>& to) {
-  if ((mask & 0xFFU) == 0) return;
+// Tangents of a touching pair with this active set: one for every four points.
+std::size_t tangentCount(const IslandStep& step, const NewtonSystem& island, std::size_t at, ActiveSetBits mask) {
+  if ((mask & 0xFFU) == 0) return 0;
+  const std::int32_t contact = step.engine.pairs.contact[static_cast<std::size_t>(island.touching[at])];
+  return rowsFor(step.engine.contacts.shape(contact).count);
+}
+
+// Writes a pair's tangents; returns the place behind them.
+ContactTangent* putPair(const IslandStep& step, const NewtonSystem& island, std::size_t at, ActiveSetBits mask, Part part,
+                        double step_s, ContactTangent* to) {
+  if ((mask & 0xFFU) == 0) return to;
   const Engine& engine = step.engine;
   const auto pair = static_cast<std::size_t>(island.touching[at]);
   const ContactView m = contactOf(engine, pair);
@@ -47,7 +56,8 @@ void addPair(const IslandStep& step, const NewtonSystem& island, std::size_t at,
   const std::vector<std::uint8_t>& asleep = step.simulation.asleep;
 
   for (std::size_t first = 0; first < static_cast<std::size_t>(m.count); first += 4) {
-    ContactTangent& tangent = to.emplace_back();
+    ContactTangent& tangent = *to++;
+    tangent = {};
     if (asleep[upper] == 0) tangent.upper = engine.scratch.nodeOf[upper];
     if (frameLower != nullptr && asleep[static_cast<std::size_t>(m.lower)] == 0)
       tangent.lower = engine.scratch.nodeOf[static_cast<std::size_t>(m.lower)];
@@ -70,6 +80,36 @@ void addPair(const IslandStep& step, const NewtonSystem& island, std::size_t at,
       for (std::size_t k = 0; k < 3; ++k) tangent.push[k][lane] = push[static_cast<Eigen::Index>(k)];
     }
   }
+  return to;
+}
+
+// Appends the tangents that put(at, place) writes for each touching pair, count(at) of them, in order.
+template <class Count, class Put>
+void appendTangents(const IslandStep& step, NewtonSystem& island, const Count& count, const Put& put,
+                    AlignedVector<ContactTangent>& to) {
+  const std::size_t pairs = island.touching.size();
+  if (!isWide(step)) {
+    for (std::size_t at = 0; at < pairs; ++at) {
+      const std::size_t before = to.size();
+      to.resize(before + count(at));
+      if (to.size() > before) put(at, to.data() + before);
+    }
+    return;
+  }
+  std::vector<std::size_t>& start = island.tangentStart;
+  const auto overTouching = [&](const auto& kernel) { forRanges(pairs, tuning::kPairGrain, true, kernel); };
+  start.resize(pairs + 1);
+  start[0] = to.size();
+  overTouching([&](std::size_t first, std::size_t last) {
+    for (std::size_t at = first; at < last; ++at) start[at + 1] = count(at);
+  });
+  std::partial_sum(start.begin(), start.end(), start.begin());
+  to.resize(start[pairs]);
+  overTouching([&](std::size_t first, std::size_t last) {
+    for (std::size_t at = first; at < last; ++at) {
+      if (start[at + 1] > start[at]) put(at, to.data() + start[at]);
+    }
+  });
 }
 
 // Adds sign * [sum f, sums f times weight] to one block's forces.
@@ -117,10 +157,12 @@ PointStiffness pointStiffness(const IslandStep& step, const ContactView& manifol
   const bool born = touchingAt(manifold, i) == 0.0;
   const double damping = law.dampingTime_s / step_s;
   const double relaxing = born ? law.maxwellRatio : law.maxwellRatio * law.maxwellTime_s / (law.maxwellTime_s + step.drift_s);
-  const double k = stiffness * std::max(1.0, row.stiffening[lane]);
+  const bool blurred = step.blur_j > 0.0;
+  const double k = stiffness * (blurred ? row.stiffening[lane] : std::max(1.0, row.stiffening[lane]));
+  const double held = blurred ? stiffness * stiffestOf(manifold.penalty(i)) : k;
   PointStiffness result;
   result.normal = k * (1.0 + relaxing + (born ? law.dampingTime_s / step.drift_s : damping));
-  result.tangential = k * (law.tangentialRatio * (1.0 + damping));
+  result.tangential = held * (law.tangentialRatio * (1.0 + damping));
   if ((mask >> (8 + i) & 1U) != 0) {
     // Before the first displacement the slip of the step before applies.
     result.tangential *= row.slipRatio[lane] > 0.0 ? row.slipRatio[lane] : manifold.penalty(i).slipRatio[lane];
@@ -129,20 +171,30 @@ PointStiffness pointStiffness(const IslandStep& step, const ContactView& manifol
   return result;
 }
 
-void addFactorTangents(const IslandStep& step, const NewtonSystem& island, std::size_t at, ActiveSetBits mask, double step_s,
-                       AlignedVector<ContactTangent>& to) {
-  addPair(step, island, at, mask, Part::factors, step_s, to);
+void findFactorTangents(const IslandStep& step, NewtonSystem& island, double step_s) {
+  island.factorTangents.clear();
+  if (std::none_of(island.mask.begin(), island.mask.end(), [](ActiveSetBits mask) { return mask > 0xFFU; })) return;
+  appendTangents(
+      step, island, [&](std::size_t at) { return island.mask[at] > 0xFFU ? tangentCount(step, island, at, island.mask[at]) : 0; },
+      [&](std::size_t at, ContactTangent* to) { putPair(step, island, at, island.mask[at], Part::factors, step_s, to); },
+      island.factorTangents);
 }
 
 void findTangents(const IslandStep& step, NewtonSystem& island, double step_s) {
   island.tangents = island.factorTangents;
-  for (std::size_t at = 0; at < island.touching.size(); ++at) {
+  // The part in the factors, unless factorTangents has it already, and that of the present contacts.
+  const auto differs = [&](std::size_t at, ActiveSetBits mask) { return mask != island.mask[at] || mask > 0xFFU; };
+  const auto count = [&](std::size_t at) {
     const ActiveSetBits mask = activeSetBits(step, island, at);
-    const ActiveSetBits known = island.mask[at];
-    if (mask == known && mask <= 0xFFU) continue;
-    if (known <= 0xFFU) addPair(step, island, at, known, Part::factors, step_s, island.tangents);
-    addPair(step, island, at, mask, Part::contacts, step_s, island.tangents);
-  }
+    if (!differs(at, mask)) return std::size_t{0};
+    const std::size_t known = island.mask[at] > 0xFFU ? 0 : tangentCount(step, island, at, island.mask[at]);
+    return known + tangentCount(step, island, at, mask);
+  };
+  const auto put = [&](std::size_t at, ContactTangent* to) {
+    if (island.mask[at] <= 0xFFU) to = putPair(step, island, at, island.mask[at], Part::factors, step_s, to);
+    putPair(step, island, at, activeSetBits(step, island, at), Part::contacts, step_s, to);
+  };
+  appendTangents(step, island, count, put, island.tangents);
 }
 
 SPRINGTOWER_KERNEL

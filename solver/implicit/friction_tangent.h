@@ -24,9 +24,8 @@ struct PointStiffness {
 PointStiffness pointStiffness(const IslandStep& step, const ContactView& manifold, const ContactView& trial, ActiveSetBits mask,
                               std::size_t i, double step_s);
 
-/// Appends to `to` the contribution to the factors of a pair (position in island.touching) with the active set `mask`.
-void addFactorTangents(const IslandStep& step, const NewtonSystem& island, std::size_t at, ActiveSetBits mask, double step_s,
-                       AlignedVector<ContactTangent>& to);
+/// Fills island.factorTangents with the contributions to the factors of pairs that slip, with the active set island.mask.
+void findFactorTangents(const IslandStep& step, NewtonSystem& island, double step_s);
 
 /// Fills island.tangents with the differences between the present contacts and those in the factors: for points that slip now or
 /// slipped then, and points that became active or inactive.

@@ -1,9 +1,11 @@
 #include "solver/implicit/gmres.h"
 
 #include "core/lanes.h"
+#include "core/parallel.h"
 #include "core/tuning.h"
 #include "solver/implicit/friction_tangent.h"
 #include "solver/implicit/system.h"
+#include "solver/world/newton_system.h"
 
 #include <algorithm>
 #include <cmath>
@@ -32,7 +34,11 @@ void findCoupledNodes(NewtonSystem& island) {
   }
 }
 
-SPRINGTOWER_INLINE double dot(const double* p, const double* q, std::size_t count) {
+bool isWide(const NewtonSystem& island) {
+  return island.residual.size() >= tuning::kParallelBlocks;
+}
+
+SPRINGTOWER_INLINE double dotOf(const double* p, const double* q, std::size_t count) {
   Lanes total = {};
   for (std::size_t i = 0; i < count; i += 4) {
     Lanes a, b;
@@ -43,8 +49,16 @@ SPRINGTOWER_INLINE double dot(const double* p, const double* q, std::size_t coun
   return sum(total);
 }
 
-SPRINGTOWER_INLINE void addScaled(double factor, const double* from, std::size_t count, double* to) {
-  for (std::size_t i = 0; i < count; ++i) to[i] += factor * from[i];
+double dot(const NewtonSystem& island, const double* p, const double* q, std::size_t count) {
+  return sumRanges(count / kNodeSize, tuning::kBlockGrain, isWide(island), [&](std::size_t first, std::size_t last) {
+    return dotOf(p + kNodeSize * first, q + kNodeSize * first, kNodeSize * (last - first));
+  });
+}
+
+void addScaled(const NewtonSystem& island, double factor, const double* from, std::size_t count, double* to) {
+  forRanges(count / kNodeSize, tuning::kBlockGrain, isWide(island), [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = kNodeSize * first; i < kNodeSize * last; ++i) to[i] += factor * from[i];
+  });
 }
 
 // The tangent forces at the coupled nodes' displacements in island.affine.
@@ -58,12 +72,27 @@ SPRINGTOWER_INLINE void applyTangents(NewtonSystem& island, double* force) {
   addTangentForces(island.tangents, {island.coupledMotion.data(), count}, {force, count});
 }
 
+// Whether the displacements of each direction are stored. In a wide island they would be most of its memory, and one more
+// solution for the combined forces costs about as much as to read them.
+bool keepsCorrections(const NewtonSystem& island) {
+  return !isWide(island);
+}
+
+// Solves for the displacements of forces on the coupled nodes.
+void solveForCoupled(IslandStep& step, NewtonSystem& island, const double* force) {
+  std::fill(island.affine.begin(), island.affine.end(), 0.0);
+  for (std::size_t c = 0; c < island.coupled.size(); ++c)
+    std::copy_n(force + kNodeSize * c, kNodeSize, island.affine.data() + kNodeSize * static_cast<std::size_t>(island.coupled[c]));
+  solve(step, island);
+}
+
 // Makes room for direction j and the residual after it.
 void makeRoom(std::size_t j, std::size_t count, NewtonSystem& island) {
   const std::size_t all = island.affine.size();
   const std::size_t room = std::max(tuning::kMinGmresDirections, j + 1);
   if (island.coupledForce.size() < (room + 1) * count) island.coupledForce.resize((room + 1) * count);
-  if (island.correction.size() < (room + 1) * all) island.correction.resize((room + 1) * all);
+  const std::size_t kept = keepsCorrections(island) ? room + 1 : 1;
+  if (island.correction.size() < kept * all) island.correction.resize(kept * all);
 }
 
 // Rotates column j of the Hessenberg matrix into triangular form (Givens), and the right-hand side with it.
@@ -111,8 +140,8 @@ bool solveCoupled(IslandStep& step, NewtonSystem& island, double allowed_n) {
     return true;
   }
   const std::size_t all = island.affine.size();
-  const double allowed =
-      std::max(allowed_n, tuning::kGmresRelativeTolerance * std::sqrt(dot(island.affine.data(), island.affine.data(), all)));
+  const double allowed = std::max(
+      allowed_n, tuning::kGmresRelativeTolerance * std::sqrt(dot(island, island.affine.data(), island.affine.data(), all)));
   solve(step, island);
   findCoupledNodes(island);
   const std::size_t count = kNodeSize * island.coupled.size();
@@ -124,7 +153,7 @@ bool solveCoupled(IslandStep& step, NewtonSystem& island, double allowed_n) {
   LeastSquares squares;
   std::copy(island.affine.begin(), island.affine.end(), island.correction.begin());
   applyTangents(island, force(0));
-  squares.right[0] = std::sqrt(dot(force(0), force(0), count));
+  squares.right[0] = std::sqrt(dot(island, force(0), force(0), count));
   if (!(squares.right[0] > allowed)) return true;
   for (std::size_t i = 0; i < count; ++i) force(0)[i] /= squares.right[0];
 
@@ -133,20 +162,16 @@ bool solveCoupled(IslandStep& step, NewtonSystem& island, double allowed_n) {
   while (used < most) {
     const std::size_t j = used++;
     makeRoom(j, count, island);
-    std::fill(island.affine.begin(), island.affine.end(), 0.0);
-    for (std::size_t c = 0; c < island.coupled.size(); ++c)
-      std::copy_n(force(j) + kNodeSize * c, kNodeSize,
-                  island.affine.data() + kNodeSize * static_cast<std::size_t>(island.coupled[c]));
-    solve(step, island);
-    std::copy(island.affine.begin(), island.affine.end(), correction(j));
+    solveForCoupled(step, island, force(j));
+    if (keepsCorrections(island)) std::copy(island.affine.begin(), island.affine.end(), correction(j));
     double* next = force(j + 1);
     applyTangents(island, next);
     for (std::size_t i = 0; i < count; ++i) next[i] = force(j)[i] - next[i];
     for (std::size_t k = 0; k <= j; ++k) {
-      squares.column[j][k] = dot(next, force(k), count);
-      addScaled(-squares.column[j][k], force(k), count, next);
+      squares.column[j][k] = dot(island, next, force(k), count);
+      addScaled(island, -squares.column[j][k], force(k), count, next);
     }
-    const double length = std::sqrt(dot(next, next, count));
+    const double length = std::sqrt(dot(island, next, next, count));
     squares.column[j][j + 1] = length;
     squares.turn(j);
     if (!(std::abs(squares.right[j + 1]) > allowed) || !(length > 0.0)) break;
@@ -155,8 +180,16 @@ bool solveCoupled(IslandStep& step, NewtonSystem& island, double allowed_n) {
   const bool reached = !(std::abs(squares.right[used]) > allowed);
   island.directions = static_cast<int>(used);
   squares.backSubstitute(used);
+  if (!keepsCorrections(island)) {
+    double* sum = force(used);
+    std::fill_n(sum, count, 0.0);
+    for (std::size_t j = 0; j < used; ++j) addScaled(island, squares.right[j], force(j), count, sum);
+    solveForCoupled(step, island, sum);
+    addScaled(island, 1.0, island.correction.data(), all, island.affine.data());
+    return reached;
+  }
   std::copy_n(island.correction.data(), all, island.affine.data());
-  for (std::size_t j = 0; j < used; ++j) addScaled(squares.right[j], correction(j), all, island.affine.data());
+  for (std::size_t j = 0; j < used; ++j) addScaled(island, squares.right[j], correction(j), all, island.affine.data());
   return reached;
 }
 

@@ -9,9 +9,11 @@
 #include "solver/implicit/friction_tangent.h"
 #include "solver/implicit/gmres.h"
 #include "solver/implicit/run.h"
+#include "solver/implicit/search_monitor.h"
 #include "solver/implicit/step_count.h"
 #include "solver/implicit/system.h"
 #include "solver/world/checkpoint.h"
+#include "solver/world/over_island.h"
 #include "solver/world/stage_clock.h"
 
 #include <algorithm>
@@ -40,7 +42,7 @@ constexpr NewtonOptions kInMotion{tuning::kMaxActiveSetIterations, tuning::kCons
 constexpr NewtonOptions kBeforeFiner{tuning::kMaxNewtonIterations, tuning::kConsistentTangentResidual, tuning::kRelativeResidual};
 
 NewtonSystem& islandOf(IslandStep& step) {
-  return step.engine.memo.newtonSystems[static_cast<std::size_t>(step.blocks.front())];
+  return step.engine.memo.newtonSystems.of(step.blocks.front());
 }
 
 // The present active set. Before the first iteration nothing has moved yet, so points slip as they did in the step before.
@@ -51,12 +53,19 @@ struct ActiveSet {
 };
 
 ActiveSet activeSetNow(const IslandStep& step, const NewtonSystem& island) {
-  ActiveSet now;
-  for (std::size_t i = 0; i < island.touching.size(); ++i) {
-    const ActiveSetBits mask = activeSetBits(step, island, i);
-    now.changed = now.changed || mask != island.mask[i];
-    now.slides = now.slides || mask > 0xFFU;
-  }
+  const auto inRange = [&](std::size_t first, std::size_t last) {
+    ActiveSet set;
+    for (std::size_t i = first; i < last; ++i) {
+      const ActiveSetBits mask = activeSetBits(step, island, i);
+      set.changed = set.changed || mask != island.mask[i];
+      set.slides = set.slides || mask > 0xFFU;
+    }
+    return set;
+  };
+  ActiveSet now = mergeRanges(island.touching.size(), tuning::kPairGrain, isWide(step), ActiveSet{}, inRange,
+                              [](const ActiveSet& a, const ActiveSet& b) {
+                                return ActiveSet{a.changed || b.changed, a.slides || b.slides};
+                              });
   now.limited = isTetherLimited(step);
   now.changed = now.changed || now.limited != island.limited;
   return now;
@@ -64,19 +73,21 @@ ActiveSet activeSetNow(const IslandStep& step, const NewtonSystem& island) {
 
 // Factorises for the present active set.
 bool refactorise(IslandStep& step, NewtonSystem& island, double effective_s) {
-  for (std::size_t i = 0; i < island.touching.size(); ++i) island.mask[i] = activeSetBits(step, island, i);
+  forRanges(island.touching.size(), tuning::kPairGrain, isWide(step), [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) island.mask[i] = activeSetBits(step, island, i);
+  });
   return assemble(step, island, effective_s);
 }
 
-// The residual of all blocks, in the world's frame; returns the largest in units of kNewtonResidual, infinity where one is not
+// The residuals of these blocks, in the world's frame; returns the largest in units of kNewtonResidual, infinity where one is not
 // finite.
 SPRINGTOWER_KERNEL
-double findResidual(IslandStep& step, NewtonSystem& island, double effective_s) {
+double findResidualOf(IslandStep& step, NewtonSystem& island, double effective_s, std::size_t first, std::size_t last) {
   const Engine& engine = step.engine;
   const double gravity = std::max(step.simulation.scene.gravity.magnitude, 1.0);
   const double rate = 1.0 / (effective_s * effective_s);
   double worst = 0.0;
-  for (std::size_t i = 0; i < step.blocks.size(); ++i) {
+  for (std::size_t i = first; i < last; ++i) {
     const auto b = static_cast<std::size_t>(step.blocks[i]);
     ModeVectors& residual = island.residual[i];
     residualForces(jacobianOf(island, i), rate, engine.memo.force, engine.scratch.freePosition, step.simulation.state.position, b,
@@ -92,6 +103,13 @@ double findResidual(IslandStep& step, NewtonSystem& island, double effective_s) 
         std::max(worst, largest / (tuning::kNewtonResidual * step.simulation.model.mass[b] * gravity * engine.roundingFactor[b]));
   }
   return worst;
+}
+
+double findResidual(IslandStep& step, NewtonSystem& island, double effective_s) {
+  return mergeRanges(
+      step.blocks.size(), tuning::kBlockGrain, isWide(step), 0.0,
+      [&](std::size_t first, std::size_t last) { return findResidualOf(step, island, effective_s, first, last); },
+      [](double a, double b) { return std::max(a, b); });
 }
 
 // A block's velocities at the step's end, and its mean velocities over the step.
@@ -113,10 +131,16 @@ SPRINGTOWER_INLINE void updateVelocities(IslandStep& step, std::size_t b, double
   }
 }
 
-// Moves the blocks by this share of the Newton direction.
+void updateAllVelocities(IslandStep& step, double effective_s) {
+  overBlocks(step, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) updateVelocities(step, static_cast<std::size_t>(step.blocks[i]), effective_s);
+  });
+}
+
 SPRINGTOWER_KERNEL
-void applyStep(IslandStep& step, const NewtonSystem& island, double share, double effective_s) {
-  for (std::size_t i = 0; i < step.blocks.size(); ++i) {
+void applyStepTo(IslandStep& step, const NewtonSystem& island, double share, double effective_s, std::size_t first,
+                 std::size_t last) {
+  for (std::size_t i = first; i < last; ++i) {
     const auto b = static_cast<std::size_t>(step.blocks[i]);
     ModeVectors part = island.direction[i];
     for (auto& vector : part) {
@@ -127,10 +151,15 @@ void applyStep(IslandStep& step, const NewtonSystem& island, double share, doubl
   }
 }
 
+// Moves the blocks by this share of the Newton direction.
+void applyStep(IslandStep& step, const NewtonSystem& island, double share, double effective_s) {
+  overBlocks(step, [&](std::size_t first, std::size_t last) { applyStepTo(step, island, share, effective_s, first, last); });
+}
+
 SPRINGTOWER_KERNEL
-void acceptPoints(IslandStep& step, const NewtonSystem& island) {
+void acceptPointsOf(IslandStep& step, std::span<const std::int32_t> touching) {
   Engine& engine = step.engine;
-  for (const std::int32_t at : island.touching) {
+  for (const std::int32_t at : touching) {
     const std::int32_t contact = engine.pairs.contact[static_cast<std::size_t>(at)];
     const PointRows points = engine.contacts.points(contact);
     const PointRows trial = engine.contacts.trial(contact);
@@ -138,26 +167,33 @@ void acceptPoints(IslandStep& step, const NewtonSystem& island) {
   }
 }
 
+void acceptPoints(IslandStep& step, const NewtonSystem& island) {
+  const std::span<const std::int32_t> touching = island.touching;
+  forRanges(touching.size(), tuning::kPairGrain, isWide(step),
+            [&](std::size_t first, std::size_t last) { acceptPointsOf(step, touching.subspan(first, last - first)); });
+}
+
+// Where the blocks' steps are now implicit ones of this length (s).
+void setLastStep(IslandStep& step, double step_s) {
+  overBlocks(step, [&](std::size_t first, std::size_t last) {
+    for (const std::int32_t block : step.blocks.subspan(first, last - first)) {
+      BlockHistory& history = step.engine.memo.blockHistory[static_cast<std::size_t>(block)];
+      history.lastImplicitStep_s = step_s;
+      history.lastExplicitStep_s = 0.0;
+      history.explicitLast = false;
+    }
+  });
+}
+
 void accept(IslandStep& step, const NewtonSystem& island) {
   acceptPoints(step, island);
-  Engine& engine = step.engine;
-  for (const std::int32_t block : step.blocks) {
-    BlockHistory& history = engine.memo.blockHistory[static_cast<std::size_t>(block)];
-    history.lastImplicitStep_s = step.drift_s;
-    history.lastExplicitStep_s = 0.0;
-    history.explicitLast = false;
-  }
+  setLastStep(step, step.drift_s);
   ++step.counters.implicitSteps;
 }
 
 void reject(IslandStep& step) {
   restoreStep(step);
-  for (const std::int32_t block : step.blocks) {
-    BlockHistory& history = step.engine.memo.blockHistory[static_cast<std::size_t>(block)];
-    history.lastImplicitStep_s = 0.0;
-    history.lastExplicitStep_s = 0.0;
-    history.explicitLast = false;
-  }
+  setLastStep(step, 0.0);
   ++step.counters.newtonFailures;
 }
 
@@ -173,13 +209,13 @@ double evaluateResidual(IslandStep& step, NewtonSystem& island, double effective
 // Where contacts open or friction reverses on the way, the full step would overshoot, and the next iteration would return.
 // Returns the residual reached.
 double searchLine(IslandStep& step, NewtonSystem& island, double effective_s, double enough, StageClock& clock) {
-  const double work = directionalDerivative(island);
+  const double work = directionalDerivative(step, island);
   island.trialIsAhead = true;
   double share = 1.0;
   applyStep(step, island, 1.0, effective_s);
   double residual = evaluateResidual(step, island, effective_s, clock);
   if (!std::isfinite(residual) || residual <= enough) return residual;
-  double far = directionalDerivative(island);
+  double far = directionalDerivative(step, island);
   if (far >= -tuning::kCurvatureCondition * work) return residual;
   double least = 0.0;  // shares with a positive and a negative derivative
   double most = 1.0;
@@ -189,7 +225,7 @@ double searchLine(IslandStep& step, NewtonSystem& island, double effective_s, do
     applyStep(step, island, next - share, effective_s);
     share = next;
     residual = evaluateResidual(step, island, effective_s, clock);
-    const double here = directionalDerivative(island);
+    const double here = directionalDerivative(step, island);
     if (std::abs(here) <= tuning::kCurvatureCondition * work || residual <= enough) break;
     (here > 0.0 ? least : most) = share;
     (here > 0.0 ? near : far) = here;
@@ -197,11 +233,11 @@ double searchLine(IslandStep& step, NewtonSystem& island, double effective_s, do
   return residual;
 }
 
-// Moves the blocks to the positions extrapolated from velocities and accelerations. Returns the residual there.
-double predict(IslandStep& step, NewtonSystem& island, double effective_s, StageClock& clock) {
+// Moves these blocks to the positions extrapolated from velocities and accelerations.
+void extrapolate(IslandStep& step, std::span<const std::int32_t> blocks, double effective_s) {
   Engine& engine = step.engine;
   const double h = step.drift_s;
-  for (const std::int32_t block : step.blocks) {
+  for (const std::int32_t block : blocks) {
     const auto b = static_cast<std::size_t>(block);
     for (std::size_t a = 0; a < 3; ++a) {
       const double pull = effective_s * effective_s * step.gravity[static_cast<Eigen::Index>(a)];
@@ -216,6 +252,13 @@ double predict(IslandStep& step, NewtonSystem& island, double effective_s, Stage
     }
     updateVelocities(step, b, effective_s);
   }
+}
+
+// Moves all blocks to their extrapolated positions. Returns the residual there.
+double predict(IslandStep& step, NewtonSystem& island, double effective_s, StageClock& clock) {
+  overBlocks(step, [&](std::size_t first, std::size_t last) {
+    extrapolate(step, step.blocks.subspan(first, last - first), effective_s);
+  });
   island.trialIsAhead = true;
   return evaluateResidual(step, island, effective_s, clock);
 }
@@ -226,7 +269,7 @@ double beginPredicted(IslandStep& step, NewtonSystem& island, double effective_s
   const double carried = predict(step, island, effective_s, clock);
   if (how.near == 0.0 || !(carried > how.near)) return carried;
   restoreStep(step);
-  for (const std::int32_t block : step.blocks) updateVelocities(step, static_cast<std::size_t>(block), effective_s);
+  updateAllVelocities(step, effective_s);
   const double still = evaluateResidual(step, island, effective_s, clock);
   return still < carried ? still : predict(step, island, effective_s, clock);
 }
@@ -251,9 +294,14 @@ bool isCarried(const IslandStep& step, double effective_s) {
 // Keeps the blocks in place. Returns the residual there: in a wide island at rest the rounding of stiff contact forces is nearly
 // as large as the tolerance, and no correction would reduce it.
 double evaluateInPlace(IslandStep& step, NewtonSystem& island, double effective_s, StageClock& clock) {
-  for (const std::int32_t block : step.blocks) updateVelocities(step, static_cast<std::size_t>(block), effective_s);
+  updateAllVelocities(step, effective_s);
   island.trialIsAhead = true;
   return evaluateResidual(step, island, effective_s, clock);
+}
+
+// Whether the search for the equilibrium is to end where it is.
+bool isStopped(const IslandStep& step) {
+  return step.monitor != nullptr && step.monitor->isStopped();
 }
 
 // Newton's iteration for the state at the step's end, from engine.scratch.freePosition and engine.scratch.pastPosition.
@@ -276,7 +324,7 @@ bool solveStep(IslandStep& step, double effective_s, bool carried, const NewtonO
   bool slow = false;
   double lowest = residual;
   int lowestAt = 0;
-  for (int iteration = 0; iteration < most; ++iteration) {
+  for (int iteration = 0; iteration < most && !isStopped(step); ++iteration) {
     island.useConsistentTangent = residual < how.near;
     island.assumesSupport = iteration == 0 && how.assumesSupport;
     if (island.assumesSupport) island.factorised = false;
@@ -285,7 +333,7 @@ bool solveStep(IslandStep& step, double effective_s, bool carried, const NewtonO
     const bool old =
         iteration == 0 && island.directions >= tuning::kRefactorDirectionShare * static_cast<double>(mostDirections(island));
     const bool stale = (slow || old) && (now.changed || now.slides || now.limited);
-    const bool renewed = stale || !island.factorised;
+    const bool renewed = stale || !island.factorised || step.blur_j > 0.0;  // blurred contacts are of another stiffness each time
     if (renewed && !refactorise(step, island, effective_s)) break;
     const double before = residual;
     const bool differs = island.useConsistentTangent && (now.changed || now.slides || !island.factorTangents.empty());
@@ -298,6 +346,7 @@ bool solveStep(IslandStep& step, double effective_s, bool carried, const NewtonO
     residual = searchLine(step, island, effective_s, enough, clock);
     slow = residual > tuning::kSlowConvergence * before;
     ++step.counters.implicitIterations;
+    if (step.monitor != nullptr) step.monitor->iterationDone();
     converged = residual <= enough;
     if (residual < lowest) {
       lowest = residual;
@@ -358,21 +407,37 @@ bool stepImplicit(IslandStep& step, bool canRetryFiner) {
 
 bool stepFromRest(IslandStep& step, double effective_s, StepFromRest kind) {
   step.drift_s = effective_s / kBdf2;
-  step.sticks = kind == StepFromRest::supported;
+  if (kind == StepFromRest::blurred)
+    evaluateForces(step, step.simulation.state, step.simulation.state.velocity, 0.0, PointUpdate::store);
+  step.sticks = kind == StepFromRest::supported || kind == StepFromRest::blurred;
   evaluateForces(step, step.simulation.state, step.simulation.state.velocity, 0.0, PointUpdate::trial);
   predictEuler(step, effective_s);
-  // The weight may reach the foot of a tower row by row.
-  NewtonOptions how{std::max(tuning::kMaxActiveSetIterations, static_cast<int>(step.blocks.size())),
+  // Where nothing slips, what the rounded factors of tall towers leave gets less only slowly.
+  NewtonOptions how{kind == StepFromRest::supported
+                        ? std::max(tuning::kMaxActiveSetIterations, static_cast<int>(step.blocks.size()))
+                        : tuning::kMaxActiveSetIterations,
                     tuning::kConsistentTangentResidual, 0.0};
-  how.untilStalled = kind != StepFromRest::asPlaced;
-  how.assumesSupport = step.sticks;
-  // With the consistent tangent from the start, narrow islands of uneven height end up to twice as deep. In wide islands, with
-  // thousands of slipping points, an iteration without it reduces the residual to three tenths only.
-  if (kind == StepFromRest::asPlaced && step.blocks.size() <= tuning::kNarrowBlocks) how.near = 0.0;
-  if (step.sticks) how.leastEnough = tuning::kStickingResidual;
+  how.untilStalled = true;
+  how.assumesSupport = kind == StepFromRest::supported;
+  if (kind == StepFromRest::supported) how.leastEnough = tuning::kStickingResidual;
+  if (kind == StepFromRest::blurred) how.leastEnough = tuning::kBlurredResidual;
   const bool converged = solveStep(step, effective_s, false, how);
   step.sticks = false;
   return finishStep(step, converged);
+}
+
+double stop(IslandStep& step) {
+  MotionState& state = step.simulation.state;
+  double farthest = 0.0;
+  for (const std::int32_t block : step.blocks) {
+    const auto b = static_cast<std::size_t>(block);
+    for (std::size_t c = 0; c < kCorners; ++c) {
+      farthest = std::max(farthest, (state.position.at(b, c) - step.engine.memo.previous.at(b, c)).norm());
+      state.velocity.set(b, c, Vec3::Zero());
+    }
+    step.engine.memo.blockHistory[b].lastImplicitStep_s = 0.0;
+  }
+  return farthest;
 }
 
 double slipAtRest(IslandStep& step, double effective_s) {

@@ -5,6 +5,7 @@
 #include "solver/contact/evaluate_forces.h"
 #include "solver/contact/update.h"
 #include "solver/implicit/step_count.h"
+#include "solver/world/over_island.h"
 
 #include <algorithm>
 #include <cmath>
@@ -19,9 +20,7 @@ int stepsForDisplacement(const IslandStep& step) {
   const ParticleArray& velocity = simulation.state.velocity;
   const bool alone = step.blocks.size() == 1;
   const Vec3 glide = alone ? centre(velocity, static_cast<std::size_t>(step.blocks.front())) : Vec3::Zero();
-  double fastest = 0.0;
-  for (const std::int32_t block : step.blocks)
-    fastest = std::max(fastest, fastestCorner(velocity, static_cast<std::size_t>(block), glide));
+  double fastest = largestOfBlocks(step, [&](std::size_t b) { return fastestCorner(velocity, b, glide); });
   if (alone) fastest *= 2.0;
   const double steps = std::ceil(fastest * simulation.scene.settings.frame_s /
                                  (tuning::kMaxDisplacementPerStep * simulation.lengths.blockHeight_m));
@@ -32,10 +31,9 @@ int stepsForDisplacement(const IslandStep& step) {
 bool isQuiescent(const IslandStep& step) {
   const Simulation& simulation = step.simulation;
   const double most = quiescentSpeed(simulation);
-  for (const std::int32_t block : step.blocks) {
+  return everyBlock(step, [&](std::size_t b) {
     // A block that has just been released has no speed yet, and one that explicit steps moved may be at the turning point of a
     // bounce.
-    const auto b = static_cast<std::size_t>(block);
     if (!(simulation.restTime_s[b] > 0.0) || step.engine.memo.blockHistory[b].explicitLast) return false;
     for (std::size_t a = 0; a < 3; ++a) {
       const double* v = simulation.state.velocity.values(a, b);
@@ -43,15 +41,14 @@ bool isQuiescent(const IslandStep& step) {
         if (!(std::abs(v[c]) <= most)) return false;
       }
     }
-  }
-  return true;
+    return true;
+  });
 }
 
 // Whether the island touches a sleeping block. Sleepers wake on a change of contact force; with fewer than
 // tuning::kStandardImplicitSteps steps, numerical damping would filter out the vibration that should wake them.
 bool touchesSleeping(const IslandStep& step) {
-  return std::any_of(step.pairs.begin(), step.pairs.end(), [&](std::int32_t pair) {
-    const auto at = static_cast<std::size_t>(pair);
+  return anyPair(step, [&](std::size_t at) {
     const BlockPair& key = step.engine.pairs.key[at];
     return key.b >= 0 && step.engine.pairs.touches(at) && (sleeps(step.simulation, key.a) || sleeps(step.simulation, key.b));
   });
@@ -120,15 +117,15 @@ void prepareImplicit(Simulation& simulation) {
   engine.scratch.freePosition.resize(count);
   engine.scratch.stepVelocity.resize(count);
   engine.memo.carriedMotion.resize(count);
-  engine.memo.newtonSystems.resize(count);
+  engine.memo.newtonSystems.use(count);
   engine.scratch.nodeOf.assign(count, 0);
-  if (isImplicit(simulation.scene.settings.method)) engine.scratch.rigidIslands.resize(count);
-  if (simulation.scene.settings.method == Method::implicitEigen) engine.memo.sparseFactors.resize(count);
+  if (isImplicit(simulation.scene.settings.method)) engine.scratch.rigidIslands.use(count);
+  if (simulation.scene.settings.method == Method::implicitEigen) engine.memo.sparseFactors.use(count);
 }
 
 void setJacobians(IslandStep& step, double effective_s) {
   const BlockModel& model = step.simulation.model;
-  NewtonSystem& island = step.engine.memo.newtonSystems[static_cast<std::size_t>(step.blocks.front())];
+  NewtonSystem& island = step.engine.memo.newtonSystems.of(step.blocks.front());
   const std::vector<double>& edge_n_m = step.simulation.stiffness.edge_n_m;
   const auto fits = [&](std::size_t b, std::size_t kind) {
     const NewtonSystem::BlockClass& known = island.blockClasses[kind];
@@ -160,13 +157,11 @@ bool implicitStepsFit(const IslandStep& step, double step_s) {
   const bool touches = std::any_of(step.pairs.begin(), step.pairs.end(),
                                    [&](std::int32_t at) { return step.engine.pairs.touches(static_cast<std::size_t>(at)); });
   if (!touches || isAboutToCollide(step, step_s) || bounces(step, step_s)) return false;
-  for (const std::int32_t block : step.blocks) {
-    const auto b = static_cast<std::size_t>(block);
+  return everyBlock(step, [&](std::size_t b) {
     if (step.engine.memo.islandHistory[b].explicitFrames > 0) return false;
     const double turning = turningSpeed(affineField(simulation.state.position, b), affineField(simulation.state.velocity, b));
-    if (turning * step_s > tuning::kMaxTurnPerStep) return false;
-  }
-  return true;
+    return !(turning * step_s > tuning::kMaxTurnPerStep);
+  });
 }
 
 IslandOutcome runImplicitSteps(IslandStep& step, bool mostlyFallen, double& reached_s) {
@@ -175,7 +170,7 @@ IslandOutcome runImplicitSteps(IslandStep& step, bool mostlyFallen, double& reac
   IslandOutcome outcome;
   const double frame_s = simulation.scene.settings.frame_s;
   reached_s = 0.0;
-  NewtonSystem& island = engine.memo.newtonSystems[static_cast<std::size_t>(step.blocks.front())];
+  NewtonSystem& island = engine.memo.newtonSystems.of(step.blocks.front());
   const bool forced = holdsTether(step) || isPushed(step);
   const bool wasForced = engine.memo.islandHistory[static_cast<std::size_t>(step.blocks.front())].forced;
   if (wasForced && !forced) resetHistory(step);

@@ -24,9 +24,13 @@ IslandOutcome runImplicitSteps(IslandStep& step, bool mostlyFallen, double& reac
 /// then restored. With `canRetryFiner` it stops after fewer iterations.
 bool stepImplicit(IslandStep& step, bool canRetryFiner);
 
+/// Sets the velocities to zero after a step from rest; returns the displacement of the fastest corner in it, m.
+double stop(IslandStep& step);
+
 /// How a step from rest is solved. supported: nothing slips, and the solution begins as if all points pushed. coulomb: friction
-/// is bounded by the normal forces at the end. asPlaced: the same, for islands whose weight does not bear yet.
-enum class StepFromRest { supported, coulomb, asPlaced };
+/// is bounded by the normal forces at the end. blurred: nothing slips in the step, with the contacts of step.blur_j; friction is
+/// cut down to its bounds before it.
+enum class StepFromRest { supported, coulomb, blurred };
 
 /// One step of implicit Euler from rest, of `effective_s`, towards static equilibrium. Contact points advance by more than that,
 /// as in stepImplicit. Returns false if it does not converge; the state is then restored.

@@ -2,6 +2,7 @@
 
 #include "core/lanes.h"
 #include "core/tuning.h"
+#include "solver/world/over_island.h"
 
 #include <algorithm>
 #include <cmath>
@@ -20,14 +21,8 @@ int stepsFor(double angle4, double damping) {
   return static_cast<int>(std::ceil(std::clamp(steps, 1.0, static_cast<double>(tuning::kMaxFrequencySteps))));
 }
 
-}  // namespace
-
-double quiescentSpeed(const Simulation& simulation) {
-  return tuning::kQuiescentDisplacement * simulation.tolerance_m / simulation.scene.settings.frame_s;
-}
-
 SPRINGTOWER_KERNEL
-void updateFrequencyEstimate(IslandStep& step, double effective_s) {
+void updateFrequenciesOf(IslandStep& step, std::span<const std::int32_t> blocks, double effective_s) {
   Engine& engine = step.engine;
   const ParticleArray& velocity = step.simulation.state.velocity;
   const double frame_s = step.simulation.scene.settings.frame_s;
@@ -35,7 +30,7 @@ void updateFrequencyEstimate(IslandStep& step, double effective_s) {
   const double rate = 1.0 / (step.drift_s * step.drift_s);
   const double ofVelocity = 3.0 / effective_s;
   const double fastest = fourthPower(tuning::kMaxVibrationAngle / frame_s);
-  for (const std::int32_t block : step.blocks) {
+  for (const std::int32_t block : blocks) {
     const auto b = static_cast<std::size_t>(block);
     BlockHistory& past = engine.memo.blockHistory[b];
     if (!(past.lastImplicitStep_s > 0.0)) continue;
@@ -60,6 +55,18 @@ void updateFrequencyEstimate(IslandStep& step, double effective_s) {
     const double jerkNow = mass * rate * rate * std::accumulate(jerk, jerk + kCorners, 0.0);
     past.jerk += share * (std::min(jerkNow, fastest * past.motion) - past.jerk);
   }
+}
+
+}  // namespace
+
+double quiescentSpeed(const Simulation& simulation) {
+  return tuning::kQuiescentDisplacement * simulation.tolerance_m / simulation.scene.settings.frame_s;
+}
+
+void updateFrequencyEstimate(IslandStep& step, double effective_s) {
+  overBlocks(step, [&](std::size_t first, std::size_t last) {
+    updateFrequenciesOf(step, step.blocks.subspan(first, last - first), effective_s);
+  });
 }
 
 int stepsForFrequency(const IslandStep& step, int present) {

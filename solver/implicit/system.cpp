@@ -5,12 +5,13 @@
 #include "core/tuning.h"
 #include "solver/contact/evaluate_forces.h"
 #include "solver/implicit/friction_tangent.h"
-#include "solver/world/island_step.h"
+#include "solver/world/over_island.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace springtower {
 
@@ -153,6 +154,23 @@ void addManifold(const IslandStep& step, NewtonSystem& island, std::size_t at, d
   if (ofBoth != nullptr) addContacts(crossNormal, crossTangential, points.direction, -1.0, ofBoth);
 }
 
+// Adds all manifolds: those of tasks side by side, then those of the top.
+void addManifolds(const IslandStep& step, NewtonSystem& island, double step_s) {
+  if (island.taskPairs.empty()) {
+    for (std::size_t at = 0; at < island.touching.size(); ++at) addManifold(step, island, at, step_s);
+    return;
+  }
+  const auto addTask = [&](std::size_t task) {
+    for (std::int32_t i = island.taskPairStart[task]; i < island.taskPairStart[task + 1]; ++i)
+      addManifold(step, island, static_cast<std::size_t>(island.taskPairs[static_cast<std::size_t>(i)]), step_s);
+  };
+  const std::size_t tasks = island.matrix.tasks.count();
+  forRanges(tasks, 1, true, [&](std::size_t first, std::size_t last) {
+    for (std::size_t task = first; task < last; ++task) addTask(task);
+  });
+  addTask(tasks);
+}
+
 // Adds the hand's springs on its block; of springs at their limit only a symmetric, positive semidefinite part.
 void addTether(const IslandStep& step, NewtonSystem& island, double step_s) {
   const Simulation& simulation = step.simulation;
@@ -173,15 +191,11 @@ void addTether(const IslandStep& step, NewtonSystem& island, double step_s) {
 // Stiffens every degree of freedom by the possible rounding error of its diagonal entry. In the long steps from rest the inertia
 // is smaller than that error beside the stiff contacts of 144 rows, and rounding would decide whether the matrix is positive
 // definite: with contact laws that differed by little, the equilibrium of 144 rows took from 2 s to unbounded time.
-void stiffenByRounding(BlockCholesky& matrix) {
+void stiffenByRounding(float factor, BlockCholesky& matrix) {
   for (std::size_t j = 0; j < matrix.nodeCount(); ++j) {
     float* block = matrix.diagonal.data() + kNodeMatrix * j;
-    for (std::size_t i = 0; i < kNodeSize; ++i) block[(kNodeSize + 1) * i] *= tuning::kDiagonalRounding;
+    for (std::size_t i = 0; i < kNodeSize; ++i) block[(kNodeSize + 1) * i] *= factor;
   }
-}
-
-std::size_t firstBlock(const IslandStep& step) {
-  return static_cast<std::size_t>(step.blocks.front());
 }
 
 // Whether a touching pair couples two nodes: neither side is the floor or asleep.
@@ -242,6 +256,37 @@ bool layOutMatrix(const IslandStep& step, NewtonSystem& island, std::uint64_t me
   return true;
 }
 
+// The task of a touching pair: that of its blocks' nodes, or of the top, which is last, where one of them lies there.
+std::size_t taskOf(const IslandStep& step, const NewtonSystem& island, std::int32_t pair) {
+  const EliminationTasks& tasks = island.matrix.tasks;
+  const ManifoldShape m = shapeOf(step.engine, static_cast<std::size_t>(pair));
+  std::size_t task = 0;
+  for (const std::int32_t block : {m.upper, m.lower}) {
+    if (block < 0 || step.simulation.asleep[static_cast<std::size_t>(block)] != 0) continue;
+    const std::int32_t node = step.engine.scratch.nodeOf[static_cast<std::size_t>(block)];
+    const auto column = static_cast<std::size_t>(island.matrix.position[static_cast<std::size_t>(node)]);
+    task = std::max(task, tasks.isTop(column) ? tasks.count() : static_cast<std::size_t>(tasks.taskOf[column]));
+  }
+  return task;
+}
+
+// Lists touching pairs by task, so that tasks add them to the matrix side by side: no two share a node but in the top.
+void listByTask(const IslandStep& step, NewtonSystem& island) {
+  std::vector<std::int32_t>& start = island.taskPairStart;
+  island.taskPairs.clear();
+  start.clear();
+  if (island.matrix.tasks.empty()) return;
+  start.assign(island.matrix.tasks.count() + 3, 0);
+  for (const std::int32_t pair : island.touching) ++start[taskOf(step, island, pair) + 2];
+  std::partial_sum(start.begin(), start.end(), start.begin());
+  island.taskPairs.resize(island.touching.size());
+  for (std::size_t at = 0; at < island.touching.size(); ++at) {
+    std::int32_t& next = start[taskOf(step, island, island.touching[at]) + 1];
+    island.taskPairs[static_cast<std::size_t>(next++)] = static_cast<std::int32_t>(at);
+  }
+  start.pop_back();
+}
+
 void findSlots(const IslandStep& step, NewtonSystem& island) {
   const Engine& engine = step.engine;
   island.slot.clear();
@@ -261,6 +306,13 @@ std::array<double, kAffine> weightsAt(const BlockFrame& frame, const Vec3& place
   for (std::size_t a = 0; a < 3; ++a)
     weights[1 + a] = frame.dual[a][0] * arm[0] + frame.dual[a][1] * arm[1] + frame.dual[a][2] * arm[2];
   return weights;
+}
+
+void layOutWork(NewtonSystem& island) {
+  const std::size_t count = island.axes.size();
+  island.residual.resize(count);
+  island.direction.resize(count);
+  island.affine.resize(kNodeSize * count);
 }
 
 void layOut(IslandStep& step, NewtonSystem& island) {
@@ -288,15 +340,14 @@ void layOut(IslandStep& step, NewtonSystem& island) {
   findEdges(step, island);
   island.pattern = pattern;
   island.factorised = false;
-  if (!engine.memo.sparseFactors.empty()) engine.memo.sparseFactors[firstBlock(step)].analysed = false;
+  if (engine.memo.sparseFactors.isUsed()) engine.memo.sparseFactors.of(step.blocks.front()).analysed = false;
   island.exceedsFill = !layOutMatrix(step, island, members);
   if (island.exceedsFill) return;
   findSlots(step, island);
+  listByTask(step, island);
   island.mask.assign(island.touching.size(), 0);
   island.axes.resize(count);
-  island.residual.resize(count);
-  island.direction.resize(count);
-  island.affine.resize(kNodeSize * count);
+  layOutWork(island);
 }
 
 TetherStiffness tetherStiffness(const IslandStep& step, double step_s) {
@@ -312,36 +363,59 @@ bool isTetherLimited(const IslandStep& step) {
   return holdsTether(step) && (now.limited || now.acrossLimited || now.turnLimited);
 }
 
-bool assemble(IslandStep& step, NewtonSystem& island, double step_s) {
+namespace {
+
+// The matrix M / step^2 + K, with every degree of freedom stiffer by this share.
+void fillMatrix(IslandStep& step, NewtonSystem& island, double step_s, float stiffer) {
   clear(island.matrix);
-  for (std::size_t i = 0; i < step.blocks.size(); ++i) {
-    island.axes[i] = axesOf(step.engine.memo.frames[static_cast<std::size_t>(step.blocks[i])].place);
-    addOwn(jacobianOf(island, i), island.axes[i],
-           island.matrix.diagonal.data() + kNodeMatrix * static_cast<std::size_t>(island.matrix.position[i]));
-  }
-  island.factorTangents.clear();
-  island.directions = 0;
-  for (std::size_t at = 0; at < island.touching.size(); ++at) {
-    addManifold(step, island, at, step_s);
-    if (island.mask[at] > 0xFFU) addFactorTangents(step, island, at, island.mask[at], step_s, island.factorTangents);
-  }
-  island.tether = tetherStiffness(step, step_s);
-  island.limited = isTetherLimited(step);
+  overBlocks(step, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      island.axes[i] = axesOf(step.engine.memo.frames[static_cast<std::size_t>(step.blocks[i])].place);
+      addOwn(jacobianOf(island, i), island.axes[i],
+             island.matrix.diagonal.data() + kNodeMatrix * static_cast<std::size_t>(island.matrix.position[i]));
+    }
+  });
+  addManifolds(step, island, step_s);
   if (island.tether.block != kFloor) addTether(step, island, step_s);
-  if (step.unforced) stiffenByRounding(island.matrix);
-  island.step_s = step_s;
+  if (stiffer > 0.0F) stiffenByRounding(1.0F + stiffer, island.matrix);
+}
+
+bool factoriseMatrix(IslandStep& step, NewtonSystem& island) {
   ++step.counters.factorisations;
-  std::vector<SparseFactors>& sparse = step.engine.memo.sparseFactors;
-  island.factorised = sparse.empty() ? factorise(island.matrix) : factorise(island.matrix, island.slot, sparse[firstBlock(step)]);
+  ByIsland<SparseFactors>& sparse = step.engine.memo.sparseFactors;
+  island.factorised =
+      !sparse.isUsed() ? factorise(island.matrix) : factorise(island.matrix, island.slot, sparse.of(step.blocks.front()));
   return island.factorised;
 }
 
+}  // namespace
+
+bool assemble(IslandStep& step, NewtonSystem& island, double step_s) {
+  island.tether = tetherStiffness(step, step_s);
+  island.limited = isTetherLimited(step);
+  island.step_s = step_s;
+  island.directions = 0;
+  findFactorTangents(step, island, step_s);
+  if (!step.unforced) {
+    fillMatrix(step, island, step_s, 0.0F);
+    return factoriseMatrix(step, island);
+  }
+  // Where rounding still makes a pivot negative, as in the widest pyramids, a stiffer diagonal costs iterations at most. In a
+  // narrow island such a pivot is that of blocks that go over, and a step that goes on takes longer to find that out.
+  const float most = step.blocks.size() > tuning::kNarrowBlocks ? tuning::kMaxDiagonalRounding : tuning::kDiagonalRounding;
+  for (float stiffer = tuning::kDiagonalRounding; stiffer <= most; stiffer *= 8.0F) {
+    fillMatrix(step, island, step_s, stiffer);
+    if (factoriseMatrix(step, island)) return true;
+  }
+  return false;
+}
+
 void solve(IslandStep& step, NewtonSystem& island) {
-  std::vector<SparseFactors>& sparse = step.engine.memo.sparseFactors;
-  if (sparse.empty()) {
+  ByIsland<SparseFactors>& sparse = step.engine.memo.sparseFactors;
+  if (!sparse.isUsed()) {
     solve(island.matrix, island.affine);
   } else {
-    solve(island.matrix, sparse[firstBlock(step)], island.affine);
+    solve(island.matrix, sparse.of(step.blocks.front()), island.affine);
   }
 }
 

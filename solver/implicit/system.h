@@ -12,6 +12,9 @@ struct IslandStep;
 /// Weights of a block's affine vectors at a point in space.
 std::array<double, kAffine> weightsAt(const BlockFrame& frame, const Vec3& place);
 
+/// Sizes the working space of the iteration for a matrix that is laid out.
+void layOutWork(NewtonSystem& island);
+
 /// Lays out the matrix again where pairs have begun or ceased to touch, and sets island.exceedsFill where its fill is too large.
 void layOut(IslandStep& step, NewtonSystem& island);
 

@@ -127,12 +127,12 @@ Eigen::Matrix3d straightAxes(const ParticleArray& position, std::size_t block) {
 }
 
 RigidIsland& rigidIslandOf(IslandStep& step) {
-  return step.engine.scratch.rigidIslands[static_cast<std::size_t>(step.blocks.front())];
+  return step.engine.scratch.rigidIslands.of(step.blocks.front());
 }
 
 void prepareRigid(Simulation& simulation) {
   const std::size_t count = simulation.model.blockCount();
-  simulation.engine->scratch.rigidIslands.resize(count);
+  simulation.engine->scratch.rigidIslands.use(count);
   simulation.engine->scratch.nodeOf.assign(count, 0);
 }
 

@@ -166,6 +166,16 @@ class Recorder {
   std::vector<double> processor_ms_;
 };
 
+// Prepares the simulation; `shouldStop` ends that as well.
+PrepareResult prepareFor(Simulation& simulation, const RunOptions& options) {
+  PrepareOptions how = options.prepare;
+  how.goesOn = [&](const PrepareProgress& progress) {
+    const bool goesOn = !options.prepare.goesOn || options.prepare.goesOn(progress);
+    return goesOn && !(options.shouldStop && options.shouldStop());
+  };
+  return prepare(simulation, how);
+}
+
 }  // namespace
 
 RunResult runScene(Simulation& simulation, const RunOptions& options, const FrameCallback& afterFrame) {
@@ -174,7 +184,8 @@ RunResult runScene(Simulation& simulation, const RunOptions& options, const Fram
   MoveRun moves = beginMoves(simulation);
   if (afterFrame) afterFrame(simulation);
   const long frames = std::max(1L, std::lround(options.seconds / simulation.scene.settings.frame_s));
-  bool interrupted = false;
+  const PrepareResult prepared = prepareFor(simulation, options);
+  bool interrupted = prepared.end == PrepareEnd::cancelled;
   for (long frame = 0; frame < frames && !interrupted; ++frame) {
     if (!simulation.scene.moves.empty()) {
       guideHand(moves, simulation);
@@ -199,6 +210,7 @@ RunResult runScene(Simulation& simulation, const RunOptions& options, const Fram
   }
   RunResult result = recorder.finish(simulation);
   result.interrupted = interrupted;
+  result.prepared = prepared;
   result.moves = std::move(moves.results);
   result.wall_s = secondsSince(start);
   return result;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "solver/frame/prepare.h"
 #include "solver/hand/moves.h"
 #include "solver/metrics/balance.h"
 #include "solver/metrics/measures.h"
@@ -26,7 +27,9 @@ struct RunOptions {
   bool measureEveryFrame =
       true;  ///< penetration, strain, creep, jitter and energy in every frame; otherwise at the start and at the end only
   std::vector<std::uint8_t> leftOut;  ///< 1 for blocks that do not count for `stands`, [blocks] or empty
-  std::function<bool()> shouldStop;   ///< called after every frame: true ends the run with it, as `interrupted`; or empty
+  PrepareOptions prepare;             ///< of the search for the equilibrium before the first frame; its `goesOn` may be empty
+  /// Called after every frame and, on any thread, during that search: true ends the run with it, as `interrupted`; or empty.
+  std::function<bool()> shouldStop;
 };
 
 /// Times of the frames, ms: stepFrame only, without measures and output. CPU time is that of the whole process, over all threads;
@@ -45,6 +48,7 @@ struct RunResult {
   std::optional<double> restTime_s;        ///< first frame in which all blocks were at rest (`atRest`)
   bool interrupted = false;                ///< ended by `shouldStop` with frames left to do
   std::uint64_t frames = 0;                ///< of this run
+  PrepareResult prepared;                  ///< zeros where the simulation was prepared before
   int substeps = 0;                        ///< steps of the last frame in which a block was awake
   double simulated_s = 0.0;                ///< simulated time of this run
   double wall_s = 0.0;                     ///< whole run, measures and callback included
@@ -71,15 +75,16 @@ struct RunResult {
   std::vector<MoveResult> moves;        ///< of the scene's moves that have ended
 };
 
-/// Called once before the first frame and after every frame.
+/// Called once before the scene is prepared and after every frame.
 using FrameCallback = std::function<void(const Simulation&)>;
 
-/// Runs a scene for a time and measures it. Rest, fall and penetration are measured relative to the state at the call; times are
-/// simulated times. A frame in which every block sleeps is not measured again, because nothing has changed. While all blocks are
-/// at rest the energy is not measured in every frame, as that would cost more than the frame; a rise over such a period counts as
-/// one. A scene with moves is run until the last of them has ended or it has fallen; blocks in the hand and those put aside are
-/// left out of `standing`, blocks in a new place are compared with that place, and creep is not measured. Throws DivergenceError
-/// from the frame that diverges; the simulation is then left as that frame left it.
+/// Prepares a scene (solver/frame/prepare.h), runs it for a time and measures it. Rest, fall and penetration are measured
+/// relative to the state at the call; times are simulated times. A frame in which every block sleeps is not measured again,
+/// because nothing has changed. While all blocks are at rest the energy is not measured in every frame, as that would cost more
+/// than the frame; a rise over such a period counts as one. A scene with moves is run until the last of them has ended or it has
+/// fallen; blocks in the hand and those put aside are left out of `standing`, blocks in a new place are compared with that place,
+/// and creep is not measured. Throws DivergenceError from the frame that diverges; the simulation is then left as that frame left
+/// it.
 RunResult runScene(Simulation& simulation, const RunOptions& options, const FrameCallback& afterFrame = {});
 
 /// The q-quantile (0 < q <= 1) of some values by nearest rank: the least value that at least a share q of them does not exceed. 0

@@ -3,6 +3,7 @@
 #include "core/tuning.h"
 #include "solver/block/inertia.h"
 #include "solver/frame/inputs.h"
+#include "solver/frame/prepare.h"
 #include "solver/statics/friction_limit.h"
 
 #include <algorithm>
@@ -128,6 +129,7 @@ TiltTrial tiltUntilFall(Scene scene, const TiltRamp& ramp, const std::function<v
   Gravity gravity = scene.gravity;
   gravity.tilt_deg = 0.0;
   setGravity(simulation, gravity);
+  prepare(simulation);
   const std::vector<FittedBox> start = fittedBoxes(simulation.state.position);
   TiltTrial trial;
   while (trial.standing.stands && gravity.tilt_deg < ramp.most_deg) {

@@ -1,5 +1,6 @@
 #include "solver/sleep/rest.h"
 
+#include "core/parallel.h"
 #include "core/tuning.h"
 #include "narrowphase/separation.h"
 #include "solver/block/inertia.h"
@@ -273,10 +274,13 @@ bool wakeFailedSupports(Simulation& simulation) {
 void updateRest(Simulation& simulation) {
   Engine& engine = *simulation.engine;
   const Sleep sleep = simulation.scene.settings.sleep;
-  for (const std::int32_t block : engine.scratch.awakeBlocks) {
-    const auto b = static_cast<std::size_t>(block);
-    sleep == Sleep::report ? updateSleepTimerOfReport(simulation, b) : updateSleepTimer(simulation, b);
-  }
+  const std::vector<std::int32_t>& awake = engine.scratch.awakeBlocks;
+  forRanges(awake.size(), tuning::kBlockGrain, awake.size() >= tuning::kParallelBlocks, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      const auto b = static_cast<std::size_t>(awake[i]);
+      sleep == Sleep::report ? updateSleepTimerOfReport(simulation, b) : updateSleepTimer(simulation, b);
+    }
+  });
   if (sleep == Sleep::off) return;
   wakeRequested(simulation);
   putToSleep(simulation);

@@ -1,5 +1,7 @@
 #include "solver/world/checkpoint.h"
 
+#include "solver/world/over_island.h"
+
 #include <algorithm>
 
 namespace springtower {
@@ -63,20 +65,24 @@ void prepareFrameStart(Simulation& simulation) {
 
 void saveFrameStart(IslandStep& step) {
   Engine& engine = step.engine;
-  for (const std::int32_t block : step.blocks) {
-    const auto b = static_cast<std::size_t>(block);
-    copyBlock(step.simulation.state.position, b, engine.checkpoint.state.position);
-    copyBlock(step.simulation.state.velocity, b, engine.checkpoint.state.velocity);
-    engine.checkpoint.history[b] = engine.memo.blockHistory[b];
-    engine.checkpoint.islandHistory[b] = engine.memo.islandHistory[b];
-    if (!hasHistory(step.simulation)) continue;
-    copyBlock(engine.memo.previous, b, engine.checkpoint.previous);
-    copyBlock(engine.memo.previousVelocity, b, engine.checkpoint.previousVelocity);
-  }
-  for (const std::int32_t pair : step.pairs) {
-    const auto at = static_cast<std::size_t>(pair);
-    if (engine.pairs.touches(at)) engine.contacts.savePoints(engine.pairs.contact[at]);
-  }
+  overBlocks(step, [&](std::size_t first, std::size_t last) {
+    for (const std::int32_t block : step.blocks.subspan(first, last - first)) {
+      const auto b = static_cast<std::size_t>(block);
+      copyBlock(step.simulation.state.position, b, engine.checkpoint.state.position);
+      copyBlock(step.simulation.state.velocity, b, engine.checkpoint.state.velocity);
+      engine.checkpoint.history[b] = engine.memo.blockHistory[b];
+      engine.checkpoint.islandHistory[b] = engine.memo.islandHistory[b];
+      if (!hasHistory(step.simulation)) continue;
+      copyBlock(engine.memo.previous, b, engine.checkpoint.previous);
+      copyBlock(engine.memo.previousVelocity, b, engine.checkpoint.previousVelocity);
+    }
+  });
+  overPairs(step, [&](std::size_t first, std::size_t last) {
+    for (const std::int32_t pair : step.pairs.subspan(first, last - first)) {
+      const auto at = static_cast<std::size_t>(pair);
+      if (engine.pairs.touches(at)) engine.contacts.savePoints(engine.pairs.contact[at]);
+    }
+  });
 }
 
 void savePair(Engine& engine, std::size_t at) {
@@ -97,7 +103,7 @@ void restoreFrame(Simulation& simulation) {
   Engine& engine = *simulation.engine;
   for (const std::int32_t block : engine.memo.islands.blocks) rewindBlock(simulation, static_cast<std::size_t>(block));
   for (const std::int32_t at : engine.memo.islandPairs) rewindPair(engine, static_cast<std::size_t>(at));
-  for (NewtonSystem& island : engine.memo.newtonSystems) island.forcesKnown = false;
+  for (NewtonSystem& island : engine.memo.newtonSystems.all()) island.forcesKnown = false;
   engine.report.contacts = engine.checkpoint.reportContacts;
 }
 
@@ -114,24 +120,25 @@ void saveStep(IslandStep& step) {
     engine.checkpoint.stepTravel[b] = engine.memo.blockHistory[b].travel;
   }
   if (step.pointKind == PointKind::penalty) return;
-  for (RigidBody& body : engine.scratch.rigidIslands[static_cast<std::size_t>(step.blocks.front())].bodies) body.before = body;
+  for (RigidBody& body : engine.scratch.rigidIslands.of(step.blocks.front()).bodies) body.before = body;
 }
 
 void restoreStep(IslandStep& step) {
   Engine& engine = step.engine;
   const bool rigid = step.pointKind != PointKind::penalty;
-  for (const std::int32_t block : step.blocks) {
-    const auto b = static_cast<std::size_t>(block);
-    copyBlock(engine.memo.previous, b, step.simulation.state.position);
-    if (rigid) {
-      engine.memo.blockHistory[b].travel = engine.checkpoint.stepTravel[b];
-    } else {
-      copyBlock(engine.memo.previousVelocity, b, step.simulation.state.velocity);
+  overBlocks(step, [&](std::size_t first, std::size_t last) {
+    for (const std::int32_t block : step.blocks.subspan(first, last - first)) {
+      const auto b = static_cast<std::size_t>(block);
+      copyBlock(engine.memo.previous, b, step.simulation.state.position);
+      if (rigid) {
+        engine.memo.blockHistory[b].travel = engine.checkpoint.stepTravel[b];
+      } else {
+        copyBlock(engine.memo.previousVelocity, b, step.simulation.state.velocity);
+      }
     }
-  }
+  });
   if (!rigid) return;
-  for (RigidBody& body : engine.scratch.rigidIslands[static_cast<std::size_t>(step.blocks.front())].bodies)
-    static_cast<RigidPose&>(body) = body.before;
+  for (RigidBody& body : engine.scratch.rigidIslands.of(step.blocks.front()).bodies) static_cast<RigidPose&>(body) = body.before;
 }
 
 }  // namespace springtower

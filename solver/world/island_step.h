@@ -8,6 +8,8 @@
 
 namespace springtower {
 
+class SearchMonitor;  // solver/implicit/search_monitor.h
+
 /// One island during one frame: what a method's step needs, and where it may write. Everything it writes belongs to this island
 /// alone, so islands run in parallel.
 struct IslandStep {
@@ -30,6 +32,8 @@ struct IslandStep {
   int activeListSteps = 0;                   ///< steps for which `activePairs` remains valid
   PointKind pointKind = PointKind::penalty;  ///< what the points of contacts made now store, by the kind of steps
   bool sticks = false;                       ///< points that push stick, where there is friction at all
+  double blur_j = 0.0;                       ///< of ContactStep
+  SearchMonitor* monitor = nullptr;          ///< of the search for the equilibrium, or null
   bool unforced = false;                     ///< neither user forces nor the hand act: the equilibrium before the first frame
 };
 

@@ -78,30 +78,73 @@ void addSupport(const std::vector<Footprint>& footprints, std::size_t p, std::si
   below[pIsLower ? q : p].push_back({pIsLower ? p : q, overlap, lower.upper});
 }
 
+// Extents of the blocks along an axis, m.
+struct Extents {
+  std::vector<double> lower;
+  std::vector<double> upper;
+};
+
+Extents extentsAlong(const std::vector<Footprint>& footprints, Eigen::Index axis) {
+  Extents extents;
+  for (const Footprint& footprint : footprints) {
+    const double reach = footprint.box.reachAlong(Vec3::Unit(axis));
+    extents.lower.push_back(footprint.box.centre[axis] - reach);
+    extents.upper.push_back(footprint.box.centre[axis] + reach);
+  }
+  return extents;
+}
+
+// The highest top among a block's supports, m.
+double highestTop(const std::vector<Support>& supports) {
+  double top = -1e300;
+  for (const Support& support : supports) top = std::max(top, support.top_m);
+  return top;
+}
+
+// Calls visit(p, q) for all pairs of blocks, p the higher one, except that it leaves out blocks too low to be among the supports
+// that count. In a tower all outlines overlap.
+template <class Visit>
+void forEachBelow(const std::vector<Footprint>& footprints, const Supports& below, const Visit& visit) {
+  std::vector<std::size_t> fromTop(footprints.size());
+  std::iota(fromTop.begin(), fromTop.end(), std::size_t{0});
+  std::stable_sort(fromTop.begin(), fromTop.end(),
+                   [&](std::size_t p, std::size_t q) { return footprints[p].upper_m > footprints[q].upper_m; });
+  for (std::size_t i = 0; i < fromTop.size(); ++i) {
+    const std::size_t p = fromTop[i];
+    const double height = footprints[p].upper_m - footprints[p].lower_m;
+    for (std::size_t j = i + 1; j < fromTop.size(); ++j) {
+      if (footprints[fromTop[j]].upper_m < highestTop(below[p]) - 0.5 * height) break;
+      visit(p, fromTop[j]);
+    }
+  }
+}
+
 // The supports of each block: the highest blocks below it within its outline, with tops within half a block of the highest such
 // top.
 Supports supportsOf(const std::vector<Footprint>& footprints) {
   Supports below(footprints.size());
-  const auto axis = std::min<Eigen::Index>(1, widestAxis(footprints.size(), [&](std::size_t b) {
-                                             return Vec3(footprints[b].box.centre.x(), footprints[b].box.centre.y(), 0.0);
-                                           }));
-  std::vector<double> lower;
-  std::vector<double> upper;
-  for (const Footprint& footprint : footprints) {
-    const double reach = footprint.box.reachAlong(Vec3::Unit(axis));
-    lower.push_back(footprint.box.centre[axis] - reach);
-    upper.push_back(footprint.box.centre[axis] + reach);
+  const auto placeOf = [&](std::size_t b) { return footprints[b].box.centre; };
+  const auto levelPlaceOf = [&](std::size_t b) { return Vec3(placeOf(b).x(), placeOf(b).y(), 0.0); };
+  const auto axis = std::min<Eigen::Index>(1, widestAxis(footprints.size(), levelPlaceOf));
+  const Extents along = extentsAlong(footprints, axis);
+  const Extents across = extentsAlong(footprints, 1 - axis);
+  const auto meet = [](const Extents& extents, std::size_t p, std::size_t q) {
+    return extents.lower[p] < extents.upper[q] && extents.lower[q] < extents.upper[p];
+  };
+  const auto visit = [&](std::size_t p, std::size_t q) {
+    if (meet(across, p, q)) addSupport(footprints, p, q, below);
+  };
+  if (widestAxis(footprints.size(), placeOf) == 2) {
+    forEachBelow(footprints, below, [&](std::size_t p, std::size_t q) {
+      if (!meet(along, p, q)) return;
+      const bool isFirst = along.lower[p] != along.lower[q] ? along.lower[p] < along.lower[q] : p < q;
+      isFirst ? visit(p, q) : visit(q, p);  // the order of the sweep, so that rounding is the same either way
+    });
+  } else {
+    forEachOverlap(along.lower, along.upper, 0.0, visit);
   }
-  const Eigen::Index other = 1 - axis;
-  forEachOverlap(lower, upper, 0.0, [&](std::size_t p, std::size_t q) {
-    const Vec3 across = Vec3::Unit(other);
-    const double apart = std::abs(footprints[p].box.centre[other] - footprints[q].box.centre[other]);
-    if (apart >= footprints[p].box.reachAlong(across) + footprints[q].box.reachAlong(across)) return;
-    addSupport(footprints, p, q, below);
-  });
   for (std::size_t b = 0; b < footprints.size(); ++b) {
-    double top = -1e300;
-    for (const Support& support : below[b]) top = std::max(top, support.top_m);
+    const double top = highestTop(below[b]);
     const double height = footprints[b].upper_m - footprints[b].lower_m;
     std::erase_if(below[b], [&](const Support& support) { return support.top_m < top - 0.5 * height; });
     std::sort(below[b].begin(), below[b].end(), [](const Support& s, const Support& t) { return s.block < t.block; });

@@ -7,6 +7,7 @@
 #include "solver/algebra/eigen_llt.h"
 #include "solver/block/affine.h"
 #include "solver/law/tether.h"
+#include "solver/world/by_island.h"
 #include "solver/world/island_history.h"
 #include "solver/world/newton_system.h"
 
@@ -32,6 +33,7 @@ struct Memo {
   SortAndSweep sweep;
   SweptBoxes boxes;                   ///< of awake blocks at the last sweep; of sleeping ones, when they fell asleep
   std::vector<double> travelAtSweep;  ///< m, [blocks]
+  bool prepared = false;              ///< whether the search for the equilibrium before the first frame is over
   bool swept = false;                 ///< whether the order of the sweep has been set up
   std::vector<BlockPair> sweptPairs;
   Islands islands;
@@ -46,12 +48,12 @@ struct Memo {
   ParticleArray previousVelocity;            ///< m/s, at the start of the step; for implicit steps
   ParticleArray carried;                     ///< m/s, mean velocity of the last step of a multi-stage method
   ParticleArray force;                       ///< N, [blocks][8]; where forcesKnown, at the positions now
-  std::vector<BlockFrame> frames;           ///< affine parts of the blocks at the stage being evaluated; of sleepers, as they lie
-  std::vector<AffineField> motion;          ///< and of their velocities
-  std::vector<AffineField> carriedMotion;   ///< and of the velocities that carried them, in the multi-stage methods
-  std::vector<NewtonSystem> newtonSystems;  ///< by the island's smallest block; empty for other methods
-  std::vector<SparseFactors> sparseFactors;  ///< by the island's smallest block; of `implicitEigen` alone
-  GripForce tetherForce;                     ///< the hand's, as last evaluated
+  std::vector<BlockFrame> frames;          ///< affine parts of the blocks at the stage being evaluated; of sleepers, as they lie
+  std::vector<AffineField> motion;         ///< and of their velocities
+  std::vector<AffineField> carriedMotion;  ///< and of the velocities that carried them, in the multi-stage methods
+  ByIsland<NewtonSystem> newtonSystems;    ///< not of rigid methods and the report's
+  ByIsland<SparseFactors> sparseFactors;   ///< of `implicitEigen` alone
+  GripForce tetherForce;                   ///< the hand's, as last evaluated
 };
 
 }  // namespace springtower

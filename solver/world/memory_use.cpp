@@ -46,12 +46,12 @@ std::size_t ofModel(const BlockModel& model) {
 
 std::size_t ofFactors(const Memo& memo) {
   std::size_t sum = 0;
-  for (const NewtonSystem& island : memo.newtonSystems) {
+  for (const NewtonSystem& island : memo.newtonSystems.all()) {
     const BlockCholesky& matrix = island.matrix;
     sum += sumOf(matrix.position, matrix.node, matrix.columnStart, matrix.row, matrix.targetStart, matrix.target, matrix.diagonal,
                  matrix.lower);
   }
-  for (const SparseFactors& sparse : memo.sparseFactors) sum += bytesOf(sparse);
+  for (const SparseFactors& sparse : memo.sparseFactors.all()) sum += bytesOf(sparse);
   return sum;
 }
 
@@ -79,7 +79,7 @@ std::size_t ofMemo(const Memo& memo) {
   for (std::size_t a = 0; a < 3; ++a) sum += sumOf(memo.boxes.lower[a], memo.boxes.upper[a]);
   sum += sumOf(memo.islands.blocks, memo.islands.start, memo.islands.islandOf, memo.islands.edges, memo.islands.asleep,
                memo.islands.parent);
-  for (const NewtonSystem& island : memo.newtonSystems) sum += ofNewton(island);
+  for (const NewtonSystem& island : memo.newtonSystems.all()) sum += ofNewton(island);
   return sum;
 }
 
@@ -92,7 +92,7 @@ std::size_t ofScratch(const Scratch& s) {
             s.chunkTimes, s.islandCounters, s.islandTimes, s.islandOutcome);
   for (const MotionState& stage : s.stage) sum += bytesOf(stage);
   for (const ParticleArray& acceleration : s.stageAcceleration) sum += bytesOf(acceleration);
-  for (const RigidIsland& island : s.rigidIslands) {
+  for (const RigidIsland& island : s.rigidIslands.all()) {
     const LcpWorkspace& lcp = island.pivoting;
     sum += sizeof(RigidIsland) + sumOf(island.bodies, island.contacts, island.movers, island.points, island.known, lcp.matrix,
                                        lcp.inverse, lcp.impulse, lcp.velocity, lcp.least, lcp.most, lcp.impulseChange,

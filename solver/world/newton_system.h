@@ -49,6 +49,7 @@ struct NewtonWork {
   std::vector<ModeVectors> direction;      ///< m, the last Newton direction, in the world's frame, by node
   std::vector<double> affine;              ///< right-hand sides and solutions, [nodes][12]
   AlignedVector<ContactTangent> tangents;  ///< differences to the contacts in the factors; may be empty
+  std::vector<std::size_t> tangentStart;   ///< of each touching pair, where tangents are found on many threads
   std::vector<std::int32_t> coupled;       ///< of `solveCoupled`: nodes that the tangents act on
   std::vector<std::int32_t> coupledIndex;  ///< index of each node among them
   std::vector<double> coupledMotion;       ///< m, [coupled][12]
@@ -80,6 +81,8 @@ struct NewtonSystem : NewtonWork {
   BlockCholesky matrix;
   std::vector<std::int32_t> touching;                      ///< touching pairs, as positions in engine.pairs
   std::vector<BlockSlot> slot;                             ///< of each of these; at = -1 where one side is the floor or asleep
+  std::vector<std::int32_t> taskPairs;                     ///< of a wide island: indices into `touching`, by task, the top last
+  std::vector<std::int32_t> taskPairStart;                 ///< of task t: taskPairs[taskPairStart[t]] .. taskPairStart[t + 1]
   std::vector<ActiveSetBits> mask;                         ///< active set of each of these in the factors
   std::vector<std::array<std::array<double, 3>, 3>> axes;  ///< frames of the blocks at assembly, [node][axis][component]
   std::vector<BlockClass> blockClasses;                    ///< of the island's blocks; may include classes that have left it
@@ -91,6 +94,19 @@ struct NewtonSystem : NewtonWork {
   std::size_t orderProducts = 0;                 ///< products of a factorisation at that time
   std::vector<BlockPair> edges;                  ///< nodes that touching pairs couple, as last laid out
 };
+
+/// Makes the system of an island that is gone one of an island to come.
+inline void reset(NewtonSystem& island) {
+  island.pattern = 0;
+  island.members = 0;
+  island.exceedsFill = false;
+  island.factorised = false;
+  island.forcesKnown = false;
+  island.step_s = 0.0;
+  island.jacobianStep_s = 0.0;
+  island.blockClassOf.clear();
+  island.directions = 0;
+}
 
 /// The active set of a manifold of `count` points that all push and stick.
 inline ActiveSetBits allPush(std::size_t count) {

@@ -33,11 +33,11 @@ void poisonScratch(Engine& engine) {
             s.support.open, s.support.groups, s.support.beneath, s.support.supports, s.touchingEdges, s.restless, s.parent,
             s.touched, s.joined, s.chunkCounters, s.chunkTimes, s.islandCounters, s.islandTimes, s.islandOutcome);
   for (MotionState& stage : s.stage) poisonAll(stage.position, stage.velocity);
-  for (NewtonSystem& work : engine.memo.newtonSystems)
+  for (NewtonSystem& work : engine.memo.newtonSystems.all())
     poisonAll(work.residual, work.direction, work.affine, work.tangents, work.coupled, work.coupledIndex, work.coupledMotion,
               work.coupledForce, work.correction);
   engine.contacts.poisonStartRows();
-  for (RigidIsland& island : s.rigidIslands) {
+  for (RigidIsland& island : s.rigidIslands.all()) {
     LcpWorkspace& lcp = island.pivoting;
     poisonAll(island.bodies, island.contacts, island.movers, island.points, island.known, lcp.matrix, lcp.inverse, lcp.impulse,
               lcp.velocity, lcp.least, lcp.most, lcp.impulseChange, lcp.velocityChange, lcp.column, lcp.clamped, lcp.placeOf);

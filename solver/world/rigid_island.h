@@ -110,4 +110,7 @@ struct RigidIsland {
   LcpWorkspace pivoting;
 };
 
+/// Nothing of it outlives a step.
+inline void reset(RigidIsland& /*island*/) {}
+
 }  // namespace springtower

@@ -4,6 +4,7 @@
 #include "core/ids.h"
 #include "core/state.h"
 #include "solver/block/affine.h"
+#include "solver/world/by_island.h"
 #include "solver/world/rigid_island.h"
 #include "solver/world/sleep_state.h"
 #include "solver/world/support_point.h"
@@ -71,7 +72,7 @@ struct Scratch {
   ParticleArray pastPosition;                      ///< m, contribution of past steps to the position at an implicit step's end
   ParticleArray stepVelocity;                      ///< m/s, mean over the implicit step
   ParticleArray freePosition;                      ///< m, position at the end of the implicit step without forces
-  std::vector<RigidIsland> rigidIslands;  ///< by the island's smallest block; of rigid methods, and of islands in rigid mode
+  ByIsland<RigidIsland> rigidIslands;              ///< of rigid methods, and of those that may change to rigid steps
 
   // Sleep.
   std::vector<std::int32_t>

@@ -45,7 +45,8 @@ struct Simulation {
 };
 
 /// Advances a scene by one frame (settings.frame_s). Bitwise the same for any number of threads. Throws DivergenceError in the
-/// step in which a position stops being finite or a block turns inside out.
+/// step in which a position stops being finite or a block turns inside out, and InputError before `prepare`
+/// (solver/frame/prepare.h).
 void stepFrame(Simulation& simulation);
 
 /// Adds to the velocity of a block (m/s), as an instantaneous impact would, and wakes it. Methods with a history drop it for this

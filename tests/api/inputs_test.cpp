@@ -43,6 +43,7 @@ double halfAStep(const World& world, double force_n) {
 
 TEST(ApiInputs, ForcesGiveTheirMomentum) {
   World world(blockInSpace());
+  world.prepare();
   applyForce(world, {0, -1, {0.1, 0.0, 0.0}, 0.0, 0.25});
   applyForce(world, {0, -1, {0.0, 0.2, 0.0}, 0.1, 0.2});
   ASSERT_EQ(world.step(30), std::nullopt);
@@ -56,6 +57,7 @@ TEST(ApiInputs, ForcesGiveTheirMomentum) {
 
 TEST(ApiInputs, AForceAtACornerTurnsTheBlock) {
   World world(blockInSpace());
+  world.prepare();
   applyForce(world, {0, 1, {0.0, 0.0, 1e-4}, 0.0, 0.1});  // corner 1: +x, -y, -z
   ASSERT_EQ(world.step(6), std::nullopt);
   const Velocity velocity = world.velocity(0);
@@ -69,6 +71,7 @@ TEST(ApiInputs, AForceAtACornerTurnsTheBlock) {
 
 TEST(ApiInputs, PushesPassWithTheirFrame) {
   World world(blockInSpace());
+  world.prepare();
   for (int frame = 0; frame < 5; ++frame) {
     pushThroughFrame(world, 0, {0.1, 0.0, 0.0});
     pushThroughFrame(world, 0, {0.1, 0.0, 0.2});
@@ -85,6 +88,7 @@ TEST(ApiInputs, PushesPassWithTheirFrame) {
 
 TEST(ApiInputs, GravityIsWhatWasSet) {
   World world(blockInSpace());
+  world.prepare();
   const Gravity given{4.0, 90.0, 90.0, 0.0, 0.0};
   setGravity(world, given);
   EXPECT_EQ(gravity(world), given);
@@ -97,6 +101,7 @@ TEST(ApiInputs, GravityIsWhatWasSet) {
 
 TEST(ApiInputs, AKickAddsItsVelocityAtOnceAndWakes) {
   World world(blockOnTheFloor());
+  world.prepare();
   ASSERT_EQ(world.step(180), std::nullopt);
   ASSERT_TRUE(isAsleep(world, 0));
   const Vec3 before = world.velocity(0).linear_m_s;
@@ -110,6 +115,7 @@ TEST(ApiInputs, AKickAddsItsVelocityAtOnceAndWakes) {
 
 TEST(ApiInputs, SleepMayBeTurnedOffAndOn) {
   World world(blockOnTheFloor());
+  world.prepare();
   ASSERT_EQ(world.step(180), std::nullopt);
   ASSERT_TRUE(allAsleep(world));
   setSleep(world, Sleep::off);
@@ -126,6 +132,7 @@ TEST(ApiInputs, FrictionDecidesWhetherABlockSlides) {
   Scene scene = blockOnTheFloor();
   scene.gravity.tilt_deg = 10.0;
   World world(scene);
+  world.prepare();
   ASSERT_EQ(world.step(60), std::nullopt);
   EXPECT_NEAR(world.velocity(0).linear_m_s.x, 0.0, 1e-6);
   setFriction(world, 0.1, 0.1);
@@ -137,6 +144,7 @@ TEST(ApiInputs, FrictionDecidesWhetherABlockSlides) {
 
 TEST(Hand, LiftsABlockHoldsItsWeightAndTurnsIt) {
   World world(blockOnTheFloor());
+  world.prepare();
   ASSERT_EQ(world.step(10), std::nullopt);
   EXPECT_EQ(handState(world).block, kFloor);
   grab(world, 0);
@@ -163,6 +171,7 @@ TEST(Hand, LiftsABlockHoldsItsWeightAndTurnsIt) {
 // It is as strong as its limit and no stronger: 0.1 N do not lift a block of 0.19 N.
 TEST(Hand, IsNoStrongerThanItsLimit) {
   World world(blockOnTheFloor());
+  world.prepare();
   ASSERT_EQ(world.step(10), std::nullopt);
   const double start_m = world.pose(0).centre.z;
   grab(world, 0, 0.1);
@@ -176,6 +185,7 @@ TEST(Hand, IsNoStrongerThanItsLimit) {
 
 TEST(Hand, PullsAlongALineAndIsLedOnFromThere) {
   World world(blockOnTheFloor());
+  world.prepare();
   ASSERT_EQ(world.step(10), std::nullopt);
   pull(world, 0, {0.0, 3.0, 0.0}, 0.1);
   ASSERT_EQ(world.step(60), std::nullopt);
@@ -258,6 +268,7 @@ std::vector<Refusal> refusedHands(World& world) {
 
 TEST(ApiInputs, RefusesWhatIsNotAllowedAndChangesNothing) {
   World world(blockOnTheFloor());
+  world.prepare();
   const std::uint64_t hash = world.stateHash();
   for (const Refusal& one : refusedInputs(world)) EXPECT_THAT(one.call, ThrowsMessage<InputError>(HasSubstr(one.message)));
   for (const Refusal& one : refusedHands(world)) EXPECT_THAT(one.call, ThrowsMessage<InputError>(HasSubstr(one.message)));
@@ -268,6 +279,7 @@ TEST(ApiInputs, RefusesWhatIsNotAllowedAndChangesNothing) {
   release(world);
   EXPECT_EQ(world.stateHash(), hash);
   World untouched(blockOnTheFloor());
+  untouched.prepare();
   ASSERT_EQ(world.step(10), std::nullopt);
   ASSERT_EQ(untouched.step(10), std::nullopt);
   EXPECT_EQ(world.stateHash(), untouched.stateHash());
@@ -277,6 +289,7 @@ TEST(ApiInputs, OfASceneInThePlaneStayInIt) {
   Scene scene = blockOnTheFloor();
   scene.plane = true;
   World world(scene);
+  world.prepare();
   const auto outside = ThrowsMessage<InputError>(HasSubstr("for a motion in the plane y = 0"));
   EXPECT_THAT([&] { applyForce(world, {0, -1, {0.0, 1.0, 0.0}, 0.0, 1.0}); }, outside);
   EXPECT_THAT([&] { pushThroughFrame(world, 0, {0.0, 1.0, 0.0}); }, outside);

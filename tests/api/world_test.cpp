@@ -2,6 +2,7 @@
 #include "api/convert.h"
 #include "solver/world/simulation.h"
 #include "tests/support/allocations.h"
+#include "tests/support/prepare_and_step.h"
 
 #include <cmath>
 #include <gmock/gmock.h>
@@ -54,10 +55,11 @@ TEST(World, TakesTheStepsOfTheEngine) {
   Scene scene = towerScene(4, {.heightsSigma_m = 0.0002, .seed = 3});
   scene.forces.push_back({7, -1, {0.4, 0.1, 0.0}, 0.1, 0.3});
   World world(scene);
+  world.prepare();
   springtower::Simulation simulation(toEngine(scene));
   for (int frame = 0; frame < 40; ++frame) {
     ASSERT_EQ(world.step(), std::nullopt);
-    stepFrame(simulation);
+    prepareAndStep(simulation);
     ASSERT_EQ(world.stateHash(), springtower::stateHash(simulation)) << "frame " << frame;
   }
   EXPECT_EQ(world.frame(), 40U);
@@ -76,6 +78,7 @@ TEST(World, ABlockThatFliesFollowsItsParabola) {
   scene.blocks[0].velocity = {1.0, -0.5, 2.0};
   scene.blocks[0].spin = {0.0, 0.0, 2.0};
   World world(scene);
+  world.prepare();
   const Pose start = world.pose(0);
   EXPECT_NEAR(start.centre.z, 1.0, 1e-15);
   EXPECT_NEAR(start.orientation.w, std::cos(0.3), 1e-12);
@@ -94,6 +97,7 @@ TEST(World, ABlockThatFliesFollowsItsParabola) {
 
 TEST(World, CornersAreNumberedByTheSidesTheyLieOn) {
   World world(flyingBlock());
+  world.prepare();
   const auto corners = world.corners(0);
   for (std::size_t c = 0; c < corners.size(); ++c) {
     EXPECT_NEAR(corners[c].x, (c & 1U) != 0 ? 0.0405 : -0.0405, 1e-15);
@@ -106,6 +110,7 @@ TEST(World, CornersAreNumberedByTheSidesTheyLieOn) {
 
 TEST(World, AllPosesAtOnceAreThoseOfEachBlock) {
   World world(towerScene(2));
+  world.prepare();
   ASSERT_EQ(world.step(5), std::nullopt);
   std::vector<Pose> poses(6);
   world.poses(poses);
@@ -121,6 +126,7 @@ TEST(World, AllPosesAtOnceAreThoseOfEachBlock) {
 TEST(Snapshots, BringInputsAndHandBack) {
   const Scene scene = towerScene(4);
   World world(scene);
+  world.prepare();
   ASSERT_EQ(world.step(20), std::nullopt);
   pull(world, 4, {0.0, 1.0, 0.0}, 0.1);
   ASSERT_EQ(world.step(10), std::nullopt);
@@ -147,6 +153,7 @@ TEST(Snapshots, BringInputsAndHandBack) {
   renamed.name = "the same by another name";
   renamed.seconds = 3.0;
   World other(renamed);
+  other.prepare();
   other.restore(snapshot);
   ASSERT_EQ(other.step(20), std::nullopt);
   EXPECT_EQ(other.stateHash(), hash);
@@ -168,7 +175,9 @@ TEST(Snapshots, OfAnotherSceneAndEmptyOnesAreRefused) {
 
 TEST(World, ASimulationThatFailsIsAValue) {
   World world(divergingScene());
+  world.prepare();
   const Snapshot start = world.snapshot();
+  const std::uint64_t hash = world.stateHash();
   const int frames = framesToFailure(world, 600);
   ASSERT_LT(frames, 600);
   const std::optional<Divergence> failed = world.divergence();
@@ -186,14 +195,43 @@ TEST(World, ASimulationThatFailsIsAValue) {
 
   world.restore(start);
   EXPECT_EQ(world.divergence(), std::nullopt);
-  EXPECT_EQ(world.stateHash(), World(divergingScene()).stateHash());
+  EXPECT_EQ(world.stateHash(), hash);
   EXPECT_EQ(framesToFailure(world, 600), frames);
   ASSERT_TRUE(world.divergence().has_value());
   EXPECT_EQ(world.divergence()->time_s, failed->time_s);
 }
 
+TEST(World, IsPreparedOnceBeforeItsFirstStep) {
+  World world(towerScene(6));
+  EXPECT_THAT([&] { static_cast<void>(world.step()); }, ThrowsMessage<InputError>(HasSubstr("step: found a world that is not")));
+  EXPECT_THAT([&] { static_cast<void>(world.prepare({.budget_s = -1.0})); },
+              ThrowsMessage<InputError>(HasSubstr("found a budget of -1")));
+  int calls = 0;
+  const Preparation done = world.prepare({.goesOn = [&](const PrepareProgress& now) {
+    ++calls;
+    EXPECT_EQ(now.blocks, 18);
+    return true;
+  }});
+  EXPECT_GE(calls, 1);
+  EXPECT_EQ(done.end, Preparation::End::complete);
+  EXPECT_EQ(done.blocksInBalance, 18);
+  EXPECT_THAT([&] { static_cast<void>(world.prepare()); },
+              ThrowsMessage<InputError>(HasSubstr("found a world that is prepared")));
+  EXPECT_EQ(world.step(60), std::nullopt);
+}
+
+TEST(World, WithoutTimeItStartsAsPlaced) {
+  World world(towerScene(6));
+  const Pose placed = world.pose(17);
+  const Preparation done = world.prepare({.budget_s = 0.0});
+  EXPECT_EQ(done.end, Preparation::End::outOfTime);
+  EXPECT_EQ(done.blocksInBalance, 0);
+  EXPECT_EQ(world.pose(17).centre, placed.centre);
+}
+
 TEST(World, RefusesBlocksThatAreNotThere) {
   World world(towerScene(1));
+  world.prepare();
   for (const int block : {-1, 3, std::numeric_limits<int>::max(), std::numeric_limits<int>::min()}) {
     const auto message = ThrowsMessage<InputError>(HasSubstr("found " + std::to_string(block) + ", allowed 0 to 2"));
     EXPECT_THAT([&] { static_cast<void>(world.pose(block)); }, message);
@@ -229,6 +267,7 @@ TEST(World, RefusesScenesThatAreNotAllowed) {
 
 TEST(World, MayBeMovedAndIsEmptyThen) {
   World world(towerScene(1));
+  world.prepare();
   const std::uint64_t hash = world.stateHash();
   World other = std::move(world);
   EXPECT_EQ(other.stateHash(), hash);
@@ -250,6 +289,7 @@ TEST(World, ManyRunSideBySide) {
     Scene scene = towerScene(5, {.heightsSigma_m = 0.0002, .seed = static_cast<std::uint64_t>(tower)});
     scene.gravity.tilt_deg = 14.0;
     World world(scene);
+    world.prepare();
     return world.step(40) ? 0 : world.stateHash();
   };
   constexpr int kWorlds = 4;
@@ -290,6 +330,7 @@ TEST(ThreadLimit, RefusesNumbersThatAreNone) {
 TEST(World, AllocatesNothingInFramesThatAreOrdinary) {
   const ThreadLimit oneThread(1);
   World world(towerScene(6));
+  world.prepare();
   ASSERT_EQ(world.step(2), std::nullopt);
   const Snapshot snapshot = world.snapshot();
   ASSERT_EQ(world.step(30), std::nullopt);

@@ -49,6 +49,7 @@ bool refusesABlockThatIsNotThere(const st::World& world) {
 int main() {
   const st::Scene scene = st::towerScene(kRows);
   st::World world(scene);
+  world.prepare();
   bool good = require(stands(world, scene), "it stands");
 
   const st::Snapshot before = world.snapshot();

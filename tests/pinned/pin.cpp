@@ -1,6 +1,7 @@
 #include "tests/pinned/pin.h"
 
 #include "solver/world/poison.h"
+#include "tests/support/prepare_and_step.h"
 
 #include <algorithm>
 #include <oneapi/tbb/global_control.h>
@@ -22,7 +23,7 @@ Pin pinOf(const PinnedScene& scene, int threads, bool poisoned) {
     for (int frame = 1; frame <= scene.frames; ++frame) {
       if (lead) lead(simulation);
       if (poisoned) poisonScratch(*simulation.engine);
-      stepFrame(simulation);
+      prepareAndStep(simulation);
       if (frame % kFramesAPin == 0 || frame == scene.frames) pin.hashes.push_back(stateHash(simulation));
     }
     pin.counters = simulation.counters;

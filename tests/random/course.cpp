@@ -3,6 +3,7 @@
 #include "core/error.h"
 #include "core/processor_time.h"
 #include "solver/hand/moves.h"
+#include "tests/support/prepare_and_step.h"
 
 #include <algorithm>
 #include <cmath>
@@ -69,7 +70,7 @@ void play(const Scene& scene, double limit_s, const CourseWatch& watch, Course& 
       if (moves->finished) break;
     }
     if (watch.beforeFrame) watch.beforeFrame(simulation);
-    timed(course.processor_s, [&] { stepFrame(simulation); });
+    timed(course.processor_s, [&] { prepareAndStep(simulation); });
     ++course.frames;
     course.simulated_s = simulation.time_s;
     course.mostSubsteps = std::max(course.mostSubsteps, simulation.substeps);

@@ -72,7 +72,7 @@ TEST(ScenarioName, MayHaveASize) {
   EXPECT_EQ(sceneNamed("towers:3").blocks.size(), 3U * 54U);
   EXPECT_EQ(usageOf(*findScenario("wall")), "wall:COLUMNSxCOURSES");
   EXPECT_EQ(usageOf(*findScenario("thrown")), "thrown");
-  EXPECT_EQ(allowedSizes(*findScenario("wall")), "1 to 900 columns, 1 to 100 courses");
+  EXPECT_EQ(allowedSizes(*findScenario("wall")), "1 to 4000 columns, 1 to 100 courses");
 }
 
 // Bricks lie across their pyramid, half a pitch aside from row to row: each on two of the row below, which touch it with a gap
@@ -111,7 +111,7 @@ TEST(ScenarioName, ThatIsUnknownSaysAllThatIsAllowed) {
 TEST(ScenarioName, OfAWrongSizeSaysWhichAreAllowed) {
   for (const std::string size : {"", "20", "20x", "x12", "20x12x2", "20 x 12", "a", "0x12", "20x101", "99999999999x1", "-1x2"}) {
     EXPECT_THAT([&] { sceneNamed("wall:" + size); }, ThrowsMessage<InputError>("wall:COLUMNSxCOURSES: found the size '" + size +
-                                                                               "', allowed 1 to 900 columns, 1 to 100 courses"));
+                                                                               "', allowed 1 to 4000 columns, 1 to 100 courses"));
   }
   EXPECT_THAT([] { sceneNamed("thrown:2"); }, ThrowsMessage<InputError>("thrown: found the size '2', allowed is the name alone"));
   EXPECT_THAT([] { sceneNamed("tower:ten"); },

@@ -3,6 +3,7 @@
 #include "core/scene/scene.h"
 #include "scenarios/loose.h"
 #include "solver/world/simulation.h"
+#include "tests/support/prepare_and_step.h"
 
 #include <cmath>
 #include <numbers>
@@ -61,7 +62,7 @@ Momentum momentum(const Simulation& simulation);
 /// Steps a scene for a time, which is rounded to whole frames.
 inline void stepFor(Simulation& simulation, double seconds) {
   const long frames = std::lround(seconds / simulation.scene.settings.frame_s);
-  for (long frame = 0; frame < frames; ++frame) stepFrame(simulation);
+  for (long frame = 0; frame < frames; ++frame) prepareAndStep(simulation);
 }
 
 constexpr double degrees(double radians) {

@@ -4,6 +4,7 @@
 #include "core/error.h"
 #include "core/processor_time.h"
 #include "core/scene/scene.h"
+#include "solver/frame/prepare.h"
 #include "solver/metrics/measures.h"
 #include "solver/metrics/penetration.h"
 #include "solver/world/engine.h"
@@ -78,6 +79,7 @@ MapPoint tried(Method method, int rows, double tolerance_m, int steps, const Map
   ParticleArray settled;
   double squares = 0.0;
   try {
+    prepare(simulation);
     for (long frame = 0; frame < frames; ++frame) {
       endIfInterrupted();
       stepFrame(simulation);

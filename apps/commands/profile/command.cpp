@@ -47,7 +47,7 @@ A run with --out that was broken off goes on where it was.
 scenes: rest (settled, awake), sway (gravity sways by 0.1 degree), heights (varying by 0.2 mm), pull (a block at 4 cm/s, all
 awake), pull-sleep (the same with sleep), collapse (gravity tilted by 14.5 degrees), asleep, towers (many of 18 rows, awake),
 pile (a connected stack of 108 blocks a row, dropped from 10 cm: its first frames on the floor), walls (running bond, half
-blocks at the ends), pyramids (cubes of 20 mm; bricks laid across); of both: the first frame, depth, creep, what is required of
+blocks at the ends), pyramids (cubes of 20 mm; bricks laid across); of both: the search for the equilibrium, depth, creep, what is required of
 some, Bullet with the steps that come nearest in depth, and the growth of cost with blocks; on one thread and two; some 2 minutes
 
 examples:
@@ -334,8 +334,8 @@ CLI::App* defineProfile(CLI::App& program, ProfileCommand& command) {
             "wall time after which a sample ends, with fewer frames (default 1)");
   addNumber(*profile, "--peer-limit", command.peer_s, kLimitRange, "S",
             "processor time that Bullet may take for a wall or pyramid, where its program is (default 4; 0: it is left out)");
-  CLI::Option* full = profile->add_flag("--full", command.full,
-                                        "with the largest walls and pyramids (99,987 blocks), and more time for Bullet; minutes");
+  CLI::Option* full = profile->add_flag(
+      "--full", command.full, "with the largest walls and pyramids (100,012 blocks), and more time for Bullet; minutes");
   profile->add_flag("--quick", command.quick, "fewer cases, shorter samples: seconds instead of minutes")->excludes(full);
   CLI::Option* noResume = profile->add_flag("--no-resume", command.noResume,
                                             "times everything again, also what a run that was broken off has left in the folder");

@@ -32,7 +32,7 @@ std::string sizeWithUnit(const ProfileCase& what) {
 
 void addStack(const ProfileResult& result, Json& json) {
   json["stack"] = result.what.stack;
-  json["first_frame_s"] = result.firstFrame_s;
+  json["equilibrium_s"] = result.equilibrium_s;
   json["creep_mm_per_minute"] = result.creepPerMinute_mm;
   json["peers"] = Json::array();
   for (const PeerFigures& peer : result.peers) {
@@ -47,7 +47,7 @@ void addStack(const ProfileResult& result, Json& json) {
 
 void readStack(const Json& json, ProfileResult& result) {
   result.what.stack = stackFrom(json.at("stack").get<std::string>());
-  json.at("first_frame_s").get_to(result.firstFrame_s);
+  json.at("equilibrium_s").get_to(result.equilibrium_s);
   json.at("creep_mm_per_minute").get_to(result.creepPerMinute_mm);
   for (const Json& one : json.at("peers")) {
     PeerFigures peer;

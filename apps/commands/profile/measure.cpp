@@ -164,7 +164,7 @@ void describePrepared(PreparedScene& scene, ProfileResult& result) {
                                                    bottomRow(scene.simulation.model, fresh.state.position, row));
   result.stiffness_n_m = largestStiffness(scene.simulation.stiffness);
   result.prepared_s = scene.simulation.time_s;
-  result.firstFrame_s = scene.firstFrame_s;
+  result.equilibrium_s = scene.equilibrium_s;
 }
 
 void finish(Measured& measured) {

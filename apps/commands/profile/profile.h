@@ -129,10 +129,10 @@ struct ProfileResult {
   double pairBytes = 0.0;                              ///< a near pair, touching or not
   double touchingBytes = 0.0;                          ///< that a touching pair adds
   double touchingStepBytes = 0.0;                      ///< and for steps and rollbacks
-  double firstFrame_s = 0.0;                           ///< processor time of the very first frame; of stacks alone, as are
-  double creepPerMinute_mm = 0.0;                      ///< the largest move of a corner while measured, mm a minute, and
-  std::vector<PeerFigures> peers;                      ///< other engines; of the first case of those with one preparation
-  std::vector<double> frame_ms;                        ///< `cost` of each frame, least over the samples
+  double equilibrium_s = 0.0;      ///< processor time of the search for the equilibrium; of stacks alone, as are
+  double creepPerMinute_mm = 0.0;  ///< the largest move of a corner while measured, mm a minute, and
+  std::vector<PeerFigures> peers;  ///< other engines; of the first case of those with one preparation
+  std::vector<double> frame_ms;    ///< `cost` of each frame, least over the samples
 
   /// What a frame costs, for charts: processor time on one thread, which other programs disturb least; wall time on more.
   [[nodiscard]] const FrameCost& cost() const { return what.threads == 1 ? processor_ms : wall_ms; }

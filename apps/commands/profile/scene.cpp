@@ -6,6 +6,7 @@
 #include "core/processor_time.h"
 #include "scenarios/towers.h"
 #include "scenarios/walls.h"
+#include "solver/frame/prepare.h"
 
 #include <chrono>
 #include <cstddef>
@@ -106,6 +107,7 @@ Scene blocksOf(const ProfileCase& what) {
 }  // namespace
 
 void PreparedScene::step() {
+  prepare(simulation);
   const BlockId held = hand.hand.block;
   if (held != kFloor) advancePull(hand, contactForcesOn(simulation, held), simulation);
   stepFrame(simulation);
@@ -128,15 +130,14 @@ std::unique_ptr<PreparedScene> prepareScene(const ProfileCase& what, const Profi
   if (what.scene == ProfileScene::pile) scene->leftOut.assign(scene->simulation.scene.blocks.size(), 1);
   try {
     if (isStack(what.scene)) {
-      const double begin_s = processorTime_s();
-      scene->step();  // it looks for the equilibrium that the stack starts from, which may take longer than all else
-      scene->firstFrame_s = processorTime_s() - begin_s;
+      scene->equilibrium_s = prepare(scene->simulation).processor_s;  // it may take longer than all else
     }
     const Deadline deadline(limits.prepare_s);
     if (what.scene == ProfileScene::asleep) {
       fallAsleep(*scene, deadline);
     } else if (what.scene == ProfileScene::collapse) {
-      scene->step();  // it looks for the equilibrium that the tower starts from: that is loading
+      prepare(scene->simulation);
+      scene->step();
     } else if (what.scene != ProfileScene::pile) {
       settle(*scene, limits.settle_s, deadline);
     }

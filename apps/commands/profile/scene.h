@@ -24,7 +24,7 @@ struct PreparedScene {
   std::shared_ptr<const Snapshot> snapshot;
   Draw handKept;                      ///< the hand of the snapshot
   std::vector<std::uint8_t> leftOut;  ///< 1 for blocks that need not stand: the pulled one, a pile's; [blocks] or empty
-  double firstFrame_s = 0.0;          ///< processor time of a stack's first frame, in which the equilibrium is sought, s
+  double equilibrium_s = 0.0;         ///< processor time of the search for a stack's equilibrium, s
   std::string failure;                ///< why the scene does not come to what is to be timed; empty when it does
 
   /// Back to the kept state.

@@ -91,8 +91,7 @@ std::vector<std::string> stacksOf(ProfileScene scene, StackChoice choice) {
   }
   std::vector<std::string> stacks = {"wall:20x12", "wall:40x25", "wall:80x25", "wall:200x25"};
   if (!walls) stacks = {"cubes:22", "cubes:40", "cubes:100", "bricks:22", "bricks:40", "bricks:60"};
-  // The largest wall that a scene may hold (kMaxBlocks): with 4000 columns it has 100,012 blocks.
-  if (choice == StackChoice::full) stacks.emplace_back(walls ? "wall:3999x25" : "bricks:100");
+  if (choice == StackChoice::full) stacks.emplace_back(walls ? "wall:4000x25" : "bricks:100");
   return stacks;
 }
 

@@ -36,7 +36,7 @@ struct StackGoal {
   std::string_view stack;
   std::array<double, 2> required_ms;
   std::array<double, 2> goal_ms;
-  double firstFrame_s;  ///< that the first frame may take, s
+  double equilibrium_s;  ///< that the search for the equilibrium may take, s
 };
 std::span<const StackGoal> stackGoals();
 
@@ -74,8 +74,9 @@ std::vector<StackGrowth> stackGrowth(const Profile& profile);
 /// which it stands, if there are any. Null where none were measured.
 const PeerFigures* nearestInAccuracy(const ProfileResult& result);
 
-/// A table of the stacks of a profile, a line each: ms a frame on each number of threads, depth, creep, first frame, what is
-/// required, whether it is met, and the other engine beside; below it the growth of each family. Nothing when there are none.
+/// A table of the stacks of a profile, a line each: ms a frame on each number of threads, depth, creep, the search for the
+/// equilibrium, what is required, whether it is met, and the other engine beside; below it the growth of each family. Nothing
+/// when there are none.
 void printStacks(const Profile& profile);
 
 /// The same as CSV, a line for each stack and number of threads, and a line for each setting of the other engine.

@@ -85,7 +85,7 @@ std::string verdictOf(const StackRow& row) {
   const StackGoal* const goal = goalOf(result.what.stack);
   if (goal == nullptr) return misses.empty() ? "meets" : "misses: " + misses;
   judgeTimes(row, goal->required_ms, misses);
-  if (result.firstFrame_s > goal->firstFrame_s) add(misses, "first frame");
+  if (result.equilibrium_s > goal->equilibrium_s) add(misses, "equilibrium");
   if (!misses.empty()) return "misses: " + misses;
   std::string beyond;
   const bool judged = judgeTimes(row, goal->goal_ms, beyond);
@@ -109,8 +109,8 @@ std::string requiredText(const StackRow& row) {
 
 std::string firstText(const StackRow& row) {
   const StackGoal* const goal = goalOf(row.first().what.stack);
-  const std::string measured = fmt::format("{:.2g}", row.first().firstFrame_s);
-  return goal == nullptr || std::isnan(goal->firstFrame_s) ? measured : fmt::format("{} ({:g})", measured, goal->firstFrame_s);
+  const std::string measured = fmt::format("{:.2g}", row.first().equilibrium_s);
+  return goal == nullptr || std::isnan(goal->equilibrium_s) ? measured : fmt::format("{} ({:g})", measured, goal->equilibrium_s);
 }
 
 std::string peerText(const ProfileResult& result) {
@@ -158,12 +158,12 @@ void printStacks(const Profile& profile) {
   fmt::print(
       "\nwalls and pyramids, at rest and awake: ms a frame (wall time, its 99th percentile, processor time of all threads; of "
       "each frame\nthe least of the samples), required and in brackets the goal, judged by processor time on one thread and by "
-      "wall time on more;\ndepth mm (at most the tolerance), creep mm a minute (at most {:g}), first frame s of processor time "
+      "wall time on more;\ndepth mm (at most the tolerance), creep mm a minute (at most {:g}), equilibrium: s of processor time "
       "(what is allowed);\nBullet: steps a frame nearest in depth, processor time, depth, and for how long it was looked at\n",
       kMaxStackCreepPerMinute_mm);
   fmt::print("{:<14}{:>7}", "stack", "blocks");
   for (const int count : threads) fmt::print("  {:>8}{:>8}{:>8}", fmt::format("{} thr.", count), "p99", "cpu");
-  fmt::print("  {:>16}{:>10}{:>9}  {:>11}  {:<20}  {}\n", "required (goal)", "depth", "creep", "first", "verdict", "Bullet");
+  fmt::print("  {:>16}{:>10}{:>9}  {:>11}  {:<20}  {}\n", "required (goal)", "depth", "creep", "prepare", "verdict", "Bullet");
   for (const StackRow& row : rows) printRow(row, threads);
   printGrowth(profile);
 }
@@ -171,7 +171,7 @@ void printStacks(const Profile& profile) {
 void writeStacksCsv(std::ostream& stream, const Profile& profile) {
   const Provenance& from = profile.provenance;
   stream << "engine,stack,blocks,method,tolerance_m,threads,substeps,wall_ms_median,wall_ms_p99,cpu_ms_median,cpu_ms_p99,"
-            "penetration_mm,creep_mm_per_minute,first_frame_s,simulated_s,stands,required_ms,goal_ms,first_frame_allowed_s,"
+            "penetration_mm,creep_mm_per_minute,equilibrium_s,simulated_s,stands,required_ms,goal_ms,first_frame_allowed_s,"
             "verdict,commit,compiler,flags,cpu,date\n";
   const std::string origin = fmt::format("{},{},{},{},{}\n", from.commit, csvText(from.compiler), csvText(from.flags),
                                          csvText(from.processor), from.date);
@@ -185,9 +185,9 @@ void writeStacksCsv(std::ostream& stream, const Profile& profile) {
       stream << fmt::format("springtower,{},{},{},{:g},{},{:g},{},{},{},{},{},{},{},{},{},{},{},{},{},{}", what.stack,
                             result->blocks, result->methodName, what.tolerance_m, what.threads, result->substeps,
                             result->wall_ms.median, result->wall_ms.p99, result->processor_ms.median, result->processor_ms.p99,
-                            result->penetration_mm, result->creepPerMinute_mm, result->firstFrame_s, result->prepared_s,
+                            result->penetration_mm, result->creepPerMinute_mm, result->equilibrium_s, result->prepared_s,
                             result->stands ? "yes" : "no", judged ? set(goal->required_ms[at]) : "",
-                            judged ? set(goal->goal_ms[at]) : "", goal != nullptr ? set(goal->firstFrame_s) : "",
+                            judged ? set(goal->goal_ms[at]) : "", goal != nullptr ? set(goal->equilibrium_s) : "",
                             csvText(result->failure.empty() ? verdictOf(row) : result->failure), origin);
     }
     for (const PeerFigures& peer : row.first().peers) {

@@ -86,6 +86,10 @@ CLI::App* defineRun(CLI::App& program, RunCommand& command) {
       ->required();
   addNumber(*run, "--seconds", command.seconds, kSecondsRange, "S", "simulated time (default 10, or what the scene file says)");
   addPhysicsOptions(*run, command.physics);
+  addNumber(
+      *run, "--prepare-budget", command.prepareBudget_s, kPrepareBudgetRange, "S",
+      "wall time of the search for the equilibrium before the first frame; what has none by then starts as placed (default: "
+      "no limit)");
   addNumber(*run, "--heights-sigma", command.heightsSigma_m, kHeightsSigmaRange, "METRES",
             "standard deviation of the heights of a tower's blocks");
   addNumber(*run, "--mass-sigma", command.massSigma_kg, kMassSigmaRange, "KG", "standard deviation of their masses");
@@ -138,6 +142,12 @@ int executeRun(const RunCommand& command) {
   options.shouldStop = interrupted;
   std::optional<PoseWriter> writer;
   if (poses) writer.emplace(poses->stream(), command.posesEvery_s.value_or(scene.settings.frame_s), scene.settings.frame_s);
+  Progress preparing(static_cast<double>(scene.blocks.size()), "blocks in equilibrium or left as placed");
+  if (command.prepareBudget_s) options.prepare.budget_s = *command.prepareBudget_s;
+  options.prepare.goesOn = [&](const PrepareProgress& now) {
+    preparing.update(static_cast<double>(now.blocksDone), fmt::format("{} iterations", now.iterations));
+    return true;
+  };
   Progress progress(scene.seconds, "s simulated");
   RunResult result;
   try {
@@ -146,6 +156,7 @@ int executeRun(const RunCommand& command) {
         writer->frame(now);
         poses->flushEverySecond();
       }
+      if (now.frame > 0) preparing.clear();
       progress.update(now.time_s);
     });
   } catch (const DivergenceError&) {

@@ -22,6 +22,7 @@ struct RunCommand {
   std::optional<double> massSigma_kg;
   std::optional<std::int64_t> seed;
   std::optional<double> startGap_m;
+  std::optional<double> prepareBudget_s;
   std::optional<double> tilt_deg;
   std::optional<double> direction_deg;
   std::optional<std::string> sway;  ///< DEG:HZ

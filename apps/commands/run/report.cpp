@@ -29,6 +29,28 @@ Json stagesJson(const RunResult& result) {
   return stages;
 }
 
+std::string_view nameOf(PrepareEnd end) {
+  if (end == PrepareEnd::complete) return "complete";
+  return end == PrepareEnd::outOfTime ? "out_of_time" : "cancelled";
+}
+
+Json prepareJson(const PrepareResult& prepared) {
+  return {{"ms", 1e3 * prepared.wall_s},
+          {"cpu_ms", 1e3 * prepared.processor_s},
+          {"blocks", prepared.blocks},
+          {"blocks_in_balance", prepared.blocksInBalance},
+          {"end", nameOf(prepared.end)}};
+}
+
+// How the scene starts, in words.
+std::string startInWords(const PrepareResult& prepared) {
+  std::string text = fmt::format("{} of {} blocks in equilibrium, found in {:.3g} ms", prepared.blocksInBalance, prepared.blocks,
+                                 1e3 * prepared.wall_s);
+  if (prepared.end == PrepareEnd::outOfTime) text += "; out of time, the others as placed";
+  if (prepared.end == PrepareEnd::cancelled) text += "; broken off, the others as placed";
+  return text;
+}
+
 Json energyJson(const Energy& energy) {
   return {{"kinetic", energy.kinetic}, {"gravity", energy.gravity}, {"springs", energy.springs}, {"contacts", energy.contacts}};
 }
@@ -107,6 +129,7 @@ Json reportJson(const Simulation& simulation, const RunResult& result, int threa
   report["interrupted"] = result.interrupted;
   report["simulated_s"] = result.simulated_s;
   report["wall_s"] = result.wall_s;
+  report["prepare"] = prepareJson(result.prepared);
   report["frames"] = result.frames;
   report["steps"] = result.counters.steps;
   report["contact_evaluations"] = result.counters.contactEvaluations;
@@ -148,6 +171,7 @@ void printResult(const Simulation& simulation, const RunResult& result, int thre
   row("tolerance", fmt::format("{:.4g} mm{}", kMillimetres * simulation.tolerance_m,
                                simulation.fixedSubsteps > 0 && !settings.tolerance_m ? ", as the substeps allow" : ""));
   row("contact stiffness", fmt::format("{:.4g} kN/m", 1e-3 * largestStiffness(simulation.stiffness)));
+  row("start", startInWords(result.prepared));
   row("substeps", fmt::format("{} in the last awake frame, {} in all", result.substeps, result.counters.steps));
   if (result.standing.stands) {
     row("stands", "yes");

@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 #include "solver/frame/inputs.h"
+#include "solver/frame/prepare.h"
 
 #include <algorithm>
 #include <chrono>
@@ -66,6 +67,7 @@ void advance(Session& session, const FrameInput& input) {
   } else {
     hold(input.hand, session.contacts, session.grip, simulation);
   }
+  prepare(simulation);
   stepFrame(simulation);
   session.gripForce = gripForce(simulation);
   session.contacts = contactForces(simulation);

@@ -102,7 +102,7 @@ TEST_F(StackFiles, SayHowStacksStand) {
     EXPECT_EQ(one.at("blocks"), expected[i / 2].second);
     EXPECT_EQ(one.at("threads"), 1 + i % 2);
     EXPECT_EQ(one.at("stands"), true);
-    EXPECT_GT(one.at("first_frame_s").get<double>(), 0.0);
+    EXPECT_GT(one.at("equilibrium_s").get<double>(), 0.0);
     EXPECT_GT(one.at("max_penetration_mm").get<double>(), 0.0) << "springs carry the weight";
     EXPECT_LE(one.at("max_penetration_mm").get<double>(), 0.05) << "the tolerance";
     EXPECT_LE(one.at("creep_mm_per_minute").get<double>(), 0.001);
@@ -154,8 +154,8 @@ TEST_F(StackFiles, JudgeAgainstWhatIsRequired) {
   deep["creep_mm_per_minute"] = 0.002;
   EXPECT_THAT(linesOf(verdict(deep)), Contains(ContainsRegex("^wall:20x12 .* misses: depth, creep ")));
   Json late = caseOf("wall:40x25", 1012, 1.0);
-  late["first_frame_s"] = 0.2;
-  EXPECT_THAT(linesOf(verdict(late)), Contains(ContainsRegex("^wall:40x25 .* misses: first frame ")));
+  late["equilibrium_s"] = 0.2;
+  EXPECT_THAT(linesOf(verdict(late)), Contains(ContainsRegex("^wall:40x25 .* misses: equilibrium ")));
 }
 
 // Bullet with the setting that is nearest in depth, as a ratio, among those with which it stands.

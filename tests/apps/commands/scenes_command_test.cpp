@@ -21,7 +21,7 @@ TEST(ScenesCommand, ListsEveryNameWithItsSizesAndWhatItIs) {
   for (const std::string& line : lines) EXPECT_LE(line.size(), 130U) << line;
   for (const Scenario& scenario : scenarios()) EXPECT_THAT(result.output, HasSubstr(std::string(scenario.what)));
   EXPECT_THAT(lines, Contains(ContainsRegex("^tower:ROWS .* 18; 1 to 2000 rows$")));
-  EXPECT_THAT(lines, Contains(ContainsRegex("^wall:COLUMNSxCOURSES .* 20x12; 1 to 900 columns, 1 to 100 courses$")));
+  EXPECT_THAT(lines, Contains(ContainsRegex("^wall:COLUMNSxCOURSES .* 20x12; 1 to 4000 columns, 1 to 100 courses$")));
   EXPECT_THAT(lines, Contains(ContainsRegex("^thrown .* has none$")));
 }
 

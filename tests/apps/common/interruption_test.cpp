@@ -72,7 +72,8 @@ TEST(Interruption, ARunThatEndsByItselfSaysSo) {
 TEST(Interruption, ASecondSignalEndsAtOnce) {
   const ScratchFolder scratch;
   std::ofstream(scratch.file("r.json")) << "old";
-  RunningProgram run("springtower", {"run", "pyramid:100", "--report", scratch.file("r.json")});
+  // As placed, a pyramid's first frame takes minutes.
+  RunningProgram run("springtower", {"run", "pyramid:100", "--prepare-budget", "0", "--report", scratch.file("r.json")});
   run.waitUntil([&] { return std::filesystem::exists(scratch.file("r.json.partial")); });
   std::this_thread::sleep_for(500ms);
   run.send(SIGINT);
@@ -81,6 +82,19 @@ TEST(Interruption, ASecondSignalEndsAtOnce) {
   run.send(SIGTERM);
   EXPECT_EQ(run.wait().exitCode, 143);
   EXPECT_EQ(contentOf(scratch.file("r.json")), "old");
+}
+
+TEST(Interruption, ASignalEndsTheSearchForTheEquilibrium) {
+  const ScratchFolder scratch;
+  RunningProgram run("springtower", {"run", "pyramid:100", "--report", scratch.file("r.json")});
+  run.waitUntil([&] { return std::filesystem::exists(scratch.file("r.json.partial")); });
+  std::this_thread::sleep_for(500ms);
+  run.send(SIGINT);
+  EXPECT_EQ(run.wait().exitCode, 130);
+  const std::string report = contentOf(scratch.file("r.json"));
+  EXPECT_THAT(report, HasSubstr("\"interrupted\": true"));
+  EXPECT_THAT(report, HasSubstr("\"end\": \"cancelled\""));
+  EXPECT_THAT(report, HasSubstr("\"frames\": 0"));
 }
 
 TEST(Interruption, AKilledRunLeavesWholeLinesAndTheOldFile) {

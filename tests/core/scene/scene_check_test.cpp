@@ -165,7 +165,7 @@ TEST(SceneLimits, NameTheBlockTheValueAndWhatIsAllowed) {
       {[](Scene& s) { s.blocks[0].spin.z() = 1e9; }, "test: block 0: spin z: found 1000000000, allowed -1000 to 1000 rad/s"},
       {[](Scene& s) { s.blocks[0].orientation.coeffs() *= 2.0; },
        "test: block 0: length of the orientation's quaternion: found 2, allowed 0.999999999 to 1.000000001"},
-      {[](Scene& s) { s.blocks.clear(); }, "test: number of blocks: found 0, allowed 1 to 100000"},
+      {[](Scene& s) { s.blocks.clear(); }, "test: number of blocks: found 0, allowed 1 to 200000"},
       {[](Scene& s) { s.seconds = -1.0; }, "test: seconds: found -1, allowed 0.001 to 10000000 s"},
       {[](Scene& s) { s.staticFriction = -0.4; }, "test: static friction: found -0.4, allowed 0 to 10"},
       {[](Scene& s) { s.kineticFriction = 0.5; }, "test: kinetic friction: found 0.5, allowed 0 to 0.4 (the static one)"},
@@ -186,14 +186,14 @@ TEST(SceneLimits, NameTheBlockTheValueAndWhatIsAllowed) {
   }
 }
 
-TEST(SceneLimits, AllowAHundredThousandBlocksAndNoMore) {
+TEST(SceneLimits, AllowTwoHundredThousandBlocksAndNoMore) {
   Scene scene;
-  for (int x = 0; x < 1000; ++x) {
+  for (int x = 0; x < 2000; ++x) {
     for (int y = 0; y < 100; ++y) scene.blocks.push_back(blockAt({0.1 * x, 0.1 * y, kHalfHeight_m}));
   }
   EXPECT_NO_THROW(checkScene(scene, "test"));
   scene.blocks.push_back(blockAt({0, -1, kHalfHeight_m}));
-  EXPECT_THAT(checking(scene), ThrowsMessage<InputError>("test: number of blocks: found 100001, allowed 1 to 100000"));
+  EXPECT_THAT(checking(scene), ThrowsMessage<InputError>("test: number of blocks: found 200001, allowed 1 to 200000"));
 }
 
 }  // namespace

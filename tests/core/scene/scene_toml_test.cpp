@@ -184,7 +184,7 @@ TEST(BadSceneFile, IsNamedInOneLine) {
       {"wrong_whole_number", ":2:8: tower.rows: found 3.5, allowed a whole number from 1 to 2000"},
       {"wrong_array", ":2:12: block[0].centre_m: found an array of 2, allowed an array of three numbers from -10000 to 10000 m"},
       {"wrong_array_value", ":2:18: block[0].centre_m[1]: found true, allowed a number from -10000 to 10000 m"},
-      {"not_an_array_of_tables", ":1:1: block: found a table, allowed up to 100000 tables, each [[block]]"},
+      {"not_an_array_of_tables", ":1:1: block: found a table, allowed up to 200000 tables, each [[block]]"},
       {"not_a_table", ":1:9: tower: found 18, allowed a table, [tower]"},
       {"negative_mass", ":6:11: block[1].mass_kg: found -0.0196, allowed 1e-09 to 1000000 kg"},
       {"not_a_number", ":3:22: block[0].velocity_m_s[1]: found nan, allowed -1000 to 1000 m/s"},

@@ -4,6 +4,7 @@
 #include "solver/metrics/penetration.h"
 #include "solver/world/simulation.h"
 #include "tests/support/block_scenes.h"
+#include "tests/support/prepare_and_step.h"
 
 #include <array>
 #include <cmath>
@@ -81,7 +82,7 @@ struct OrderOfConvergence {
     const Vec3 spin(0.8, 0.5, -0.6);
     for (std::size_t c = 0; c < kCorners; ++c)
       simulation.state.velocity.set(0, c, spin.cross(simulation.state.position.at(0, c)));
-    for (int frame = 0; frame < steps / 10; ++frame) stepFrame(simulation);
+    for (int frame = 0; frame < steps / 10; ++frame) prepareAndStep(simulation);
     return simulation;
   }
   static double error(const Simulation& simulation, const Simulation& reference) {
@@ -114,12 +115,12 @@ TEST(Energy, OfUndampedSpringsStaysBoundedOverAMillionSteps) {
   for (const double amplitude : {1e-4, 1e-3, 3e-3}) {
     Simulation simulation = ringingBlock(Inertia::cuboid, Method::semiImplicitEuler, 1e-3, 100, 500.0);  // w dt = 0.5
     stretch(simulation.state.position, 0, amplitude * Vec3(1.0, -0.6, 0.8));
-    stepFrame(simulation);  // the first kick is half, so the conserved energy is that of the steps after it
+    prepareAndStep(simulation);  // the first kick is half, so the conserved energy is that of the steps after it
     const double start = energy(simulation).total();
     double lowest = start;
     double highest = start;
     for (int frame = 1; frame < 10000; ++frame) {
-      stepFrame(simulation);
+      prepareAndStep(simulation);
       const double now = energy(simulation).total();
       lowest = std::min(lowest, now);
       highest = std::max(highest, now);
@@ -136,7 +137,7 @@ TEST(ExplicitSteps, AreAsManyAsStiffnessAndDashpotsRequire) {
   scene.settings.tolerance_m = 1e-6;
   scene.settings.stiffnessDamping = 0.01;
   Simulation simulation(scene);
-  for (int frame = 0; frame < 3; ++frame) stepFrame(simulation);
+  for (int frame = 0; frame < 3; ++frame) prepareAndStep(simulation);
   EXPECT_GT(simulation.substeps, 6000);
   PenetrationWorkspace workspace;
   EXPECT_LE(maxPenetration(simulation.state.position, true, workspace).depth, *scene.settings.tolerance_m);
@@ -168,7 +169,7 @@ TEST_P(InertiaTest, ModesVibrateAtTheFrequencyOfTheory) {
     double last_s = 0.0;
     int crossings = 0;
     for (int step = 0; step < 5000; ++step) {
-      stepFrame(simulation);
+      prepareAndStep(simulation);
       const double now = elongation();
       if (before * now < 0.0) {
         last_s = simulation.time_s - step_s * now / (now - before);
@@ -191,7 +192,7 @@ bool grows(Method method, Inertia inertia, double omegaStep) {
   const Vector24 start = cornerVector(simulation.state.position, 0);
   addCornerVector(kTiny_m * stiffestMode(simulation, 0), simulation.state.position, 0);
   for (int step = 0; step < 1500; ++step) {
-    stepFrame(simulation);
+    prepareAndStep(simulation);
     if ((cornerVector(simulation.state.position, 0) - start).cwiseAbs().maxCoeff() > 100.0 * kTiny_m) return true;
   }
   return false;
@@ -229,7 +230,7 @@ TEST_P(InertiaTest, MidpointGrowsByTheFourthPowerOfTheStep) {
     };
     const double before = amplitude();
     const int steps = 200;
-    for (int step = 0; step < steps; ++step) stepFrame(simulation);
+    for (int step = 0; step < steps; ++step) prepareAndStep(simulation);
     const double growth = std::pow(amplitude() / before, 1.0 / steps) - 1.0;
     const double expected = std::pow(omegaStep, 4) / 8.0;
     EXPECT_NEAR(growth, expected, 0.05 * expected) << "w dt = " << omegaStep;

@@ -5,6 +5,7 @@
 #include "solver/world/simulation.h"
 #include "tests/support/allocations.h"
 #include "tests/support/block_scenes.h"
+#include "tests/support/prepare_and_step.h"
 
 #include <cstdlib>
 #include <fmt/format.h>
@@ -58,14 +59,14 @@ TEST_P(AllocationTest, NoneWhenFramesRunAgain) {
         {middle, -1, what.pull_n * (scene.blocks[static_cast<std::size_t>(middle)].orientation * Vec3::UnitX()), 0.1, 1.0});
   }
   Simulation simulation(scene);
-  stepFrame(simulation);
+  prepareAndStep(simulation);
   const auto snapshot = takeSnapshot(simulation);
-  for (int frame = 0; frame < what.frames; ++frame) stepFrame(simulation);
+  for (int frame = 0; frame < what.frames; ++frame) prepareAndStep(simulation);
   const std::uint64_t hash = stateHash(simulation);
 
   restoreSnapshot(simulation, *snapshot);
   const long before = allocationsOfThisThread();
-  for (int frame = 0; frame < what.frames; ++frame) stepFrame(simulation);
+  for (int frame = 0; frame < what.frames; ++frame) prepareAndStep(simulation);
   EXPECT_EQ(allocationsOfThisThread() - before, 0);
   EXPECT_EQ(stateHash(simulation), hash);
 }

@@ -5,6 +5,7 @@
 #include "scenarios/towers.h"
 #include "solver/world/engine.h"
 #include "solver/world/simulation.h"
+#include "tests/support/prepare_and_step.h"
 
 #include <algorithm>
 #include <functional>
@@ -25,7 +26,7 @@ std::uint64_t hashAfter(
   tbb::task_arena arena(threads);
   return arena.execute([&] {
     Simulation simulation(scene);
-    for (int frame = 0; frame < frames; ++frame) stepFrame(simulation);
+    for (int frame = 0; frame < frames; ++frame) prepareAndStep(simulation);
     look(simulation);
     return stateHash(simulation);
   });
@@ -83,7 +84,7 @@ TEST(Determinism, OneTowerIsTheSameOnAnyThreads) {
 TEST(Determinism, ManyTowersAreTheSameOnAnyThreads) {
   const Scene scene = manyTowers();
   Simulation simulation(scene);
-  stepFrame(simulation);
+  prepareAndStep(simulation);
   EXPECT_EQ(simulation.engine->memo.islands.count(), 100U);
   expectSameOnAnyThreads(scene, 18);
 }
@@ -120,7 +121,7 @@ std::string messageOfFirstFrame(const Scene& scene, int threads) {
   return arena.execute([&]() -> std::string {
     Simulation simulation(scene);
     try {
-      stepFrame(simulation);
+      prepareAndStep(simulation);
     } catch (const DivergenceError& error) {
       return error.what();
     }
@@ -206,7 +207,7 @@ INSTANTIATE_TEST_SUITE_P(Determinism, RestingTest,
 class SnapshotTest : public ::testing::TestWithParam<Method> {};
 
 void step(Simulation& simulation, std::uint64_t frames) {
-  for (std::uint64_t frame = 0; frame < frames; ++frame) stepFrame(simulation);
+  for (std::uint64_t frame = 0; frame < frames; ++frame) prepareAndStep(simulation);
 }
 
 // A snapshot of frame `taken` reproduces the state of frame `end`, however often and in whichever simulation it is restored.
@@ -289,14 +290,14 @@ INSTANTIATE_TEST_SUITE_P(Methods, SnapshotTest,
 TEST(Snapshot, KeepsSleep) {
   const Scene scene = towerScene(2);
   Simulation simulation(scene);
-  for (int frame = 0; frame < 240; ++frame) stepFrame(simulation);
+  for (int frame = 0; frame < 240; ++frame) prepareAndStep(simulation);
   ASSERT_EQ(std::count(simulation.asleep.begin(), simulation.asleep.end(), std::uint8_t{1}), 6);
   const auto snapshot = takeSnapshot(simulation);
   Simulation awake(scene);
-  for (int frame = 0; frame < 3; ++frame) stepFrame(awake);
+  for (int frame = 0; frame < 3; ++frame) prepareAndStep(awake);
   restoreSnapshot(awake, *snapshot);
   EXPECT_EQ(stateHash(awake), stateHash(simulation));
-  stepFrame(awake);
+  prepareAndStep(awake);
   EXPECT_EQ(awake.substeps, 0);
   EXPECT_EQ(stateHash(awake), stateHash(simulation));
 }

@@ -4,6 +4,7 @@
 #include "core/error.h"
 #include "scenarios/loose.h"
 #include "tests/support/block_scenes.h"
+#include "tests/support/prepare_and_step.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -28,12 +29,12 @@ TEST(Inputs, AForceForOneFrameActsInThatFrameAlone) {
   Simulation simulation(scene);
   const double frame_s = scene.settings.frame_s;
   setOnlyForce(simulation, forceForOneFrame(simulation, 0, Vec3(0.1, 0.0, 0.0)));
-  stepFrame(simulation);
+  prepareAndStep(simulation);
   const double speed_m_s = 0.1 * frame_s / scene.blocks[0].mass;
   const double lag_m_s = laggingSpeed(simulation, 0.1);
   EXPECT_NEAR(centre(simulation.state.velocity, 0).x(), speed_m_s, lag_m_s);
   clearForces(simulation);
-  stepFrame(simulation);
+  prepareAndStep(simulation);
   EXPECT_NEAR(centre(simulation.state.velocity, 0).x(), speed_m_s, lag_m_s);
 }
 

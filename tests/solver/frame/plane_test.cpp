@@ -4,6 +4,7 @@
 #include "solver/metrics/measures.h"
 #include "solver/metrics/penetration.h"
 #include "tests/support/block_scenes.h"
+#include "tests/support/prepare_and_step.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -50,7 +51,7 @@ Outcome outcomeOf(const Scene& scene) {
   PenetrationWorkspace workspace;
   constexpr int kFrames = 30;
   for (int frame = 0; frame < kFrames; ++frame) {
-    stepFrame(simulation);
+    prepareAndStep(simulation);
     const ParticleArray& position = simulation.state.position;
     outcome.meanPenetration_m += maxPenetration(position, true, workspace).depth / kFrames;
     outcome.strain = std::max(outcome.strain, maxStrain(simulation.model, position));
@@ -94,7 +95,7 @@ TEST(Plane, NothingLeavesIt) {
     Scene scene = prototype(method);
     const auto across = [&] {
       Simulation simulation(scene);
-      stepFrame(simulation);
+      prepareAndStep(simulation);
       kick(simulation, 0, Vec3(0.0, 0.5, 0.0));
       stepFor(simulation, 0.1);
       return std::abs(centre(simulation.state.position, 0).y());

@@ -7,6 +7,7 @@
 #include "solver/runner/run.h"
 #include "solver/world/simulation.h"
 #include "tests/support/block_scenes.h"
+#include "tests/support/prepare_and_step.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -66,7 +67,7 @@ TEST_P(SlopeTest, StaysJustBelowTheFrictionAngle) {
   const ParticleArray reference = simulation.state.position;
   double move_m = 0.0;
   while (simulation.time_s < 61.0 - 1e-9) {
-    stepFrame(simulation);
+    prepareAndStep(simulation);
     move_m = std::max(move_m, largestCornerMove(reference, simulation.state.position));
   }
   EXPECT_LT(move_m, 1e-6);
@@ -189,7 +190,7 @@ TEST(TwoBlocks, MeetingAtAnyAngleStayOutsideEachOther) {
       Simulation simulation(scene);
       double deepest = 0.0;
       for (int i = 0; i < 90; ++i) {
-        stepFrame(simulation);
+        prepareAndStep(simulation);
         deepest = std::max(deepest, overlapDepth(simulation.state.position, 0, 1));
       }
       EXPECT_LT(deepest, 1e-3) << nameOf(method) << ", seed " << seed;
@@ -251,7 +252,7 @@ TEST(Divergence, IsCaughtInItsStepWithBlockAndTime) {
   double time_s = -1.0;
   for (int frame = 0; frame < 600 && block < 0; ++frame) {
     try {
-      stepFrame(simulation);
+      prepareAndStep(simulation);
       ASSERT_TRUE(allFinite(simulation.state.position) && allFinite(simulation.state.velocity)) << "frame " << frame;
     } catch (const DivergenceError& error) {
       block = error.block;
@@ -278,7 +279,7 @@ Scene overhangScene(double offset) {
 double fallWithoutSleep(Simulation& simulation, double from_s, double until_s) {
   const std::vector<FittedBox> start = fittedBoxes(simulation.state.position);
   while (simulation.time_s < until_s) {
-    stepFrame(simulation);
+    prepareAndStep(simulation);
     const FittedBox now = fittedBox(simulation.state.position, 1);
     if (start[1].centre.z() - now.centre.z() > kFallDropInHeights * kBlockHeight_m) return simulation.time_s;
     if (simulation.time_s <= from_s) continue;

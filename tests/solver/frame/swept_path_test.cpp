@@ -1,5 +1,6 @@
 #include "core/scene/scene.h"
 #include "solver/world/simulation.h"
+#include "tests/support/prepare_and_step.h"
 
 #include <gtest/gtest.h>
 
@@ -17,7 +18,7 @@ TEST_P(SweptPathTest, SeldomLeadsOutOfItsBox) {
   scene.settings.method = GetParam();
   scene.settings.tolerance_m = 2e-4;
   Simulation simulation(scene);
-  for (int frame = 0; frame < 90; ++frame) stepFrame(simulation);
+  for (int frame = 0; frame < 90; ++frame) prepareAndStep(simulation);
   EXPECT_LE(simulation.counters.replayedFrames, 4U);
   EXPECT_GT(simulation.counters.contactsCreated, 100U) << "blocks meet all the time";
   EXPECT_EQ(simulation.counters.contactsCreatedPenetrating, 0U);

@@ -4,6 +4,7 @@
 #include "solver/metrics/measures.h"
 #include "solver/metrics/penetration.h"
 #include "tests/support/block_scenes.h"
+#include "tests/support/prepare_and_step.h"
 
 #include <algorithm>
 #include <cmath>
@@ -32,12 +33,12 @@ struct Held {
 
 void step(Held& held, const Hand& hand) {
   hold(hand, contactForces(held.simulation), held.grip, held.simulation);
-  stepFrame(held.simulation);
+  prepareAndStep(held.simulation);
   held.force = gripForce(held.simulation);
 }
 
 void wait(Held& held, int frames) {
-  for (int i = 0; i < frames; ++i) stepFrame(held.simulation);
+  for (int i = 0; i < frames; ++i) prepareAndStep(held.simulation);
 }
 
 // Moves the hand in a straight line by `way` at a speed, then holds it still for a time.
@@ -278,7 +279,7 @@ TEST(Grip, TakesAnotherBlockAtOnce) {
 TEST(Grip, DrawsABlockOutAtItsSpeed) {
   constexpr double kSpeed_m_s = 0.04;
   Simulation simulation(towerScene(6));
-  for (int i = 0; i < 120; ++i) stepFrame(simulation);
+  for (int i = 0; i < 120; ++i) prepareAndStep(simulation);
   const std::size_t block = 7;
   const std::vector<FittedBox> start = fittedBoxes(simulation.state.position);
   std::vector<std::uint8_t> leftOut(18, 0);
@@ -288,7 +289,7 @@ TEST(Grip, DrawsABlockOutAtItsSpeed) {
   double tilt = 0.0;
   for (int i = 0; i < 240 && times_s.size() < 90; ++i) {
     advancePull(draw, contactForces(simulation), simulation);
-    stepFrame(simulation);
+    prepareAndStep(simulation);
     EXPECT_LE(gripForce(simulation).force.norm(), tuning::kGripForce_n * (1.0 + 1e-12));
     const double moved = (centre(simulation.state.position, block) - start[block].centre).x();
     while (times_s.size() < 90 && moved > 1e-3 * static_cast<double>(times_s.size() + 1)) times_s.push_back(simulation.time_s);
@@ -360,7 +361,7 @@ TEST(Grip, ABlockLetGoJustAboveAnotherLandsOnIt) {
     PenetrationWorkspace workspace;
     double depth = 0.0;
     for (int i = 0; i < 60; ++i) {
-      stepFrame(held.simulation);
+      prepareAndStep(held.simulation);
       depth = std::max(depth, maxPenetration(held.simulation.state.position, true, workspace).depth);
     }
     EXPECT_LT(depth, 2.5e-4) << "gap " << gap_m;

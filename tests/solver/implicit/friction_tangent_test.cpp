@@ -12,6 +12,7 @@
 #include "solver/world/island_step.h"
 #include "solver/world/simulation.h"
 #include "tests/support/block_scenes.h"
+#include "tests/support/prepare_and_step.h"
 
 #include <Eigen/Dense>
 #include <cmath>
@@ -69,7 +70,7 @@ struct DrawnBlock {
     return matrix;
   }
 
-  NewtonSystem& island() { return simulation.engine->memo.newtonSystems[0]; }
+  NewtonSystem& island() { return simulation.engine->memo.newtonSystems.of(0); }
 
   // Moves the step's end by displacements [node][12], and evaluates the forces there.
   void move(const std::vector<double>& displacement) {
@@ -272,7 +273,7 @@ void draw(Simulation& simulation, int block, const Vec3& way, double& held_n) {
   const double missing_n = simulation.model.mass[b] / frame_s * (kSpeed_m_s - centre(simulation.state.velocity, b).dot(way));
   held_n += 0.2 * missing_n;
   setOnlyForce(simulation, forceForOneFrame(simulation, b, (held_n + 0.5 * missing_n) * way));
-  stepFrame(simulation);
+  prepareAndStep(simulation);
 }
 
 // Friction on a drawn block depends on the loads on it, which no symmetric matrix represents: with that alone a step took three

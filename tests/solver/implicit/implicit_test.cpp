@@ -4,6 +4,7 @@
 #include "solver/world/checkpoint.h"
 #include "solver/world/simulation.h"
 #include "tests/support/block_scenes.h"
+#include "tests/support/prepare_and_step.h"
 
 #include <algorithm>
 #include <cmath>
@@ -41,7 +42,7 @@ KickedTop kickedTowerTop(Method method, double speed, double tolerance_m) {
   for (std::size_t b = first; b < first + 3; ++b) kick(simulation, b, Vec3(speed, 0.0, 0.0));
   KickedTop top;
   for (int frame = 0; frame < 120; ++frame) {
-    stepFrame(simulation);
+    prepareAndStep(simulation);
     top.moved.push_back(place() - start);
     if (frame < kVibratingFrames)
       top.leastSteps = frame == 0 ? simulation.substeps : std::min(top.leastSteps, simulation.substeps);
@@ -132,7 +133,7 @@ TEST(Implicit, ATowerWithStrongDashpotsBeginsAtRest) {
     scene.settings.tolerance_m = 1e-5;
     scene.settings.stiffnessDamping = 0.01;
     Simulation simulation(scene);
-    stepFrame(simulation);
+    prepareAndStep(simulation);
     EXPECT_LE(simulation.substeps, 8) << "seed " << seed;
     const ParticleArray start = simulation.state.position;
     stepFor(simulation, 0.5);
@@ -170,16 +171,16 @@ TEST(Implicit, AFrameRunAgainTakesTheSameSteps) {
   scene.forces.push_back(
       {0, -1, Vec3(2.0 * scene.kineticFriction * scene.blocks[0].mass * kStandardGravity_m_s2, 0.0, 0.0), 1.0, end_s});
   Simulation simulation(scene);
-  while (simulation.time_s < end_s - 0.5 * scene.settings.frame_s) stepFrame(simulation);
+  while (simulation.time_s < end_s - 0.5 * scene.settings.frame_s) prepareAndStep(simulation);
   const double time_s = simulation.time_s;
   const std::vector<double> restTime_s = simulation.restTime_s;
-  stepFrame(simulation);
+  prepareAndStep(simulation);
   const std::uint64_t hash = stateHash(simulation);
   restoreFrame(simulation);
   simulation.time_s = time_s;
   --simulation.frame;
   simulation.restTime_s = restTime_s;
-  stepFrame(simulation);
+  prepareAndStep(simulation);
   EXPECT_EQ(stateHash(simulation), hash);
 }
 
@@ -241,7 +242,7 @@ TEST_P(SwayTest, ATowerThatSwaysSlowlyTakesOneStepAFrame) {
     const std::size_t top = simulation.model.blockCount() - 1;
     const double start = centre(simulation.state.position, top).x();
     for (int frame = 0; frame < 180; ++frame) {
-      stepFrame(simulation);
+      prepareAndStep(simulation);
       moved.push_back(centre(simulation.state.position, top).x() - start);
     }
     return static_cast<double>(simulation.counters.implicitSteps) / 180.0;
@@ -270,10 +271,10 @@ TEST_P(GoingOverTest, TakesFewIterations) {
   scene.settings.sleep = Sleep::off;
   scene.gravity.tilt_deg = 14.5;
   Simulation simulation(scene);
-  stepFrame(simulation);  // searches for the initial equilibrium
+  prepareAndStep(simulation);  // searches for the initial equilibrium
   for (int frame = 1; frame < 24; ++frame) {
     const Counters before = simulation.counters;
-    stepFrame(simulation);
+    prepareAndStep(simulation);
     EXPECT_EQ(simulation.counters.newtonFailures, before.newtonFailures) << "frame " << frame;
     EXPECT_EQ(simulation.counters.implicitSteps - before.implicitSteps, simulation.counters.steps - before.steps)
         << "frame " << frame;
@@ -292,7 +293,7 @@ TEST(Implicit, ATowerOf144RowsStandsFromTheStart) {
   Simulation simulation(scene);
   stepFor(simulation, 0.5);
   const Counters before = simulation.counters;
-  for (int i = 0; i < 30; ++i) stepFrame(simulation);
+  for (int i = 0; i < 30; ++i) prepareAndStep(simulation);
   EXPECT_EQ(simulation.counters.steps - before.steps, 30U);
   EXPECT_EQ(simulation.counters.newtonFailures, before.newtonFailures);
   PenetrationWorkspace workspace;

@@ -8,6 +8,7 @@
 #include "solver/world/engine.h"
 #include "solver/world/simulation.h"
 #include "tests/support/block_scenes.h"
+#include "tests/support/prepare_and_step.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -56,7 +57,7 @@ TEST(WideIsland, AWallRestsWithoutASolution) {
 TEST(WideIsland, APyramidOf40RowsBeginsInEquilibrium) {
   Simulation simulation(densePyramid(40));
   const ParticleArray start = simulation.state.position;
-  stepFrame(simulation);
+  prepareAndStep(simulation);
   const Counters then = simulation.counters;
   EXPECT_LE(then.factorisations, 100U) << "170 when the weight came to bear row by row";
   stepFor(simulation, 0.5);
@@ -96,8 +97,8 @@ TEST(WideIsland, ABrickIsPushedOutOfAWallByImplicitSteps) {
 TEST(WideIsland, IsEliminatedInTheOrderThatFillsInLess) {
   const auto fromBelow = [](const Scene& scene) {
     Simulation simulation(scene);
-    stepFrame(simulation);
-    const EliminationOrder& order = simulation.engine->memo.newtonSystems[0].order;
+    prepareAndStep(simulation);
+    const EliminationOrder& order = simulation.engine->memo.newtonSystems.of(0).order;
     return std::is_sorted(order.nodes.begin(), order.nodes.end(), [&](std::int32_t p, std::int32_t q) {
       return order.centre[static_cast<std::size_t>(p)].z() + 1e-3 < order.centre[static_cast<std::size_t>(q)].z();
     });

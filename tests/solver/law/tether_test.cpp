@@ -4,6 +4,7 @@
 #include "solver/block/affine.h"
 #include "solver/hand/grip.h"
 #include "tests/support/block_scenes.h"
+#include "tests/support/prepare_and_step.h"
 
 #include <array>
 #include <cmath>
@@ -136,7 +137,7 @@ TEST(Tether, ABlockLedAtTheLimitOfTheTorqueTakesImplicitSteps) {
     hand.velocity = LoadedBlock::speedAt(frame) * loaded.along;
     hand.place += simulation.scene.settings.frame_s * hand.velocity;
     hold(hand, contactForcesOn(simulation, loaded.block), grip, simulation);
-    stepFrame(simulation);
+    prepareAndStep(simulation);
     limited += gripForce(simulation).turnLimited ? 1 : 0;
   }
   EXPECT_GT(loaded.drawn(), 0.015);
@@ -157,7 +158,7 @@ TEST(Tether, ABlockDrawnOutTakesImplicitSteps) {
     for (int frame = 0; frame < 200 && loaded.drawn() < kBlockLength_m; ++frame) {
       draw.speed_m_s = LoadedBlock::speedAt(frame);
       advancePull(draw, contactForcesOn(simulation, loaded.block), simulation);
-      stepFrame(simulation);
+      prepareAndStep(simulation);
       most = std::max(most, simulation.substeps);
     }
     EXPECT_GE(loaded.drawn(), kBlockLength_m);

@@ -1,5 +1,7 @@
 #include "solver/metrics/balance.h"
 
+#include "tests/support/prepare_and_step.h"
+
 #include <gtest/gtest.h>
 
 namespace springtower {
@@ -17,7 +19,7 @@ Imbalance imbalanceOf(const Simulation& simulation) {
 
 TEST(Balance, OfAFallingBlockLacksItsWholeWeight) {
   Simulation simulation(blockAlone(0.1));
-  stepFrame(simulation);
+  prepareAndStep(simulation);
   EXPECT_NEAR(imbalanceOf(simulation).force, 1.0, 1e-12);
   EXPECT_NEAR(imbalanceOf(simulation).torque, 0.0, 1e-12);
 }
@@ -29,11 +31,11 @@ TEST(Balance, OfAPushedBlockAtRestIncludesThePush) {
   const double weight = scene.blocks[0].mass * scene.gravity.magnitude;
   scene.forces.push_back({0, -1, Vec3(0.1 * weight, 0.0, 0.0), 0.0, 2.0});
   Simulation simulation(scene);
-  while (simulation.time_s < 1.99) stepFrame(simulation);
+  while (simulation.time_s < 1.99) prepareAndStep(simulation);
   ASSERT_EQ(userPushes(simulation).size(), 1U);
   EXPECT_LT(imbalanceOf(simulation).force, 1e-3);
   EXPECT_LT(imbalanceOf(simulation).torque, 1e-3);
-  while (simulation.time_s < 3.0) stepFrame(simulation);
+  while (simulation.time_s < 3.0) prepareAndStep(simulation);
   EXPECT_TRUE(userPushes(simulation).empty());
   EXPECT_LT(imbalanceOf(simulation).force, 1e-3);
 }

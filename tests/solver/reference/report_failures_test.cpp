@@ -3,6 +3,7 @@
 #include "solver/world/engine.h"
 #include "solver/world/simulation.h"
 #include "tests/solver/reference/report_scenes.h"
+#include "tests/support/prepare_and_step.h"
 
 #include <algorithm>
 #include <array>
@@ -46,7 +47,7 @@ TEST(ReportFailure, ATowerJittersAndCreeps) {
     const ParticleArray settled = simulation.state.position;
     Motion motion;
     for (int frame = 0; frame < 30; ++frame) {
-      stepFrame(simulation);
+      prepareAndStep(simulation);
       const double speed = rootMeanSquareCornerSpeed(simulation.state.velocity);
       motion.jitter += speed * speed / 30.0;
     }
@@ -137,11 +138,11 @@ TEST(ReportFailure, CollisionsTakeMoreThanACoupleOfIterations) {
   double mostOfOurs = 0.0;
   for (int frame = 0; frame < 60; ++frame) {
     const Counters before = reported.counters;
-    stepFrame(reported);
+    prepareAndStep(reported);
     most = std::max(most, static_cast<double>(reported.counters.responseIterations - before.responseIterations) /
                               static_cast<double>(reported.counters.steps - before.steps));
     const Counters ourBefore = ours.counters;
-    stepFrame(ours);
+    prepareAndStep(ours);
     ASSERT_GT(ours.counters.implicitSteps, ourBefore.implicitSteps);
     mostOfOurs = std::max(mostOfOurs, static_cast<double>(ours.counters.implicitIterations - ourBefore.implicitIterations) /
                                           static_cast<double>(ours.counters.implicitSteps - ourBefore.implicitSteps));
@@ -289,14 +290,14 @@ TEST(ReportDisabling, TheFrameIsAsIfTheBlockHadBeenEnabled) {
   auto snapshot = takeSnapshot(simulation);
   for (int frame = 0; frame < 60 && simulation.asleep[0] == 1; ++frame) {
     snapshot = takeSnapshot(simulation);
-    stepFrame(simulation);
+    prepareAndStep(simulation);
   }
   ASSERT_EQ(simulation.asleep[0], 0);
   const std::uint64_t hash = stateHash(simulation);
   const std::uint64_t replayed = simulation.counters.replayedFrames;
   restoreSnapshot(simulation, *snapshot);
   wake(simulation, 0, WakeReason::kick);
-  stepFrame(simulation);
+  prepareAndStep(simulation);
   EXPECT_LT(simulation.counters.replayedFrames, replayed);
   EXPECT_EQ(stateHash(simulation), hash);
 }

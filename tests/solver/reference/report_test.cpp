@@ -2,6 +2,7 @@
 #include "solver/world/engine.h"
 #include "solver/world/simulation.h"
 #include "tests/solver/reference/report_scenes.h"
+#include "tests/support/prepare_and_step.h"
 
 #include <algorithm>
 #include <cmath>
@@ -61,7 +62,7 @@ TEST_P(ReportRestitutionTest, EachCornerLeavesTheFloorWithItsShareOfSpeed) {
   int frame = 0;
   for (; frame < 1000 && largestImpulse(simulation) == 0.0; ++frame) {
     before = simulation.state.velocity.at(0, 0).z();
-    stepFrame(simulation);
+    prepareAndStep(simulation);
   }
   ASSERT_LT(frame, 1000) << "it never met the floor";
   const double meeting = before - kStandardGravity_m_s2 * simulation.scene.settings.frame_s;
@@ -85,7 +86,7 @@ TEST(ReportMethod, ABlockReboundsThroughItsSpringsWhateverTheRestitution) {
     double falling = 0.0;
     double rising = 0.0;
     for (int frame = 0; frame < 1500; ++frame) {
-      stepFrame(simulation);
+      prepareAndStep(simulation);
       const double speed = centre(simulation.state.velocity, 0).z();
       falling = std::max(falling, -speed);
       rising = std::max(rising, speed);
@@ -113,7 +114,7 @@ TEST_P(ReportInertiaTest, ACollisionKeepsMomentum) {
   const double part = scene.blocks[0].mass * 5.0;
   double least = 1e300;
   for (int frame = 0; frame < 12; ++frame) {
-    stepFrame(simulation);
+    prepareAndStep(simulation);
     least = std::min(least, leastImpulse(simulation));
     EXPECT_LT((momentum(simulation).linear - before).norm(), 1e-12 * part) << "frame " << frame;
   }
@@ -135,7 +136,7 @@ TEST_P(ReportInertiaTest, AnElasticCollisionKeepsEnergy) {
   const double before = energy(simulation).total();
   double kinetic = 1e300;
   for (int frame = 0; frame < 6; ++frame) {
-    stepFrame(simulation);
+    prepareAndStep(simulation);
     const Energy now = energy(simulation);
     kinetic = std::min(kinetic, now.kinetic);
     EXPECT_NEAR(now.total(), before, 0.03 * before);
@@ -153,7 +154,7 @@ TEST_P(ReportInertiaTest, TouchingBlocksDrawApartFreely) {
   scene.blocks[1].velocity = Vec3(0.0, 0.0, 0.1);
   Simulation simulation(scene);
   for (int frame = 0; frame < 10; ++frame) {
-    stepFrame(simulation);
+    prepareAndStep(simulation);
     EXPECT_EQ(largestImpulse(simulation), 0.0);
   }
   const Vec3 apart = centre(simulation.state.velocity, 1) - centre(simulation.state.velocity, 0);
@@ -168,7 +169,7 @@ TEST(ReportMethod, TheFloorNeverPulls) {
   scene.blocks[0].velocity.z() = 0.1;
   Simulation simulation(scene);
   for (std::size_t c = 0; c < kCorners; ++c) simulation.state.position.add(0, c, Vec3(0.0, 0.0, -0.005));
-  stepFrame(simulation);
+  prepareAndStep(simulation);
   EXPECT_EQ(largestImpulse(simulation), 0.0);
   EXPECT_NEAR(centre(simulation.state.velocity, 0).z(), 0.1 - kStandardGravity_m_s2 * scene.settings.frame_s, 1e-12);
 }
@@ -198,7 +199,7 @@ TEST(ReportMethod, PassesAreCountedAndBounded) {
     Scene scene = asReported(towerScene(3));
     scene.settings.reportIterations = passes;
     Simulation simulation(scene);
-    for (int frame = 0; frame < 6; ++frame) stepFrame(simulation);
+    for (int frame = 0; frame < 6; ++frame) prepareAndStep(simulation);
     return simulation.counters;
   };
   const Counters one = runTower(1);
@@ -238,7 +239,7 @@ TEST(ReportMethod, IsTheSameForAnyNumberOfThreads) {
     tbb::task_arena arena(threads);
     return arena.execute([] {
       Simulation simulation(scatteredScene());
-      for (int frame = 0; frame < 20; ++frame) stepFrame(simulation);
+      for (int frame = 0; frame < 20; ++frame) prepareAndStep(simulation);
       return stateHash(simulation);
     });
   };
@@ -250,7 +251,7 @@ TEST(ReportMethod, IsTheSameForAnyNumberOfThreads) {
 
 TEST(ReportMethod, RepeatsItsFutureFromASnapshot) {
   Simulation simulation(scatteredScene());
-  for (int frame = 0; frame < 10; ++frame) stepFrame(simulation);
+  for (int frame = 0; frame < 10; ++frame) prepareAndStep(simulation);
   ASSERT_GT(largestImpulse(simulation), 0.0);
   const auto snapshot = takeSnapshot(simulation);
   const std::uint64_t now = stateHash(simulation);
@@ -258,11 +259,11 @@ TEST(ReportMethod, RepeatsItsFutureFromASnapshot) {
   EXPECT_NE(stateHash(simulation), now) << "the contacts are part of the state";
   restoreSnapshot(simulation, *snapshot);
   EXPECT_EQ(stateHash(simulation), now);
-  for (int frame = 0; frame < 10; ++frame) stepFrame(simulation);
+  for (int frame = 0; frame < 10; ++frame) prepareAndStep(simulation);
   const std::uint64_t future = stateHash(simulation);
   restoreSnapshot(simulation, *snapshot);
   EXPECT_NE(stateHash(simulation), future);
-  for (int frame = 0; frame < 10; ++frame) stepFrame(simulation);
+  for (int frame = 0; frame < 10; ++frame) prepareAndStep(simulation);
   EXPECT_EQ(stateHash(simulation), future);
 }
 

@@ -6,6 +6,7 @@
 #include "solver/world/engine.h"
 #include "solver/world/simulation.h"
 #include "solver/world/stiffness.h"
+#include "tests/support/prepare_and_step.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -64,7 +65,7 @@ TEST(Falling, WhatHasLandedIsHandedBackAndRests) {
   Simulation simulation(scene);
   bool fell = false;
   for (int frame = 0; frame < 60; ++frame) {
-    stepFrame(simulation);
+    prepareAndStep(simulation);
     fell = fell || anyFalls(simulation);
   }
   EXPECT_TRUE(fell);
@@ -93,7 +94,7 @@ TEST(Falling, BlocksInTheAirFlyAndTumbleAsFreeBodies) {
   };
   const Vec3 before = momentum(1);
   const Vec3 from = centre(simulation.state.position, 1);
-  for (int frame = 0; frame < 7; ++frame) stepFrame(simulation);
+  for (int frame = 0; frame < 7; ++frame) prepareAndStep(simulation);
   EXPECT_TRUE(anyFalls(simulation));
   EXPECT_EQ(simulation.counters.contactsCreated, 0U);
   const double time = 7.0 / 60.0;
@@ -130,7 +131,7 @@ TEST(Falling, BlocksInTheAirAreAsStiffAsTheirWeightRequires) {
           << "seed " << seed << ", " << spacing_m;
     }
     Simulation simulation(blocksInTheAir(seed, 0.09));  // more than the longest diagonal
-    for (int frame = 0; frame < 20; ++frame) stepFrame(simulation);
+    for (int frame = 0; frame < 20; ++frame) prepareAndStep(simulation);
   }
 }
 

@@ -5,6 +5,7 @@
 #include "solver/world/engine.h"
 #include "solver/world/simulation.h"
 #include "tests/support/block_scenes.h"
+#include "tests/support/prepare_and_step.h"
 
 #include <algorithm>
 #include <cmath>
@@ -202,7 +203,7 @@ Scene columnComingDown(Method method, int rows, int passes) {
 // Largest speed at which blocks of a column still approach one another after the step in which it landed, m/s.
 double approachLeft(Method method, int rows, int passes) {
   Simulation simulation(columnComingDown(method, rows, passes));
-  stepFrame(simulation);
+  prepareAndStep(simulation);
   double fastest = 0.0;
   double below = 0.0;
   for (std::size_t b = 0; b < simulation.model.blockCount(); ++b) {
@@ -219,7 +220,7 @@ double deepestInColumn(Method method, int rows, int passes) {
   PenetrationWorkspace workspace;
   double deepest = 0.0;
   for (int step = 0; step < 50; ++step) {
-    stepFrame(simulation);
+    prepareAndStep(simulation);
     deepest = std::max(deepest, maxPenetration(simulation.state.position, true, workspace).depth);
   }
   return deepest;
@@ -257,7 +258,7 @@ TEST(RigidSteps, TakenAgainAreGoneOnce) {
   scene.settings.iterations = 1000;
   Simulation simulation(scene);
   const double start = centre(simulation.state.position, 0).z();
-  stepFrame(simulation);
+  prepareAndStep(simulation);
   ASSERT_EQ(simulation.counters.contactsCreated, 1U);
   const double way = start - centre(simulation.state.position, 0).z();
   EXPECT_NEAR(simulation.engine->memo.blockHistory[0].travel, way, 1e-9);

@@ -1,6 +1,7 @@
 #include "solver/runner/trials.h"
 
 #include "solver/statics/statics.h"
+#include "tests/support/prepare_and_step.h"
 
 #include <cmath>
 #include <gtest/gtest.h>
@@ -14,7 +15,7 @@ constexpr double kTrialWeight_n = kBlockMass_kg * kStandardGravity_m_s2;
 Simulation settled(Scene scene, double seconds) {
   scene.settings.sleep = Sleep::off;
   Simulation simulation(scene);
-  while (simulation.time_s < seconds) stepFrame(simulation);
+  while (simulation.time_s < seconds) prepareAndStep(simulation);
   return simulation;
 }
 
@@ -108,7 +109,7 @@ TEST_P(ScaleTest, ATowerIsCompressedByTheSameShareOfItsHeight) {
   const auto [size, density] = GetParam();
   const auto compressed = [](const Scene& scene) {
     Simulation simulation(scene);
-    for (int frame = 0; frame < 120; ++frame) stepFrame(simulation);
+    for (int frame = 0; frame < 120; ++frame) prepareAndStep(simulation);
     const double top = simulation.lengths.blockHeight_m * 6.0;
     return 1.0 - centre(simulation.state.position, 17).z() / (top - 0.5 * simulation.lengths.blockHeight_m);
   };
@@ -125,7 +126,7 @@ TEST_P(ScaleTest, WhatFallsFallsInAsManyFrames) {
     const std::vector<FittedBox> start = fittedBoxes(simulation.state.position);
     int frame = 0;
     while (frame < 120 && standing(simulation.model, start, simulation.state.position).stands) {
-      stepFrame(simulation);
+      prepareAndStep(simulation);
       ++frame;
     }
     return frame;

@@ -3,6 +3,7 @@
 #include "solver/hand/moves.h"
 #include "solver/runner/run.h"
 #include "tests/solver/hand/take.h"
+#include "tests/support/prepare_and_step.h"
 
 #include <algorithm>
 #include <ctime>
@@ -18,7 +19,7 @@ std::size_t asleepBlocks(const Simulation& simulation) {
 
 // Steps until all blocks sleep, at most for a time.
 void stepUntilAsleep(Simulation& simulation, double seconds) {
-  while (!allAsleep(simulation) && simulation.time_s < seconds) stepFrame(simulation);
+  while (!allAsleep(simulation) && simulation.time_s < seconds) prepareAndStep(simulation);
 }
 
 // The full tower settles in 3 s; the requirement is 5 s. A sleeping scene is skipped completely: no steps, no pair tests, nothing
@@ -31,7 +32,7 @@ TEST(Sleep, TheFullTowerSleepsWithinFiveSecondsAndThenCostsNothing) {
   const std::uint64_t hash = stateHash(simulation);
   constexpr int kFrames = 2000;
   const std::clock_t start = std::clock();
-  for (int frame = 0; frame < kFrames; ++frame) stepFrame(simulation);
+  for (int frame = 0; frame < kFrames; ++frame) prepareAndStep(simulation);
   const double cost_ms = 1e3 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC / kFrames;
   EXPECT_LT(cost_ms, 0.02) << "processor time, promised for a frame; a frame awake costs a hundred times as much";
   EXPECT_EQ(simulation.substeps, 0);
@@ -52,11 +53,11 @@ TEST(Sleep, AWeakForceWakesItsBlockAlone) {
   Simulation simulation(scene);
   stepUntilAsleep(simulation, 3.9);
   ASSERT_TRUE(allAsleep(simulation));
-  while (simulation.frame < 240) stepFrame(simulation);
+  while (simulation.frame < 240) prepareAndStep(simulation);
   ASSERT_TRUE(allAsleep(simulation)) << "a force that does not act yet wakes no block";
   const ParticleArray still = simulation.state.position;
   for (int frame = 0; frame < 12; ++frame) {
-    stepFrame(simulation);
+    prepareAndStep(simulation);
     EXPECT_EQ(simulation.asleep[kBlock], 0);
     EXPECT_GT(simulation.substeps, 0);
     EXPECT_EQ(asleepBlocks(simulation), 8U);
@@ -76,11 +77,11 @@ TEST(Sleep, AStrongPullMovesBlocks) {
   Simulation simulation(scene);
   stepUntilAsleep(simulation, 3.9);
   ASSERT_TRUE(allAsleep(simulation));
-  while (simulation.frame < 240) stepFrame(simulation);
+  while (simulation.frame < 240) prepareAndStep(simulation);
   const ParticleArray still = simulation.state.position;
   std::size_t fewestAsleep = simulation.asleep.size();
   for (int frame = 0; frame < 12; ++frame) {
-    stepFrame(simulation);
+    prepareAndStep(simulation);
     fewestAsleep = std::min(fewestAsleep, asleepBlocks(simulation));
   }
   EXPECT_GT((centre(simulation.state.position, kBlock) - centre(still, kBlock)).y(), 0.02);
@@ -94,12 +95,12 @@ TEST(Sleep, SwayingGravityWakes) {
   scene.gravity.sway_deg = 0.5;
   scene.gravity.sway_hz = 0.05;
   Simulation simulation(scene);
-  while (simulation.time_s < 4.5) stepFrame(simulation);
+  while (simulation.time_s < 4.5) prepareAndStep(simulation);
   stepUntilAsleep(simulation, 6.5);
   ASSERT_TRUE(allAsleep(simulation));
   std::size_t fewestAsleep = simulation.asleep.size();
   while (simulation.time_s < 8.0) {
-    stepFrame(simulation);
+    prepareAndStep(simulation);
     fewestAsleep = std::min(fewestAsleep, asleepBlocks(simulation));
   }
   EXPECT_EQ(fewestAsleep, 0U);
@@ -114,7 +115,7 @@ TEST(Sleep, WhatTipsDoesNotSleepBeforeItFalls) {
     Simulation simulation(bitCodeScene("(010)-(010)", tower));
     const std::vector<FittedBox> start = fittedBoxes(simulation.state.position);
     while (simulation.time_s < 3.0 && standing(simulation.model, start, simulation.state.position).stands) {
-      stepFrame(simulation);
+      prepareAndStep(simulation);
       ASSERT_EQ(simulation.asleep[1], 0) << over_m << " at " << simulation.time_s << " s";
     }
     EXPECT_LT(simulation.time_s, 3.0) << over_m << ": it has not fallen";
@@ -185,7 +186,7 @@ TEST(Sleep, LooseBlocksBelowAreNotHitByWhatLiesOverThem) {
   std::size_t most = 0;
   while (simulation.time_s < 2.5) {
     guideHand(moves, simulation);
-    stepFrame(simulation);
+    prepareAndStep(simulation);
     if (simulation.time_s > 0.7) most = std::max(most, simulation.asleep.size() - asleepBlocks(simulation));
   }
   EXPECT_LE(most, 27U) << "half of the tower";
@@ -219,7 +220,7 @@ TEST(Sleep, ABlockThatHitsSleepersMovesThemAsAwake) {
 // A tower of three rows that sleeps.
 Simulation sleepingTower() {
   Simulation simulation(towerScene(3));
-  while (!allAsleep(simulation) && simulation.time_s < 10.0) stepFrame(simulation);
+  while (!allAsleep(simulation) && simulation.time_s < 10.0) prepareAndStep(simulation);
   return simulation;
 }
 
@@ -232,7 +233,7 @@ TEST(Sleep, EveryWakeHasAReason) {
   ASSERT_TRUE(allAsleep(forced));
   EXPECT_EQ(forced.wakes, WakeCounts{}) << "nothing has woken yet";
   applyForce(forced, {4, -1, Vec3(0.01, 0.0, 0.0), forced.time_s, forced.time_s + 0.1});
-  stepFrame(forced);
+  prepareAndStep(forced);
   EXPECT_EQ(wokenBy(forced, WakeReason::force), 1U);
 
   Simulation kicked = sleepingTower();
@@ -243,7 +244,7 @@ TEST(Sleep, EveryWakeHasAReason) {
 
   Simulation tilted = sleepingTower();
   setGravity(tilted, {.tilt_deg = 1.0});
-  stepFrame(tilted);
+  prepareAndStep(tilted);
   EXPECT_EQ(wokenBy(tilted, WakeReason::gravity), 9U);
   EXPECT_EQ(std::accumulate(tilted.wakes.begin(), tilted.wakes.end(), std::uint64_t{0}), 9U);
 }
@@ -261,13 +262,13 @@ TEST(Sleep, AsReportedDisablesAtRest) {
   Scene scene = towerScene(2);
   scene.settings.sleep = Sleep::report;
   Simulation simulation(scene);
-  for (int frame = 0; frame < 120; ++frame) stepFrame(simulation);
+  for (int frame = 0; frame < 120; ++frame) prepareAndStep(simulation);
   EXPECT_TRUE(allAsleep(simulation));
 
   Scene awake = towerScene(2);
   awake.settings.sleep = Sleep::off;
   Simulation other(awake);
-  for (int frame = 0; frame < 120; ++frame) stepFrame(other);
+  for (int frame = 0; frame < 120; ++frame) prepareAndStep(other);
   EXPECT_EQ(asleepBlocks(other), 0U) << "and without sleep none is";
 }
 

@@ -2,6 +2,7 @@
 // it was taken from.
 #include "solver/world/simulation.h"
 #include "tests/support/block_scenes.h"
+#include "tests/support/prepare_and_step.h"
 
 #include <gtest/gtest.h>
 
@@ -10,13 +11,13 @@ namespace {
 
 void expectTheSameFuture(const Scene& scene, int framesBefore, int framesAfter) {
   Simulation original(scene);
-  for (int frame = 0; frame < framesBefore; ++frame) stepFrame(original);
+  for (int frame = 0; frame < framesBefore; ++frame) prepareAndStep(original);
   Simulation other(scene);
   restoreSnapshot(other, *takeSnapshot(original));
   EXPECT_EQ(stateHash(other), stateHash(original));
   for (int frame = 0; frame < framesAfter; ++frame) {
-    stepFrame(original);
-    stepFrame(other);
+    prepareAndStep(original);
+    prepareAndStep(other);
     ASSERT_EQ(stateHash(other), stateHash(original)) << "frame " << frame;
   }
 }
@@ -46,7 +47,7 @@ TEST(Snapshot, OfATowerAsleepGoesOnInAnotherScene) {
 // Inputs that are changed between frames are part of it.
 TEST(Snapshot, BringsInputsBack) {
   Simulation simulation(towerScene(2));
-  stepFrame(simulation);
+  prepareAndStep(simulation);
   const auto snapshot = takeSnapshot(simulation);
   simulation.scene.gravity.tilt_deg = 3.0;
   simulation.scene.staticFriction = 0.9;

@@ -1,0 +1,94 @@
+#include "solver/frame/over_islands.h"
+
+#include "core/error.h"
+#include "core/tuning.h"
+#include "solver/contact/query.h"
+#include "solver/world/checkpoint.h"
+#include "solver/world/stage_clock.h"
+
+#include <algorithm>
+#include <exception>
+#include <mutex>
+#include <oneapi/tbb/parallel_for.h>
+#include <utility>
+
+namespace springtower {
+
+namespace {
+
+void runIsland(Simulation& simulation, const ContactLaw& law, std::size_t i, IslandOutcome (*advance)(IslandStep&),
+               SearchMonitor* monitor) {
+  Engine& engine = *simulation.engine;
+  const auto first = static_cast<std::size_t>(engine.memo.pairStart[i]);
+  IslandStep step{simulation,
+                  engine,
+                  engine.memo.islands.island(i),
+                  std::span<const std::int32_t>(engine.memo.islandPairs)
+                      .subspan(first, static_cast<std::size_t>(engine.memo.pairStart[i + 1]) - first),
+                  engine.scratch.islandCounters[i],
+                  engine.scratch.islandTimes[i],
+                  law};
+  step.monitor = monitor;
+  saveFrameStart(step);
+  const IslandOutcome outcome = advance(step);
+  engine.scratch.islandOutcome[i] = outcome.inside ? outcome.substeps : -1;
+}
+
+// Of the islands that diverge in a frame the first in their order, whichever thread comes first: the message is the same on any
+// number of threads. All of them are run, so that the state is as well.
+class FirstDivergence {
+ public:
+  void keep(std::size_t island, std::exception_ptr error) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (error_ != nullptr && island_ < island) return;
+    island_ = island;
+    error_ = std::move(error);
+  }
+  void throwIfAny() const {
+    if (error_ != nullptr) std::rethrow_exception(error_);
+  }
+
+ private:
+  std::mutex mutex_;
+  std::size_t island_ = 0;
+  std::exception_ptr error_;
+};
+
+}  // namespace
+
+bool overIslands(Simulation& simulation, IslandOutcome (*advance)(IslandStep&), SearchMonitor* monitor) {
+  Engine& engine = *simulation.engine;
+  const std::size_t islands = engine.memo.islands.count();
+  engine.scratch.islandCounters.assign(islands, Counters{});
+  engine.scratch.islandTimes.assign(islands, StageTimes{});
+  engine.scratch.islandOutcome.assign(islands, 0);
+  const ContactLaw law = contactLaw(simulation);
+  prepareFrameStart(simulation);
+  bool wide = false;
+  for (std::size_t i = 0; i < islands; ++i) wide = wide || engine.memo.islands.island(i).size() >= tuning::kParallelBlocks;
+  engine.contacts.reserve(engine.pairs.size(), wide);
+  if (engine.memo.topologyChanged) {
+    for (const std::int32_t contact : engine.pairs.contact) {
+      if (contact >= 0) engine.contacts.pose(contact) = RelativePose{};
+    }
+  }
+  FirstDivergence divergence;
+  tbb::parallel_for(std::size_t{0}, islands, [&](std::size_t i) {
+    try {
+      runIsland(simulation, law, i, advance, monitor);
+    } catch (const DivergenceError&) {
+      divergence.keep(i, std::current_exception());
+    }
+  });
+  divergence.throwIfAny();
+  bool inside = true;
+  simulation.substeps = 0;
+  for (std::size_t i = 0; i < islands; ++i) {
+    inside = inside && engine.scratch.islandOutcome[i] >= 0;
+    simulation.substeps = std::max(simulation.substeps, engine.scratch.islandOutcome[i]);
+  }
+  for (std::size_t i = 0; i < islands; ++i) simulation.stageTimes += engine.scratch.islandTimes[i];
+  return inside;
+}
+
+}  // namespace springtower

@@ -1,0 +1,13 @@
+#pragma once
+
+#include "solver/implicit/search_monitor.h"
+#include "solver/world/island_step.h"
+
+namespace springtower {
+
+/// Runs `advance` for every island, side by side, from a checkpoint of where each is now. Returns whether all have stayed inside
+/// their swept boxes. Throws the DivergenceError of the first island in their order that has one, when all have run: the message
+/// is the same on any number of threads, and the state as well. `monitor`, or null, is handed on.
+bool overIslands(Simulation& simulation, IslandOutcome (*advance)(IslandStep&), SearchMonitor* monitor = nullptr);
+
+}  // namespace springtower

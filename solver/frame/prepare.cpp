@@ -1,0 +1,72 @@
+#include "solver/frame/prepare.h"
+
+#include "core/error.h"
+#include "core/processor_time.h"
+#include "core/tuning.h"
+#include "solver/contact/rigid_contacts.h"
+#include "solver/contact/update.h"
+#include "solver/frame/over_islands.h"
+#include "solver/frame/pairs.h"
+#include "solver/implicit/equilibrium.h"
+#include "solver/implicit/system.h"
+
+#include <fmt/format.h>
+
+namespace springtower {
+
+namespace {
+
+// Finds an island's contacts and its equilibrium. One that starts as placed counts as no longer than no step.
+IslandOutcome prepareIsland(IslandStep& step) {
+  const Settings& settings = step.simulation.scene.settings;
+  step.pointKind = pointKindOf(settings.method);
+  findTouching(step);
+  IslandOutcome outcome;
+  if (traitsOf(settings.method).family != MethodFamily::rigid && startInEquilibrium(step)) outcome.substeps = 1;
+  step.monitor->islandDone(step.blocks.size());
+  return outcome;
+}
+
+}  // namespace
+
+bool isPrepared(const Simulation& simulation) {
+  return simulation.engine->memo.prepared;
+}
+
+PrepareResult prepare(Simulation& simulation, const PrepareOptions& options) {
+  if (!(options.budget_s >= 0.0))
+    throw InputError(fmt::format("prepare: found a budget of {} s, allowed 0 or more", options.budget_s));
+  PrepareResult result;
+  Engine& engine = *simulation.engine;
+  if (engine.memo.prepared) return result;
+  engine.memo.prepared = true;
+  if (traitsOf(simulation.scene.settings.method).family == MethodFamily::report) return result;
+  const StageTimes before = simulation.stageTimes;
+  const double processorStart_s = processorTime_s();
+  SearchMonitor monitor(engine.sleep.awakeCount, options.budget_s, options.goesOn);
+  // On its way into equilibrium the top of a tower sinks by the gaps of all rows.
+  findNearPairs(simulation, tuning::kReplayMarginGrowth * tuning::kSweepMargin * simulation.lengths.blockHeight_m);
+  simulation.counters.blockPairs = 0;  // of frames
+  overIslands(simulation, prepareIsland, &monitor);
+  for (std::size_t i = 0; i < engine.memo.islands.count(); ++i) {
+    const std::size_t blocks = engine.memo.islands.island(i).size();
+    result.blocks += blocks;
+    if (engine.scratch.islandOutcome[i] > 0) result.blocksInBalance += blocks;
+    engine.scratch.islandCounters[i].newtonFailures = 0;  // the search has other ways to go on, and takes no explicit steps
+    simulation.counters += engine.scratch.islandCounters[i];
+  }
+  for (NewtonSystem& island : engine.memo.newtonSystems.all()) {
+    island.forcesKnown = false;  // they are those of a law without dashpots
+    // The search takes more directions and tangents than the frames to come.
+    static_cast<NewtonWork&>(island) = {};
+    layOutWork(island);
+  }
+  simulation.substeps = 0;
+  simulation.stageTimes = before;  // of frames
+  if (monitor.isStopped()) result.end = monitor.isOutOfTime() ? PrepareEnd::outOfTime : PrepareEnd::cancelled;
+  result.wall_s = monitor.elapsed_s();
+  result.processor_s = processorTime_s() - processorStart_s;
+  return result;
+}
+
+}  // namespace springtower

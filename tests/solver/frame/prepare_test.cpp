@@ -1,0 +1,101 @@
+#include "solver/frame/prepare.h"
+
+#include "core/error.h"
+#include "scenarios/towers.h"
+#include "solver/metrics/balance.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <oneapi/tbb/global_control.h>
+#include <vector>
+
+namespace springtower {
+namespace {
+
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+std::uint64_t hashPrepared(const Scene& scene, int threads) {
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+  Simulation simulation(scene);
+  prepare(simulation);
+  return stateHash(simulation);
+}
+
+TEST(Prepare, AFrameIsRefusedBefore) {
+  Simulation simulation(towerScene(2));
+  EXPECT_THAT([&] { stepFrame(simulation); }, ThrowsMessage<InputError>(HasSubstr("not prepared")));
+  prepare(simulation);
+  stepFrame(simulation);
+  EXPECT_EQ(simulation.frame, 1U);
+}
+
+// After the search, contact and spring forces carry every block's weight before a frame has passed.
+TEST(Prepare, ForcesBalanceWeights) {
+  Simulation simulation(towerScene(18));
+  const PrepareResult done = prepare(simulation);
+  EXPECT_EQ(done.end, PrepareEnd::complete);
+  EXPECT_EQ(done.blocks, 54U);
+  EXPECT_EQ(done.blocksInBalance, 54U);
+  EXPECT_EQ(simulation.frame, 0U);
+  const Imbalance worst = largestImbalance(imbalances(simulation, contactForces(simulation)));
+  EXPECT_LT(worst.force, 1e-3) << "of a block's weight";
+}
+
+TEST(Prepare, ASecondCallDoesNothing) {
+  Simulation simulation(towerScene(6));
+  prepare(simulation);
+  const std::uint64_t hash = stateHash(simulation);
+  EXPECT_EQ(prepare(simulation).blocks, 0U);
+  EXPECT_EQ(stateHash(simulation), hash);
+}
+
+TEST(Prepare, TheSameBitsOnAnyNumberOfThreads) {
+  for (const Scene& scene : {towerScene(18), towerScene(100)}) EXPECT_EQ(hashPrepared(scene, 1), hashPrepared(scene, 4));
+}
+
+// Every method whose contacts have stiffness starts from the same equilibrium.
+TEST(Prepare, ExplicitMethodsStartFromItToo) {
+  Scene scene = towerScene(6);
+  Simulation implicit(scene);
+  prepare(implicit);
+  scene.settings.method = Method::semiImplicitEuler;
+  Simulation explicitSteps(scene);
+  EXPECT_EQ(prepare(explicitSteps).blocksInBalance, 18U);
+  for (std::size_t b = 0; b < 18; ++b) {
+    for (std::size_t c = 0; c < kCorners; ++c)
+      EXPECT_LT((implicit.state.position.at(b, c) - explicitSteps.state.position.at(b, c)).norm(), 1e-9);
+  }
+}
+
+TEST(Prepare, WithoutTimeBlocksStayAsPlaced) {
+  Simulation simulation(towerScene(18));
+  const Vec3 placed = simulation.state.position.at(53, 7);
+  const PrepareResult done = prepare(simulation, {.budget_s = 0.0});
+  EXPECT_EQ(done.end, PrepareEnd::outOfTime);
+  EXPECT_EQ(done.blocksInBalance, 0U);
+  EXPECT_EQ(simulation.state.position.at(53, 7), placed);
+}
+
+// The caller is told how far the search is, and ends it where it is.
+TEST(Prepare, EndsWhereTheCallerWantsIt) {
+  Simulation simulation(towerScene(100));
+  std::vector<PrepareProgress> heard;
+  const PrepareResult done = prepare(simulation, {.goesOn = [&](const PrepareProgress& now) {
+                                       heard.push_back(now);
+                                       return false;
+                                     }});
+  EXPECT_EQ(done.end, PrepareEnd::cancelled);
+  ASSERT_EQ(heard.size(), 1U);
+  EXPECT_EQ(heard.front().blocks, 300U);
+  EXPECT_EQ(heard.front().blocksDone, 0U);
+}
+
+TEST(Prepare, RefusesANegativeBudget) {
+  Simulation simulation(towerScene(1));
+  EXPECT_THAT([&] { prepare(simulation, {.budget_s = -1.0}); }, ThrowsMessage<InputError>(HasSubstr("found a budget of -1 s")));
+  EXPECT_FALSE(isPrepared(simulation));
+}
+
+}  // namespace
+}  // namespace springtower
