@@ -7,7 +7,7 @@
 namespace springtower {
 
 /// A bar that shows how far a long job is, rewritten in place on standard error; silent unless that is a terminal and the job
-/// takes more than two seconds. For one thread.
+/// takes more than two seconds. For one thread at a time.
 class Progress {
  public:
   /// `unit` follows "[####      ] DONE of TOTAL "; with a total of 0, one that is not known, "DONE ".

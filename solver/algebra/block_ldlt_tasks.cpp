@@ -16,50 +16,13 @@ std::size_t at(std::int32_t index) {
   return static_cast<std::size_t>(index);
 }
 
-SPRINGTOWER_INLINE void copyBlock(const float* from, float* to) {
-  std::copy_n(from, kNodeMatrix, to);
-}
-
-// The transposed block of L, W = D^-1 U^T, of a block U that earlier columns have updated.
-SPRINGTOWER_INLINE void divide(const float* inverse, const float* block, float* divided) {
-  alignas(32) float turned[kNodeMatrix];
-  transposeBlock(block, turned);
-  blockProduct(inverse, turned, divided);
-}
-
-// Subtracts the products of block i of a column, U_i, with the transposed blocks of L from W_k on, one after another from
-// `divided`, from what elimination updates with them: blocks below the diagonal, and the diagonal itself where k comes to i.
-SPRINGTOWER_INLINE void updateTargets(BlockCholesky& matrix, std::size_t first, std::size_t i, std::size_t k, std::size_t last,
-                                      const float* divided) {
-  const std::int32_t* target = matrix.target.data() + matrix.targetStart[i];
-  float* lower = matrix.lower.data();
-  const float* block = lower + kNodeMatrix * i;
-  const std::size_t below = std::min(i, last);
-  for (; k < below; ++k, divided += kNodeMatrix)
-    subtractBlockProduct(block, divided, lower + kNodeMatrix * at(target[k - first]));
-  if (k == i && i < last) subtractBlockProduct(block, divided, matrix.diagonal.data() + kNodeMatrix * at(-1 - target[i - first]));
-}
-
 // Eliminates a task's columns, as far as its own columns are concerned: blocks in rows of the top are updated, but left
 // undivided.
 SPRINGTOWER_KERNEL
 bool eliminateTask(BlockCholesky& matrix, std::span<const std::int32_t> columns) {
   bool positive = true;
-  for (const std::int32_t column : columns) {
-    float* inverse = blockAt(matrix.diagonal, at(column));
-    positive = invertBlock(inverse) && positive;
-    const std::size_t first = at(matrix.columnStart[at(column)]);
-    const std::size_t last = at(matrix.columnStart[at(column) + 1]);
-    const std::size_t firstTop = at(matrix.tasks.firstTop[at(column)]);
-    for (std::size_t i = first; i < last; ++i) {
-      updateTargets(matrix, first, i, first, std::min(i, firstTop), blockAt(matrix.lower, first));
-      if (i >= firstTop) continue;
-      alignas(32) float divided[kNodeMatrix];
-      divide(inverse, blockAt(matrix.lower, i), divided);
-      updateTargets(matrix, first, i, i, i + 1, divided);
-      copyBlock(divided, blockAt(matrix.lower, i));
-    }
-  }
+  for (const std::int32_t column : columns)
+    positive = eliminateColumn(matrix, at(column), at(matrix.tasks.firstTop[at(column)])) && positive;
   return positive;
 }
 
@@ -72,7 +35,7 @@ void gatherTopColumns(BlockCholesky& matrix, std::span<const EliminationTasks::S
     const std::size_t first = at(matrix.columnStart[at(column)]);
     const std::size_t last = at(matrix.columnStart[at(column) + 1]);
     for (std::size_t i = at(from); i < last; ++i) {
-      if (i < at(to)) divide(blockAt(matrix.diagonal, at(column)), blockAt(matrix.lower, i), divided[i - at(from)]);
+      if (i < at(to)) divideBlock(blockAt(matrix.diagonal, at(column)), blockAt(matrix.lower, i), divided[i - at(from)]);
       updateTargets(matrix, first, i, at(from), std::min(i + 1, at(to)), divided[0]);
     }
   }
@@ -84,8 +47,8 @@ void divideTopRows(BlockCholesky& matrix, std::span<const std::int32_t> columns)
   for (const std::int32_t column : columns) {
     for (std::int32_t i = matrix.tasks.firstTop[at(column)]; i < matrix.columnStart[at(column) + 1]; ++i) {
       alignas(32) float divided[kNodeMatrix];
-      divide(blockAt(matrix.diagonal, at(column)), blockAt(matrix.lower, at(i)), divided);
-      copyBlock(divided, blockAt(matrix.lower, at(i)));
+      divideBlock(blockAt(matrix.diagonal, at(column)), blockAt(matrix.lower, at(i)), divided);
+      std::copy_n(divided, kNodeMatrix, blockAt(matrix.lower, at(i)));
     }
   }
 }
@@ -100,7 +63,7 @@ SPRINGTOWER_KERNEL
 void divideBlocks(BlockCholesky& matrix, std::size_t column, std::size_t from, std::size_t to) {
   const std::size_t first = at(matrix.columnStart[column]);
   for (std::size_t i = from; i < to; ++i)
-    divide(blockAt(matrix.diagonal, column), blockAt(matrix.lower, i), blockAt(matrix.divided, i - first));
+    divideBlock(blockAt(matrix.diagonal, column), blockAt(matrix.lower, i), blockAt(matrix.divided, i - first));
 }
 
 // Updates what lies in the row of block i of a column of the top.
@@ -114,11 +77,10 @@ bool eliminateTopColumn(BlockCholesky& matrix, std::size_t column) {
   const std::size_t first = at(matrix.columnStart[column]);
   const std::size_t count = at(matrix.columnStart[column + 1]) - first;
   const bool parallel = count * (count + 3) / 2 >= tuning::kParallelProducts;
-  constexpr std::size_t kRowGrain = 4;
-  forRanges(count, kRowGrain, parallel,
+  forRanges(count, tuning::kEliminationRowGrain, parallel,
             [&](std::size_t from, std::size_t to) { divideBlocks(matrix, column, first + from, first + to); });
   // Rows have the more to do the later they come, so each range takes as many from the end as from the beginning.
-  forRanges((count + 1) / 2, kRowGrain, parallel, [&](std::size_t from, std::size_t to) {
+  forRanges((count + 1) / 2, tuning::kEliminationRowGrain, parallel, [&](std::size_t from, std::size_t to) {
     for (std::size_t r = from; r < to; ++r) {
       updateRow(matrix, first, first + r);
       if (count - 1 - r != r) updateRow(matrix, first, first + count - 1 - r);

@@ -130,7 +130,7 @@ void evaluateForces(IslandStep& step, const MotionState& state, const ParticleAr
   const bool sameMotion = &carried == &state.velocity;
   const double kick_s = sameMotion && update == PointUpdate::store ? step.kick_s : 0.0;
   const Evaluation evaluation{
-      {advance_s, step.maxStiffening, update == PointUpdate::trial ? 0.0 : 1.0, step.sticks, kick_s, step.blur_j},
+      {advance_s, step.maxStiffening, update == PointUpdate::trial ? 0.0 : 1.0, step.sticks, kick_s, step.smoothing_j},
       sameMotion,
       update};
   overBlocks(step, [&](std::size_t first, std::size_t last) {

@@ -16,7 +16,7 @@ namespace springtower {
 
 namespace {
 
-// Finds an island's contacts and its equilibrium. One that starts as placed counts as no longer than no step.
+// Finds an island's contacts and its equilibrium; `substeps` of the result is 1 where there is one, 0 where it starts as placed.
 IslandOutcome prepareIsland(IslandStep& step) {
   const Settings& settings = step.simulation.scene.settings;
   step.pointKind = pointKindOf(settings.method);
@@ -46,7 +46,7 @@ PrepareResult prepare(Simulation& simulation, const PrepareOptions& options) {
   SearchMonitor monitor(engine.sleep.awakeCount, options.budget_s, options.goesOn);
   // On its way into equilibrium the top of a tower sinks by the gaps of all rows.
   findNearPairs(simulation, tuning::kReplayMarginGrowth * tuning::kSweepMargin * simulation.lengths.blockHeight_m);
-  simulation.counters.blockPairs = 0;  // of frames
+  simulation.counters.blockPairs = 0;  // counts the sweeps of frames
   overIslands(simulation, prepareIsland, &monitor);
   for (std::size_t i = 0; i < engine.memo.islands.count(); ++i) {
     const std::size_t blocks = engine.memo.islands.island(i).size();

@@ -4,10 +4,10 @@
 #include "solver/block/inertia.h"
 #include "solver/contact/create.h"
 #include "solver/contact/update.h"
-#include "solver/implicit/blurred.h"
 #include "solver/implicit/run.h"
+#include "solver/implicit/saved_island.h"
 #include "solver/implicit/search_monitor.h"
-#include "solver/implicit/waypoint.h"
+#include "solver/implicit/smoothing.h"
 #include "solver/world/checkpoint.h"
 
 #include <algorithm>
@@ -86,13 +86,13 @@ bool settleAtOnce(IslandStep& step) {
          settleWithFriction(step, lastStep_s(step));
 }
 
-// From steps with blurred contacts that get sharper, to steps with friction.
-bool settleAfterBlur(IslandStep& step) {
+// From steps with smoothed contacts that are smoothed less and less, to steps with friction.
+bool settleAfterSmoothing(IslandStep& step) {
   return settleWithFriction(
       step, slipsMuch(step) ? tuning::kFirstEquilibriumStep * step.simulation.lengths.fallTime_s : lastStep_s(step));
 }
-bool settleBlurred(IslandStep& step) {
-  return approachBlurred(step) && settleAfterBlur(step);
+bool settleSmoothed(IslandStep& step) {
+  return approachSmoothed(step) && settleAfterSmoothing(step);
 }
 
 // The search for an island's equilibrium, at any share of the tilt of gravity.
@@ -104,7 +104,7 @@ class EquilibriumSearch {
   // falls under tilted gravity is put into an equilibrium at nearly the largest share of the tilt at which it stands.
   bool find(bool mayFall) {
     tiltTo(mayFall ? 0.0 : 1.0);
-    if (!settles(settleAtOnce) && !settles(settleBlurred)) return false;
+    if (!settles(settleAtOnce) && !settles(settleSmoothed)) return false;
     if (mayFall) raiseTilt();
     if (!isStopped()) return true;
     startAgain();
@@ -119,23 +119,23 @@ class EquilibriumSearch {
   // A share of the tilt with an equilibrium near the present state.
   struct Standing {
     double share;
-    Waypoint state;
+    SavedIsland state;
   };
 
   // From the equilibrium on level ground, under gravity that is tilted as far as the island stands: at once, or else by halving
   // the rise.
   void raiseTilt() {
     std::vector<Standing> path;
-    path.push_back({0.0, Waypoint(step_)});
+    path.push_back({0.0, SavedIsland(step_)});
     tiltTo(1.0);
-    if (settleBlurred(step_)) return;
+    if (settleSmoothed(step_)) return;
     path.back().state.restore(step_);
     double falls = 1.0;  // the least share at which it was found to fall
     while (falls - path.back().share > tuning::kTiltGap && !isStopped()) {
       const double next = 0.5 * (path.back().share + falls);
       tiltTo(next);
-      if (approachBlurred(step_)) {
-        path.push_back({next, Waypoint(step_)});
+      if (approachSmoothed(step_)) {
+        path.push_back({next, SavedIsland(step_)});
       } else {
         falls = next;
         path.back().state.restore(step_);
@@ -143,7 +143,7 @@ class EquilibriumSearch {
     }
     while (path.size() > 1) {
       tiltTo(path.back().share);
-      if (settleAfterBlur(step_)) return;
+      if (settleAfterSmoothing(step_)) return;
       path.pop_back();
       path.back().state.restore(step_);
     }
@@ -188,7 +188,7 @@ ContactLaw staticLaw(ContactLaw law) {
   return law;
 }
 
-// Separates pairs that blurred contacts joined across a gap and that have stayed apart: as contacts without points that touch,
+// Separates pairs that smoothed contacts joined across a gap and that have stayed apart: as contacts without points that touch,
 // they would count as hit when the blocks come near in a later step.
 void dropOpenContacts(IslandStep& step) {
   for (const std::int32_t pair : step.pairs) {

@@ -157,9 +157,9 @@ PointStiffness pointStiffness(const IslandStep& step, const ContactView& manifol
   const bool born = touchingAt(manifold, i) == 0.0;
   const double damping = law.dampingTime_s / step_s;
   const double relaxing = born ? law.maxwellRatio : law.maxwellRatio * law.maxwellTime_s / (law.maxwellTime_s + step.drift_s);
-  const bool blurred = step.blur_j > 0.0;
-  const double k = stiffness * (blurred ? row.stiffening[lane] : std::max(1.0, row.stiffening[lane]));
-  const double held = blurred ? stiffness * stiffestOf(manifold.penalty(i)) : k;
+  const bool smoothed = step.smoothing_j > 0.0;
+  const double k = stiffness * (smoothed ? row.stiffening[lane] : std::max(1.0, row.stiffening[lane]));
+  const double held = smoothed ? stiffness * stiffestOf(manifold.penalty(i)) : k;
   PointStiffness result;
   result.normal = k * (1.0 + relaxing + (born ? law.dampingTime_s / step.drift_s : damping));
   result.tangential = held * (law.tangentialRatio * (1.0 + damping));

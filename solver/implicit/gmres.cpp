@@ -1,11 +1,10 @@
 #include "solver/implicit/gmres.h"
 
 #include "core/lanes.h"
-#include "core/parallel.h"
 #include "core/tuning.h"
 #include "solver/implicit/friction_tangent.h"
 #include "solver/implicit/system.h"
-#include "solver/world/newton_system.h"
+#include "solver/world/over_island.h"
 
 #include <algorithm>
 #include <cmath>
@@ -34,10 +33,6 @@ void findCoupledNodes(NewtonSystem& island) {
   }
 }
 
-bool isWide(const NewtonSystem& island) {
-  return island.residual.size() >= tuning::kParallelBlocks;
-}
-
 SPRINGTOWER_INLINE double dotOf(const double* p, const double* q, std::size_t count) {
   Lanes total = {};
   for (std::size_t i = 0; i < count; i += 4) {
@@ -49,14 +44,14 @@ SPRINGTOWER_INLINE double dotOf(const double* p, const double* q, std::size_t co
   return sum(total);
 }
 
-double dot(const NewtonSystem& island, const double* p, const double* q, std::size_t count) {
-  return sumRanges(count / kNodeSize, tuning::kBlockGrain, isWide(island), [&](std::size_t first, std::size_t last) {
+double dot(const IslandStep& step, const double* p, const double* q, std::size_t count) {
+  return sumRanges(count / kNodeSize, tuning::kBlockGrain, isWide(step), [&](std::size_t first, std::size_t last) {
     return dotOf(p + kNodeSize * first, q + kNodeSize * first, kNodeSize * (last - first));
   });
 }
 
-void addScaled(const NewtonSystem& island, double factor, const double* from, std::size_t count, double* to) {
-  forRanges(count / kNodeSize, tuning::kBlockGrain, isWide(island), [&](std::size_t first, std::size_t last) {
+void addScaled(const IslandStep& step, double factor, const double* from, std::size_t count, double* to) {
+  forRanges(count / kNodeSize, tuning::kBlockGrain, isWide(step), [&](std::size_t first, std::size_t last) {
     for (std::size_t i = kNodeSize * first; i < kNodeSize * last; ++i) to[i] += factor * from[i];
   });
 }
@@ -74,8 +69,8 @@ SPRINGTOWER_INLINE void applyTangents(NewtonSystem& island, double* force) {
 
 // Whether the displacements of each direction are stored. In a wide island they would be most of its memory, and one more
 // solution for the combined forces costs about as much as to read them.
-bool keepsCorrections(const NewtonSystem& island) {
-  return !isWide(island);
+bool keepsCorrections(const IslandStep& step) {
+  return !isWide(step);
 }
 
 // Solves for the displacements of forces on the coupled nodes.
@@ -87,11 +82,11 @@ void solveForCoupled(IslandStep& step, NewtonSystem& island, const double* force
 }
 
 // Makes room for direction j and the residual after it.
-void makeRoom(std::size_t j, std::size_t count, NewtonSystem& island) {
+void makeRoom(const IslandStep& step, std::size_t j, std::size_t count, NewtonSystem& island) {
   const std::size_t all = island.affine.size();
   const std::size_t room = std::max(tuning::kMinGmresDirections, j + 1);
   if (island.coupledForce.size() < (room + 1) * count) island.coupledForce.resize((room + 1) * count);
-  const std::size_t kept = keepsCorrections(island) ? room + 1 : 1;
+  const std::size_t kept = keepsCorrections(step) ? room + 1 : 1;
   if (island.correction.size() < kept * all) island.correction.resize(kept * all);
 }
 
@@ -141,19 +136,19 @@ bool solveCoupled(IslandStep& step, NewtonSystem& island, double allowed_n) {
   }
   const std::size_t all = island.affine.size();
   const double allowed = std::max(
-      allowed_n, tuning::kGmresRelativeTolerance * std::sqrt(dot(island, island.affine.data(), island.affine.data(), all)));
+      allowed_n, tuning::kGmresRelativeTolerance * std::sqrt(dot(step, island.affine.data(), island.affine.data(), all)));
   solve(step, island);
   findCoupledNodes(island);
   const std::size_t count = kNodeSize * island.coupled.size();
   island.coupledMotion.resize(count);
-  makeRoom(0, count, island);
+  makeRoom(step, 0, count, island);
   const auto force = [&](std::size_t j) { return island.coupledForce.data() + j * count; };
   const auto correction = [&](std::size_t j) { return island.correction.data() + (j + 1) * all; };
 
   LeastSquares squares;
   std::copy(island.affine.begin(), island.affine.end(), island.correction.begin());
   applyTangents(island, force(0));
-  squares.right[0] = std::sqrt(dot(island, force(0), force(0), count));
+  squares.right[0] = std::sqrt(dot(step, force(0), force(0), count));
   if (!(squares.right[0] > allowed)) return true;
   for (std::size_t i = 0; i < count; ++i) force(0)[i] /= squares.right[0];
 
@@ -161,17 +156,17 @@ bool solveCoupled(IslandStep& step, NewtonSystem& island, double allowed_n) {
   const std::size_t most = mostDirections(island);
   while (used < most) {
     const std::size_t j = used++;
-    makeRoom(j, count, island);
+    makeRoom(step, j, count, island);
     solveForCoupled(step, island, force(j));
-    if (keepsCorrections(island)) std::copy(island.affine.begin(), island.affine.end(), correction(j));
+    if (keepsCorrections(step)) std::copy(island.affine.begin(), island.affine.end(), correction(j));
     double* next = force(j + 1);
     applyTangents(island, next);
     for (std::size_t i = 0; i < count; ++i) next[i] = force(j)[i] - next[i];
     for (std::size_t k = 0; k <= j; ++k) {
-      squares.column[j][k] = dot(island, next, force(k), count);
-      addScaled(island, -squares.column[j][k], force(k), count, next);
+      squares.column[j][k] = dot(step, next, force(k), count);
+      addScaled(step, -squares.column[j][k], force(k), count, next);
     }
-    const double length = std::sqrt(dot(island, next, next, count));
+    const double length = std::sqrt(dot(step, next, next, count));
     squares.column[j][j + 1] = length;
     squares.turn(j);
     if (!(std::abs(squares.right[j + 1]) > allowed) || !(length > 0.0)) break;
@@ -180,16 +175,16 @@ bool solveCoupled(IslandStep& step, NewtonSystem& island, double allowed_n) {
   const bool reached = !(std::abs(squares.right[used]) > allowed);
   island.directions = static_cast<int>(used);
   squares.backSubstitute(used);
-  if (!keepsCorrections(island)) {
+  if (!keepsCorrections(step)) {
     double* sum = force(used);
     std::fill_n(sum, count, 0.0);
-    for (std::size_t j = 0; j < used; ++j) addScaled(island, squares.right[j], force(j), count, sum);
+    for (std::size_t j = 0; j < used; ++j) addScaled(step, squares.right[j], force(j), count, sum);
     solveForCoupled(step, island, sum);
-    addScaled(island, 1.0, island.correction.data(), all, island.affine.data());
+    addScaled(step, 1.0, island.correction.data(), all, island.affine.data());
     return reached;
   }
   std::copy_n(island.correction.data(), all, island.affine.data());
-  for (std::size_t j = 0; j < used; ++j) addScaled(island, squares.right[j], correction(j), all, island.affine.data());
+  for (std::size_t j = 0; j < used; ++j) addScaled(step, squares.right[j], correction(j), all, island.affine.data());
   return reached;
 }
 

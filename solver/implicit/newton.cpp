@@ -333,7 +333,8 @@ bool solveStep(IslandStep& step, double effective_s, bool carried, const NewtonO
     const bool old =
         iteration == 0 && island.directions >= tuning::kRefactorDirectionShare * static_cast<double>(mostDirections(island));
     const bool stale = (slow || old) && (now.changed || now.slides || now.limited);
-    const bool renewed = stale || !island.factorised || step.blur_j > 0.0;  // blurred contacts are of another stiffness each time
+    const bool renewed =
+        stale || !island.factorised || step.smoothing_j > 0.0;  // smoothed contacts are of another stiffness each time
     if (renewed && !refactorise(step, island, effective_s)) break;
     const double before = residual;
     const bool differs = island.useConsistentTangent && (now.changed || now.slides || !island.factorTangents.empty());
@@ -407,9 +408,9 @@ bool stepImplicit(IslandStep& step, bool canRetryFiner) {
 
 bool stepFromRest(IslandStep& step, double effective_s, StepFromRest kind) {
   step.drift_s = effective_s / kBdf2;
-  if (kind == StepFromRest::blurred)
+  if (kind == StepFromRest::smoothed)
     evaluateForces(step, step.simulation.state, step.simulation.state.velocity, 0.0, PointUpdate::store);
-  step.sticks = kind == StepFromRest::supported || kind == StepFromRest::blurred;
+  step.sticks = kind == StepFromRest::supported || kind == StepFromRest::smoothed;
   evaluateForces(step, step.simulation.state, step.simulation.state.velocity, 0.0, PointUpdate::trial);
   predictEuler(step, effective_s);
   // Where nothing slips, what the rounded factors of tall towers leave gets less only slowly.
@@ -420,7 +421,7 @@ bool stepFromRest(IslandStep& step, double effective_s, StepFromRest kind) {
   how.untilStalled = true;
   how.assumesSupport = kind == StepFromRest::supported;
   if (kind == StepFromRest::supported) how.leastEnough = tuning::kStickingResidual;
-  if (kind == StepFromRest::blurred) how.leastEnough = tuning::kBlurredResidual;
+  if (kind == StepFromRest::smoothed) how.leastEnough = tuning::kSmoothedResidual;
   const bool converged = solveStep(step, effective_s, false, how);
   step.sticks = false;
   return finishStep(step, converged);

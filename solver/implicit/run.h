@@ -28,9 +28,9 @@ bool stepImplicit(IslandStep& step, bool canRetryFiner);
 double stop(IslandStep& step);
 
 /// How a step from rest is solved. supported: nothing slips, and the solution begins as if all points pushed. coulomb: friction
-/// is bounded by the normal forces at the end. blurred: nothing slips in the step, with the contacts of step.blur_j; friction is
-/// cut down to its bounds before it.
-enum class StepFromRest { supported, coulomb, blurred };
+/// is bounded by the normal forces at the end. smoothed: nothing slips in the step, with the contacts of step.smoothing_j;
+/// friction is cut down to its bounds before it.
+enum class StepFromRest { supported, coulomb, smoothed };
 
 /// One step of implicit Euler from rest, of `effective_s`, towards static equilibrium. Contact points advance by more than that,
 /// as in stepImplicit. Returns false if it does not converge; the state is then restored.

@@ -17,8 +17,8 @@ struct PrepareProgress {
   double elapsed_s = 0.0;        ///< s, wall time
 };
 
-/// Watches the searches of all islands, which run side by side: reports progress, and stops them when their time is spent or when
-/// the caller wants it.
+/// Watches the searches of all islands, which run side by side: reports progress, and stops them when their time is spent or the
+/// caller ends them.
 class SearchMonitor {
  public:
   using GoesOn = std::function<bool(const PrepareProgress&)>;

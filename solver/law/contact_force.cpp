@@ -103,18 +103,18 @@ SPRINGTOWER_INLINE void frictionLaw(const LawStep& s, const PointState& state, c
   }
 }
 
-// The law of blurred contacts, without damping. Stiffening and rest depth are those of the tangent to the normal force, so that
+// The law of smoothed contacts, without damping. Stiffening and rest depth are those of the tangent to the normal force, so that
 // the linearised contact is what it is for others. The tangential stiffness follows that of the row's stiffest point, and only
 // between steps: so the forces of a step in which nothing slips have a potential. Friction is kept where that stiffness grows.
-SPRINGTOWER_INLINE void blurredLaw(const LawStep& s, const Lanes& depth, const Lanes& closing, const Lanes* relative,
-                                   const Lanes* carried, const double* normal, const Lanes& inUse, PointLanes& p) {
+SPRINGTOWER_INLINE void smoothedLaw(const LawStep& s, const Lanes& depth, const Lanes& closing, const Lanes* relative,
+                                    const Lanes* carried, const double* normal, const Lanes& inUse, PointLanes& p) {
   const Lanes zero = {0.0, 0.0, 0.0, 0.0};
   const LaneMask used = inUse > zero;
   const auto stiffest = [&p] {
     return std::max(std::max(p.stiffening[0], p.stiffening[1]), std::max(p.stiffening[2], p.stiffening[3]));
   };
   Lanes root;
-  squareRoot(depth * depth + 4.0 * s.step.blur_j / s.stiffness, root);
+  squareRoot(depth * depth + 4.0 * s.step.smoothing_j / s.stiffness, root);
   double holding = stiffest();
   p.stiffening = used ? 0.5 * (1.0 + depth / root) : zero;
   if (s.step.advance_s == 0.0) {
@@ -143,8 +143,8 @@ SPRINGTOWER_INLINE void pointLaw(const LawStep& s, const Lanes& depth, const Lan
   // First contact: the rest depth is the depth when it is detected (explicit steps) or 0 (implicit steps), so the spring starts
   // unloaded and adds no energy. Stiffness is multiplied so that the impact at the present closing speed stops within the impact
   // depth. The rest depth shrinks with the depth as the point lifts, while the spring stores nothing.
-  if (s.step.blur_j > 0.0) {
-    blurredLaw(s, depth, closing, relative, carried, normal, inUse, p);
+  if (s.step.smoothing_j > 0.0) {
+    smoothedLaw(s, depth, closing, relative, carried, normal, inUse, p);
     return;
   }
   const LaneMask touching = (depth > zero) & (inUse > zero);

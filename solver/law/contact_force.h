@@ -41,9 +41,9 @@ struct ContactStep {
   double firstRestDepthShare = 1.0;
   bool sticks = false;  ///< whether points that push stick, where there is friction at all
   double kick_s = 0.0;  ///< s for which the force acts on the velocities of a leapfrog step; 0 in other steps
-  /// J, of blurred contacts, in the search for an equilibrium: every point, also across a gap, has the normal force N > 0 with
+  /// J, of smoothed contacts, in the search for an equilibrium: every point, also across a gap, has the normal force N > 0 with
   /// N (N / k - depth) equal to this (Chen & Harker 1993). 0: contacts as they are.
-  double blur_j = 0.0;
+  double smoothing_j = 0.0;
 };
 
 /// Forces of one manifold on its two blocks, as sums over their affine coordinates (solver/block/affine.h), N.

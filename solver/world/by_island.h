@@ -1,6 +1,7 @@
 #pragma once
 
 #include "broadphase/islands.h"
+#include "core/tuning.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -54,7 +55,7 @@ class ByIsland {
       if (owner_[i] < 0) free_.push_back(static_cast<std::int32_t>(i));
     }
     for (std::size_t i = 0; i < islands.count(); ++i) place(islands.island(i).front());
-    while (!owner_.empty() && owner_.back() < 0 && free_.size() > kSpare) {
+    while (!owner_.empty() && owner_.back() < 0 && free_.size() > tuning::kSpareIslandRecords) {
       owner_.pop_back();
       records_.pop_back();
       free_.erase(free_.begin());  // the largest, which is the last record
@@ -78,7 +79,7 @@ class ByIsland {
 
   std::span<Record> all() { return records_; }
   [[nodiscard]] std::span<const Record> all() const { return records_; }
-  /// Bytes of the indices of records.
+  /// Bytes of the indices by which records are found.
   [[nodiscard]] std::size_t indexBytes() const { return (place_.size() + owner_.size() + free_.size()) * sizeof(std::int32_t); }
 
  private:
@@ -86,7 +87,6 @@ class ByIsland {
   friend class ByIsland;
 
   static constexpr std::int32_t kNone = -1;
-  static constexpr std::size_t kSpare = 64;  // records kept for islands to come
 
   void place(std::int32_t first) {
     std::int32_t& at = place_[static_cast<std::size_t>(first)];

@@ -32,7 +32,7 @@ struct IslandStep {
   int activeListSteps = 0;                   ///< steps for which `activePairs` remains valid
   PointKind pointKind = PointKind::penalty;  ///< what the points of contacts made now store, by the kind of steps
   bool sticks = false;                       ///< points that push stick, where there is friction at all
-  double blur_j = 0.0;                       ///< of ContactStep
+  double smoothing_j = 0.0;                  ///< of ContactStep
   SearchMonitor* monitor = nullptr;          ///< of the search for the equilibrium, or null
   bool unforced = false;                     ///< neither user forces nor the hand act: the equilibrium before the first frame
 };

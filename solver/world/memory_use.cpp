@@ -48,8 +48,10 @@ std::size_t ofFactors(const Memo& memo) {
   std::size_t sum = 0;
   for (const NewtonSystem& island : memo.newtonSystems.all()) {
     const BlockCholesky& matrix = island.matrix;
+    const EliminationTasks& tasks = matrix.tasks;
     sum += sumOf(matrix.position, matrix.node, matrix.columnStart, matrix.row, matrix.targetStart, matrix.target, matrix.diagonal,
-                 matrix.lower);
+                 matrix.lower, tasks.columnStart, tasks.column, tasks.taskOf, tasks.firstTop, tasks.top, tasks.sourceStart,
+                 tasks.source);
   }
   for (const SparseFactors& sparse : memo.sparseFactors.all()) sum += bytesOf(sparse);
   return sum;
@@ -59,10 +61,11 @@ std::size_t ofNewton(const NewtonSystem& island) {
   const BlockCholesky& matrix = island.matrix;
   std::size_t sum =
       sizeof(NewtonSystem) +
-      sumOf(matrix.mark, matrix.firstChild, matrix.nextChild, matrix.edgeStart, matrix.edgeRow, matrix.work, island.touching,
-            island.slot, island.mask, island.axes, island.residual, island.direction, island.affine, island.factorTangents,
-            island.tangents, island.coupled, island.coupledIndex, island.coupledMotion, island.coupledForce, island.correction,
-            island.blockClasses, island.blockClassOf, island.order.nodes, island.order.centre, island.edges);
+      sumOf(matrix.mark, matrix.firstChild, matrix.nextChild, matrix.edgeStart, matrix.edgeRow, matrix.work, matrix.divided,
+            matrix.taken, island.touching, island.taskPairs, island.taskPairStart, island.tangentStart, island.slot, island.mask,
+            island.axes, island.residual, island.direction, island.affine, island.factorTangents, island.tangents, island.coupled,
+            island.coupledIndex, island.coupledMotion, island.coupledForce, island.correction, island.blockClasses,
+            island.blockClassOf, island.order.nodes, island.order.centre, island.edges);
   for (const DissectionSpace& space : island.order.space)
     sum += sizeof(space) +
            sumOf(space.neighbourStart, space.neighbour, space.sorted, space.best, space.place, space.reach, space.change);
@@ -76,10 +79,12 @@ std::size_t ofMemo(const Memo& memo) {
             memo.previous, memo.previousVelocity, memo.carried, memo.force, memo.frames, memo.motion, memo.carriedMotion);
   sum += sumOf(memo.sweep.order, memo.sweep.place, memo.sweep.columns, memo.sweep.awake, memo.sweep.renewed, memo.sweep.ascending,
                memo.sweep.outOfOrder);
+  for (const SortAndSweep::Found& found : memo.sweep.found) sum += sumOf(found.ascending, found.outOfOrder);
   for (std::size_t a = 0; a < 3; ++a) sum += sumOf(memo.boxes.lower[a], memo.boxes.upper[a]);
   sum += sumOf(memo.islands.blocks, memo.islands.start, memo.islands.islandOf, memo.islands.edges, memo.islands.asleep,
                memo.islands.parent);
   for (const NewtonSystem& island : memo.newtonSystems.all()) sum += ofNewton(island);
+  sum += memo.newtonSystems.indexBytes() + memo.sparseFactors.indexBytes();
   return sum;
 }
 
@@ -92,6 +97,7 @@ std::size_t ofScratch(const Scratch& s) {
             s.chunkTimes, s.islandCounters, s.islandTimes, s.islandOutcome);
   for (const MotionState& stage : s.stage) sum += bytesOf(stage);
   for (const ParticleArray& acceleration : s.stageAcceleration) sum += bytesOf(acceleration);
+  sum += s.rigidIslands.indexBytes();
   for (const RigidIsland& island : s.rigidIslands.all()) {
     const LcpWorkspace& lcp = island.pivoting;
     sum += sizeof(RigidIsland) + sumOf(island.bodies, island.contacts, island.movers, island.points, island.known, lcp.matrix,

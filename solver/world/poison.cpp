@@ -34,8 +34,8 @@ void poisonScratch(Engine& engine) {
             s.touched, s.joined, s.chunkCounters, s.chunkTimes, s.islandCounters, s.islandTimes, s.islandOutcome);
   for (MotionState& stage : s.stage) poisonAll(stage.position, stage.velocity);
   for (NewtonSystem& work : engine.memo.newtonSystems.all())
-    poisonAll(work.residual, work.direction, work.affine, work.tangents, work.coupled, work.coupledIndex, work.coupledMotion,
-              work.coupledForce, work.correction);
+    poisonAll(work.residual, work.direction, work.affine, work.tangents, work.tangentStart, work.coupled, work.coupledIndex,
+              work.coupledMotion, work.coupledForce, work.correction);
   engine.contacts.poisonStartRows();
   for (RigidIsland& island : s.rigidIslands.all()) {
     LcpWorkspace& lcp = island.pivoting;

@@ -163,6 +163,7 @@ int executeRun(const RunCommand& command) {
     if (poses) poses->commit();
     throw;
   }
+  preparing.clear();
   progress.clear();
   if (poses) poses->commit();
   if (report) {

@@ -1,4 +1,4 @@
-#include "solver/implicit/blurred.h"
+#include "solver/implicit/smoothing.h"
 
 #include "core/tuning.h"
 #include "solver/contact/create.h"
@@ -12,7 +12,7 @@ namespace {
 
 // Makes contacts of the pairs that the weight may bring together.
 void findAhead(IslandStep& step) {
-  const double reach_m = tuning::kBlurReach * step.simulation.tolerance_m;
+  const double reach_m = tuning::kSmoothingReach * step.simulation.tolerance_m;
   for (const std::int32_t pair : step.pairs) {
     const auto at = static_cast<std::size_t>(pair);
     if (step.engine.pairs.touches(at)) continue;
@@ -28,9 +28,9 @@ double meanWeight(const IslandStep& step) {
   return mass * step.gravity.norm() / static_cast<double>(step.blocks.size());
 }
 
-// Contacts as they are: points that blurred contacts had, and of their forces the friction.
-void sharpen(IslandStep& step) {
-  step.blur_j = 0.0;
+// Contacts as they are: points that smoothed contacts had, and of their forces the friction.
+void removeSmoothing(IslandStep& step) {
+  step.smoothing_j = 0.0;
   for (const std::int32_t pair : step.pairs) {
     const auto at = static_cast<std::size_t>(pair);
     if (!step.engine.pairs.touches(at)) continue;
@@ -52,7 +52,7 @@ void sharpen(IslandStep& step) {
 
 }  // namespace
 
-bool approachBlurred(IslandStep& step) {
+bool approachSmoothed(IslandStep& step) {
   const double effective_s = tuning::kLastEquilibriumStep * step.simulation.lengths.fallTime_s;
   const double most_m = tuning::kMaxEquilibriumDisplacement * step.simulation.lengths.blockHeight_m;
   const double unit_j = meanWeight(step) * step.simulation.tolerance_m;
@@ -60,11 +60,12 @@ bool approachBlurred(IslandStep& step) {
   findAhead(step);
   setJacobians(step, effective_s);
   bool converged = true;
-  for (double blur = tuning::kFirstBlur; converged && blur > tuning::kLastBlur; blur *= tuning::kSharpening) {
-    step.blur_j = blur * unit_j;
-    converged = stepFromRest(step, effective_s, StepFromRest::blurred) && stop(step) < most_m && addTravel(step);
+  for (double smoothing = tuning::kFirstSmoothing; converged && smoothing > tuning::kLastSmoothing;
+       smoothing *= tuning::kSmoothingReduction) {
+    step.smoothing_j = smoothing * unit_j;
+    converged = stepFromRest(step, effective_s, StepFromRest::smoothed) && stop(step) < most_m && addTravel(step);
   }
-  sharpen(step);
+  removeSmoothing(step);
   return converged;
 }
 

@@ -10,9 +10,9 @@ namespace springtower {
 
 /// The state of an island at rest within the search for its equilibrium, so that the search can return to it. (The checkpoint of
 /// the frame holds the blocks as placed.)
-class Waypoint {
+class SavedIsland {
  public:
-  explicit Waypoint(const IslandStep& step);
+  explicit SavedIsland(const IslandStep& step);
   void restore(IslandStep& step) const;
 
  private:

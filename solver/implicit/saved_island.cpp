@@ -1,8 +1,8 @@
-#include "solver/implicit/waypoint.h"
+#include "solver/implicit/saved_island.h"
 
 namespace springtower {
 
-Waypoint::Waypoint(const IslandStep& step) {
+SavedIsland::SavedIsland(const IslandStep& step) {
   const Engine& engine = step.engine;
   for (const std::int32_t block : step.blocks) {
     const auto b = static_cast<std::size_t>(block);
@@ -21,7 +21,7 @@ Waypoint::Waypoint(const IslandStep& step) {
   }
 }
 
-void Waypoint::restore(IslandStep& step) const {
+void SavedIsland::restore(IslandStep& step) const {
   Engine& engine = step.engine;
   for (std::size_t i = 0; i < blocks_.size(); ++i) {
     const auto b = static_cast<std::size_t>(step.blocks[i]);
