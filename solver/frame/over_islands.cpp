@@ -18,20 +18,11 @@ namespace {
 
 void runIsland(Simulation& simulation, const ContactLaw& law, std::size_t i, IslandOutcome (*advance)(IslandStep&),
                SearchMonitor* monitor) {
-  Engine& engine = *simulation.engine;
-  const auto first = static_cast<std::size_t>(engine.memo.pairStart[i]);
-  IslandStep step{simulation,
-                  engine,
-                  engine.memo.islands.island(i),
-                  std::span<const std::int32_t>(engine.memo.islandPairs)
-                      .subspan(first, static_cast<std::size_t>(engine.memo.pairStart[i + 1]) - first),
-                  engine.scratch.islandCounters[i],
-                  engine.scratch.islandTimes[i],
-                  law};
+  IslandStep step = islandStep(simulation, law, i);
   step.monitor = monitor;
   saveFrameStart(step);
   const IslandOutcome outcome = advance(step);
-  engine.scratch.islandOutcome[i] = outcome.inside ? outcome.substeps : -1;
+  step.engine.scratch.islandOutcome[i] = outcome.inside ? outcome.substeps : -1;
 }
 
 // Of the islands that diverge in a frame the first in their order, whichever thread comes first: the message is the same on any
@@ -55,6 +46,19 @@ class FirstDivergence {
 };
 
 }  // namespace
+
+IslandStep islandStep(Simulation& simulation, const ContactLaw& law, std::size_t island) {
+  Engine& engine = *simulation.engine;
+  const auto first = static_cast<std::size_t>(engine.memo.pairStart[island]);
+  const auto count = static_cast<std::size_t>(engine.memo.pairStart[island + 1]) - first;
+  return {simulation,
+          engine,
+          engine.memo.islands.island(island),
+          std::span<const std::int32_t>(engine.memo.islandPairs).subspan(first, count),
+          engine.scratch.islandCounters[island],
+          engine.scratch.islandTimes[island],
+          law};
+}
 
 bool overIslands(Simulation& simulation, IslandOutcome (*advance)(IslandStep&), SearchMonitor* monitor) {
   Engine& engine = *simulation.engine;

@@ -3,7 +3,12 @@
 #include "solver/implicit/search_monitor.h"
 #include "solver/world/island_step.h"
 
+#include <cstddef>
+
 namespace springtower {
+
+/// The step of one island in the frame to come.
+IslandStep islandStep(Simulation& simulation, const ContactLaw& law, std::size_t island);
 
 /// Runs `advance` for every island, side by side, from a checkpoint of where each is now. Returns whether all have stayed inside
 /// their swept boxes. Throws the DivergenceError of the first island in their order that has one, when all have run: the message

@@ -1,23 +1,30 @@
 #include "solver/frame/prepare.h"
 
 #include "core/error.h"
+#include "core/parallel.h"
 #include "core/processor_time.h"
 #include "core/tuning.h"
+#include "solver/contact/query.h"
 #include "solver/contact/rigid_contacts.h"
 #include "solver/contact/update.h"
 #include "solver/frame/over_islands.h"
 #include "solver/frame/pairs.h"
+#include "solver/implicit/equal_islands.h"
 #include "solver/implicit/equilibrium.h"
 #include "solver/implicit/system.h"
 
+#include <cstdint>
 #include <fmt/format.h>
 
 namespace springtower {
 
 namespace {
 
-// Finds an island's contacts and its equilibrium; `substeps` of the result is 1 where there is one, 0 where it starts as placed.
+// Finds an island's contacts and its equilibrium, unless it is equal to one before it; `substeps` of the result is 1 where there
+// is an equilibrium, 0 where it starts as placed.
 IslandOutcome prepareIsland(IslandStep& step) {
+  const std::int32_t island = step.engine.memo.islands.islandOf[static_cast<std::size_t>(step.blocks.front())];
+  if (step.engine.scratch.firstEqualIsland[static_cast<std::size_t>(island)] != island) return {};
   const Settings& settings = step.simulation.scene.settings;
   step.pointKind = pointKindOf(settings.method);
   findTouching(step);
@@ -25,6 +32,22 @@ IslandOutcome prepareIsland(IslandStep& step) {
   if (traitsOf(settings.method).family != MethodFamily::rigid && startInEquilibrium(step)) outcome.substeps = 1;
   step.monitor->islandDone(step.blocks.size());
   return outcome;
+}
+
+// Gives the islands that are equal to one before them what was found for it.
+void copyToEqualIslands(Simulation& simulation, SearchMonitor& monitor) {
+  Scratch& scratch = simulation.engine->scratch;
+  const ContactLaw law = contactLaw(simulation);
+  forRanges(scratch.firstEqualIsland.size(), 1, true, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto first = static_cast<std::size_t>(scratch.firstEqualIsland[i]);
+      if (first == i) continue;
+      IslandStep step = islandStep(simulation, law, i);
+      copyEquilibrium(islandStep(simulation, law, first), step);
+      scratch.islandOutcome[i] = scratch.islandOutcome[first];
+      monitor.islandDone(step.blocks.size());
+    }
+  });
 }
 
 }  // namespace
@@ -47,7 +70,9 @@ PrepareResult prepare(Simulation& simulation, const PrepareOptions& options) {
   // On its way into equilibrium the top of a tower sinks by the gaps of all rows.
   findNearPairs(simulation, tuning::kReplayMarginGrowth * tuning::kSweepMargin * simulation.lengths.blockHeight_m);
   simulation.counters.blockPairs = 0;  // counts the sweeps of frames
+  engine.scratch.firstEqualIsland = firstEqualIslands(simulation);
   overIslands(simulation, prepareIsland, &monitor);
+  copyToEqualIslands(simulation, monitor);
   for (std::size_t i = 0; i < engine.memo.islands.count(); ++i) {
     const std::size_t blocks = engine.memo.islands.island(i).size();
     result.blocks += blocks;

@@ -65,6 +65,7 @@ struct Scratch {
   std::vector<std::int32_t> nodeOf;           ///< index of each block in its island, for implicit steps and rigid methods
 
   // Steps.
+  std::vector<std::int32_t> firstEqualIsland;      ///< of each island before the first frame: the first that is equal
   std::vector<AffineField> contactForce;           ///< N, contact forces on each block
   std::vector<Eigen::Matrix4d> contactMetric;      ///< 1/s2, stiffness of each block's contacts on its affine part, over its mass
   std::array<MotionState, 4> stage;                ///< states at the stages of the multi-stage methods; empty for the others
