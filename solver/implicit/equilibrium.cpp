@@ -131,21 +131,28 @@ class EquilibriumSearch {
     if (settleSmoothed(step_)) return;
     path.back().state.restore(step_);
     double falls = 1.0;  // the least share at which it was found to fall
+    while (!isStopped()) {
+      halveRise(path, falls);
+      if (path.size() == 1) return;
+      tiltTo(path.back().share);
+      if (settleSmoothed(step_)) return;
+      falls = path.back().share;
+      path.pop_back();
+      path.back().state.restore(step_);
+    }
+  }
+
+  // Extends the path by shares at which the island stands, while more than tuning::kTiltGap lies between them and `falls`.
+  void halveRise(std::vector<Standing>& path, double& falls) {
     while (falls - path.back().share > tuning::kTiltGap && !isStopped()) {
       const double next = 0.5 * (path.back().share + falls);
       tiltTo(next);
-      if (approachSmoothed(step_)) {
+      if (standsSmoothed(step_)) {
         path.push_back({next, SavedIsland(step_)});
       } else {
         falls = next;
         path.back().state.restore(step_);
       }
-    }
-    while (path.size() > 1) {
-      tiltTo(path.back().share);
-      if (settleAfterSmoothing(step_)) return;
-      path.pop_back();
-      path.back().state.restore(step_);
     }
   }
 

@@ -33,6 +33,7 @@ struct NewtonOptions {
   bool assumesSupport = false;  // in the first iteration all points push and stick
   double leastEnough = tuning::kNewtonTolerance;
   bool untilStalled = false;  // goes on while the residual gets less, as it does slowly with the rounded factors of tall towers
+  double mostMoved_m = std::numeric_limits<double>::infinity();  // no corner moves farther: what does is falling
 };
 
 // Newton settings in motion. A share of the initial residual may remain, up to tuning::kMaxMotionResidual: a ten-thousandth of a
@@ -299,6 +300,16 @@ double evaluateInPlace(IslandStep& step, NewtonSystem& island, double effective_
   return evaluateResidual(step, island, effective_s, clock);
 }
 
+// The largest distance of a corner from where the step began, m.
+double farthestMoved_m(const IslandStep& step) {
+  return largestOfBlocks(step, [&](std::size_t b) {
+    double farthest = 0.0;
+    for (std::size_t c = 0; c < kCorners; ++c)
+      farthest = std::max(farthest, (step.simulation.state.position.at(b, c) - step.engine.memo.previous.at(b, c)).squaredNorm());
+    return std::sqrt(farthest);
+  });
+}
+
 // Whether the search for the equilibrium is to end where it is.
 bool isStopped(const IslandStep& step) {
   return step.monitor != nullptr && step.monitor->isStopped();
@@ -353,6 +364,7 @@ bool solveStep(IslandStep& step, double effective_s, bool carried, const NewtonO
       lowest = residual;
       lowestAt = iteration;
     }
+    if (std::isfinite(how.mostMoved_m) && farthestMoved_m(step) > how.mostMoved_m) return false;
     if (converged || !std::isfinite(residual) || (how.untilStalled && iteration - lowestAt >= tuning::kMaxStalledIterations))
       break;
   }
@@ -419,6 +431,7 @@ bool stepFromRest(IslandStep& step, double effective_s, StepFromRest kind) {
                         : tuning::kMaxActiveSetIterations,
                     tuning::kConsistentTangentResidual, 0.0};
   how.untilStalled = true;
+  how.mostMoved_m = tuning::kMaxEquilibriumDisplacement * step.simulation.lengths.blockHeight_m;
   how.assumesSupport = kind == StepFromRest::supported;
   if (kind == StepFromRest::supported) how.leastEnough = tuning::kStickingResidual;
   if (kind == StepFromRest::smoothed) how.leastEnough = tuning::kSmoothedResidual;
@@ -428,17 +441,15 @@ bool stepFromRest(IslandStep& step, double effective_s, StepFromRest kind) {
 }
 
 double stop(IslandStep& step) {
-  MotionState& state = step.simulation.state;
-  double farthest = 0.0;
-  for (const std::int32_t block : step.blocks) {
-    const auto b = static_cast<std::size_t>(block);
-    for (std::size_t c = 0; c < kCorners; ++c) {
-      farthest = std::max(farthest, (state.position.at(b, c) - step.engine.memo.previous.at(b, c)).norm());
-      state.velocity.set(b, c, Vec3::Zero());
+  const double farthest_m = farthestMoved_m(step);
+  overBlocks(step, [&](std::size_t first, std::size_t last) {
+    for (const std::int32_t block : step.blocks.subspan(first, last - first)) {
+      const auto b = static_cast<std::size_t>(block);
+      for (std::size_t c = 0; c < kCorners; ++c) step.simulation.state.velocity.set(b, c, Vec3::Zero());
+      step.engine.memo.blockHistory[b].lastImplicitStep_s = 0.0;
     }
-    step.engine.memo.blockHistory[b].lastImplicitStep_s = 0.0;
-  }
-  return farthest;
+  });
+  return farthest_m;
 }
 
 double slipAtRest(IslandStep& step, double effective_s) {

@@ -50,9 +50,8 @@ void removeSmoothing(IslandStep& step) {
   }
 }
 
-}  // namespace
-
-bool approachSmoothed(IslandStep& step) {
+// Steps that are smoothed from the first to at least `last`.
+bool approach(IslandStep& step, double last) {
   const double effective_s = tuning::kLastEquilibriumStep * step.simulation.lengths.fallTime_s;
   const double most_m = tuning::kMaxEquilibriumDisplacement * step.simulation.lengths.blockHeight_m;
   const double unit_j = meanWeight(step) * step.simulation.tolerance_m;
@@ -60,13 +59,23 @@ bool approachSmoothed(IslandStep& step) {
   findAhead(step);
   setJacobians(step, effective_s);
   bool converged = true;
-  for (double smoothing = tuning::kFirstSmoothing; converged && smoothing > tuning::kLastSmoothing;
+  for (double smoothing = tuning::kFirstSmoothing; converged && smoothing >= last;
        smoothing *= tuning::kSmoothingReduction) {
     step.smoothing_j = smoothing * unit_j;
     converged = stepFromRest(step, effective_s, StepFromRest::smoothed) && stop(step) < most_m && addTravel(step);
   }
   removeSmoothing(step);
   return converged;
+}
+
+}  // namespace
+
+bool approachSmoothed(IslandStep& step) {
+  return approach(step, tuning::kLastSmoothing);
+}
+
+bool standsSmoothed(IslandStep& step) {
+  return approach(step, tuning::kFirstSmoothing);
 }
 
 }  // namespace springtower

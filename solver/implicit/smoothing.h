@@ -11,4 +11,7 @@ namespace springtower {
 /// within its bounds. Returns false where a step does not converge.
 bool approachSmoothed(IslandStep& step);
 
+/// The first of these steps alone: whether the island stands while its contacts are smoothed most, at a third of the cost.
+bool standsSmoothed(IslandStep& step);
+
 }  // namespace springtower
