@@ -135,7 +135,7 @@ class EquilibriumSearch {
       halveRise(path, falls);
       if (path.size() == 1) return;
       tiltTo(path.back().share);
-      if (settleSmoothed(step_)) return;
+      if (finishSmoothed(step_) && settleAfterSmoothing(step_)) return;
       falls = path.back().share;
       path.pop_back();
       path.back().state.restore(step_);
@@ -147,7 +147,7 @@ class EquilibriumSearch {
     while (falls - path.back().share > tuning::kTiltGap && !isStopped()) {
       const double next = 0.5 * (path.back().share + falls);
       tiltTo(next);
-      if (standsSmoothed(step_)) {
+      if (beginSmoothed(step_)) {
         path.push_back({next, SavedIsland(step_)});
       } else {
         falls = next;
@@ -158,6 +158,7 @@ class EquilibriumSearch {
 
   void startAgain() {
     step_.counters = before_;
+    step_.smoothing_j = 0.0;
     restoreIsland(step_);
     for (const std::int32_t block : step_.blocks) {  // nothing has moved yet
       for (std::size_t a = 0; a < 3; ++a) {

@@ -2,7 +2,7 @@
 
 namespace springtower {
 
-SavedIsland::SavedIsland(const IslandStep& step) {
+SavedIsland::SavedIsland(const IslandStep& step) : smoothing_j_(step.smoothing_j) {
   const Engine& engine = step.engine;
   for (const std::int32_t block : step.blocks) {
     const auto b = static_cast<std::size_t>(block);
@@ -23,6 +23,7 @@ SavedIsland::SavedIsland(const IslandStep& step) {
 
 void SavedIsland::restore(IslandStep& step) const {
   Engine& engine = step.engine;
+  step.smoothing_j = smoothing_j_;
   for (std::size_t i = 0; i < blocks_.size(); ++i) {
     const auto b = static_cast<std::size_t>(step.blocks[i]);
     for (std::size_t c = 0; c < kCorners; ++c) {

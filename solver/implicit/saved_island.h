@@ -27,6 +27,7 @@ class SavedIsland {
     Vec3 axis;
     Manifold manifold;  // of touching pairs
   };
+  double smoothing_j_;
   std::vector<Block> blocks_;
   std::vector<Pair> pairs_;
 };

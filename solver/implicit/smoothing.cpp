@@ -50,32 +50,38 @@ void removeSmoothing(IslandStep& step) {
   }
 }
 
-// Steps that are smoothed from the first to at least `last`.
-bool approach(IslandStep& step, double last) {
+// Steps that are smoothed from `first` on less and less, to at least `last`.
+bool approach(IslandStep& step, double first, double last) {
   const double effective_s = tuning::kLastEquilibriumStep * step.simulation.lengths.fallTime_s;
   const double most_m = tuning::kMaxEquilibriumDisplacement * step.simulation.lengths.blockHeight_m;
   const double unit_j = meanWeight(step) * step.simulation.tolerance_m;
   if (!(unit_j > 0.0)) return false;
-  findAhead(step);
   setJacobians(step, effective_s);
   bool converged = true;
-  for (double smoothing = tuning::kFirstSmoothing; converged && smoothing >= last;
-       smoothing *= tuning::kSmoothingReduction) {
+  for (double smoothing = first; converged && smoothing >= last; smoothing *= tuning::kSmoothingReduction) {
     step.smoothing_j = smoothing * unit_j;
     converged = stepFromRest(step, effective_s, StepFromRest::smoothed) && stop(step) < most_m && addTravel(step);
   }
-  removeSmoothing(step);
   return converged;
 }
 
 }  // namespace
 
 bool approachSmoothed(IslandStep& step) {
-  return approach(step, tuning::kLastSmoothing);
+  if (beginSmoothed(step)) return finishSmoothed(step);
+  removeSmoothing(step);
+  return false;
 }
 
-bool standsSmoothed(IslandStep& step) {
-  return approach(step, tuning::kFirstSmoothing);
+bool beginSmoothed(IslandStep& step) {
+  findAhead(step);
+  return approach(step, tuning::kFirstSmoothing, tuning::kFirstSmoothing);
+}
+
+bool finishSmoothed(IslandStep& step) {
+  const bool converged = approach(step, tuning::kFirstSmoothing * tuning::kSmoothingReduction, tuning::kLastSmoothing);
+  removeSmoothing(step);
+  return converged;
 }
 
 }  // namespace springtower

@@ -1,0 +1,138 @@
+// Islands that are copies of one another: the equilibrium of one is found and the others take it over.
+#include "solver/implicit/equal_islands.h"
+
+#include "scenarios/towers.h"
+#include "solver/world/engine.h"
+#include "solver/world/simulation.h"
+#include "tests/support/block_scenes.h"
+#include "tests/support/prepare_and_step.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <gtest/gtest.h>
+#include <oneapi/tbb/global_control.h>
+#include <vector>
+
+namespace springtower {
+namespace {
+
+// Factorisations of the search for the equilibrium.
+std::uint64_t factorisationsToPrepare(const Scene& scene) {
+  Simulation simulation(scene);
+  prepare(simulation);
+  return simulation.counters.factorisations;
+}
+
+// The blocks of tower `tower` of equal towers, from where each was placed, m.
+std::vector<Vec3> displacements(const Simulation& simulation, std::size_t tower, std::size_t blocks) {
+  std::vector<Vec3> moved;
+  for (std::size_t b = tower * blocks; b < (tower + 1) * blocks; ++b)
+    moved.push_back(centre(simulation.state.position, b) - simulation.scene.blocks[b].centre);
+  return moved;
+}
+
+Scene unevenTower() {
+  TowerOptions options;
+  options.heightsSigma_m = kUnevenHeightsSigma_m;
+  return towerScene(6, options);
+}
+
+TEST(EqualIslands, OfManyOneIsSolved) {
+  const Scene one = unevenTower();
+  EXPECT_EQ(factorisationsToPrepare(squareOf(one, 9)), factorisationsToPrepare(one));
+}
+
+// 0.3 m and its multiples are no binary fractions: the towers' places differ by rounding, 1e-16 m, and so do their poses.
+TEST(EqualIslands, EachStandsAsOneAloneDoes) {
+  const Scene one = awake(unevenTower());
+  Simulation alone(one);
+  Simulation square(squareOf(one, 9));
+  prepare(alone);
+  prepare(square);
+  const std::vector<Vec3> expected = displacements(alone, 0, one.blocks.size());
+  for (std::size_t tower = 0; tower < 9; ++tower) {
+    const std::vector<Vec3> moved = displacements(square, tower, one.blocks.size());
+    for (std::size_t b = 0; b < moved.size(); ++b)
+      EXPECT_LE((moved[b] - expected[b]).norm(), 1e-9 * one.blocks[b].dimensions.z());
+  }
+}
+
+// All rest: from the first frame on nothing moves by more than a thousandth of the tolerance, and no step fails.
+TEST(EqualIslands, NothingMovesInTheFirstFrames) {
+  Simulation square(squareOf(awake(unevenTower()), 9));
+  prepareAndStep(square);
+  const ParticleArray first = square.state.position;
+  stepFor(square, 0.5);
+  EXPECT_EQ(square.counters.newtonFailures, 0U);
+  for (std::size_t b = 0; b < first.blockCount(); ++b)
+    EXPECT_LE((centre(square.state.position, b) - centre(first, b)).norm(), 1e-3 * square.tolerance_m) << "block " << b;
+}
+
+// Contacts and their friction are those of the tower that was solved: at a tilt at which blocks lean on one another.
+TEST(EqualIslands, ShareTheForcesBetweenTheirBlocks) {
+  const Scene one = leaning(awake(unevenTower()), 10.0);
+  const Scene four = squareOf(one, 4);
+  Simulation square(four);
+  prepare(square);
+  const auto forceOn = [&](std::size_t block) {
+    Vec3 sum = Vec3::Zero();
+    for (const ContactForce& contact : contactForcesOn(square, blockId(block))) {
+      const double sign = index(contact.upper) == block ? 1.0 : -1.0;
+      sum += sign * (contact.normalForce * contact.normal + contact.frictionForce);
+    }
+    return sum;
+  };
+  const double weight_n = one.blocks.front().mass * one.gravity.magnitude;
+  for (std::size_t b = 0; b < four.blocks.size(); ++b) {
+    const Vec3 rest = forceOn(b) + four.blocks[b].mass * four.gravity.at(0.0);
+    EXPECT_LE(rest.norm(), 1e-3 * weight_n) << "block " << b;
+  }
+}
+
+std::size_t solvedIslands(const Scene& scene) {
+  Simulation simulation(scene);
+  prepare(simulation);
+  const std::vector<std::int32_t>& first = simulation.engine->scratch.firstEqualIsland;
+  std::size_t solved = 0;
+  for (std::size_t i = 0; i < first.size(); ++i) solved += first[i] == static_cast<std::int32_t>(i) ? 1 : 0;
+  return solved;
+}
+
+TEST(EqualIslands, DifferInAnythingThatDecidesTheEquilibrium) {
+  const Scene four = squareOf(unevenTower(), 4);
+  const std::size_t last = four.blocks.size() - 1;
+  EXPECT_EQ(solvedIslands(four), 1U);
+  Scene other = four;
+  other.blocks[last].mass *= 1.001;
+  EXPECT_EQ(solvedIslands(other), 2U);
+  other = four;
+  other.blocks[last].centre.x() += 1e-6;
+  EXPECT_EQ(solvedIslands(other), 2U);
+  other = four;
+  other.blocks[last].dimensions.z() *= 0.999;
+  EXPECT_EQ(solvedIslands(other), 2U);
+  other = four;
+  other.blocks[last].velocity = Vec3(0.0, 0.0, 1e-3);
+  EXPECT_EQ(solvedIslands(other), 2U);
+}
+
+TEST(EqualIslands, AreFoundWhateverTheOrderOfTheTowers) {
+  Scene mixed = squareOf(unevenTower(), 2);
+  const Scene other = squareOf(towerScene(6), 4);
+  for (std::size_t b = 2 * 18; b < other.blocks.size(); ++b) mixed.blocks.push_back(other.blocks[b]);
+  EXPECT_EQ(solvedIslands(mixed), 2U);
+}
+
+TEST(EqualIslands, HaveTheSameBitsOnAnyNumberOfThreads) {
+  const auto hashOn = [](int threads) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+    Simulation square(squareOf(awake(unevenTower()), 9));
+    stepFor(square, 0.1);
+    return stateHash(square);
+  };
+  EXPECT_EQ(hashOn(1), hashOn(2));
+  EXPECT_EQ(hashOn(1), hashOn(4));
+}
+
+}  // namespace
+}  // namespace springtower
