@@ -1,6 +1,7 @@
 #include "solver/frame/over_islands.h"
 
 #include "core/error.h"
+#include "core/parallel.h"
 #include "core/tuning.h"
 #include "solver/contact/query.h"
 #include "solver/world/checkpoint.h"
@@ -9,7 +10,6 @@
 #include <algorithm>
 #include <exception>
 #include <mutex>
-#include <oneapi/tbb/parallel_for.h>
 #include <utility>
 
 namespace springtower {
@@ -77,7 +77,7 @@ bool overIslands(Simulation& simulation, IslandOutcome (*advance)(IslandStep&), 
     }
   }
   FirstDivergence divergence;
-  tbb::parallel_for(std::size_t{0}, islands, [&](std::size_t i) {
+  forEach(islands, [&](std::size_t i) {
     try {
       runIsland(simulation, law, i, advance, monitor);
     } catch (const DivergenceError&) {

@@ -17,7 +17,6 @@
 #include <exception>
 #include <fmt/format.h>
 #include <mutex>
-#include <oneapi/tbb/parallel_for.h>
 #include <optional>
 #include <utility>
 

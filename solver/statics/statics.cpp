@@ -1,6 +1,7 @@
 #include "solver/statics/statics.h"
 
 #include "core/error.h"
+#include "core/parallel.h"
 #include "core/tuning.h"
 #include "solver/statics/forces.h"
 
@@ -9,7 +10,6 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <oneapi/tbb/parallel_for.h>
 
 namespace springtower {
 namespace {
@@ -218,8 +218,7 @@ Removal removalOf(const Scene& scene, BlockId block, double tolerance_deg) {
 
 std::vector<Removal> removals(const Scene& scene, double tolerance_deg) {
   std::vector<Removal> result(scene.blocks.size());
-  tbb::parallel_for(std::size_t{0}, result.size(),
-                    [&](std::size_t b) { result[b] = removalOf(scene, blockId(b), tolerance_deg); });
+  forEach(result.size(), [&](std::size_t b) { result[b] = removalOf(scene, blockId(b), tolerance_deg); });
   return result;
 }
 
