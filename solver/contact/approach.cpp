@@ -182,7 +182,8 @@ Vec3 velocityAt(const BlockFrame& frame, const AffineField& motion, const Vec3& 
 double slowestRate(const IslandStep& step, const ContactView& manifold) {
   const MotionState& state = step.simulation.state;
   const auto u = static_cast<std::size_t>(manifold.upper);
-  const auto l = static_cast<std::size_t>(std::max(manifold.lower, 0));
+  // Of the floor nothing is used. The block in its place is this island's own: another one might be moving meanwhile.
+  const auto l = static_cast<std::size_t>(manifold.lower < 0 ? manifold.upper : manifold.lower);
   const AffineField still{};
   const BlockFrame upper = blockFrame(state.position, u);
   const BlockFrame lower = blockFrame(state.position, l);

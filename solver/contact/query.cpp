@@ -21,7 +21,8 @@ struct ManifoldNow {
 
   ManifoldNow(const Simulation& simulation, const ContactLaw& law, const ContactView& stored) : manifold(copyOf(stored)) {
     const auto upper = static_cast<std::size_t>(stored.upper);
-    const auto lower = static_cast<std::size_t>(std::max(stored.lower, 0));
+    // Of the floor nothing is used. The block in its place is this island's own: another one might be moving meanwhile.
+    const auto lower = static_cast<std::size_t>(stored.lower < 0 ? stored.upper : stored.lower);
     const ParticleArray& carried = carriedVelocities(simulation);
     const BlockFrame frames[2] = {blockFrame(simulation.state.position, upper), blockFrame(simulation.state.position, lower)};
     const AffineField motion[2] = {affineField(simulation.state.velocity, upper), affineField(simulation.state.velocity, lower)};
