@@ -3,6 +3,7 @@
 //   thread_scenes [NAME...]   plays these, or all
 #include "core/error.h"
 #include "core/method.h"
+#include "scenarios/random_scene.h"
 #include "scenarios/towers.h"
 #include "scenarios/walls.h"
 #include "solver/frame/prepare.h"
@@ -22,9 +23,11 @@ namespace springtower {
 namespace {
 
 constexpr int kThreads = 4;
+constexpr std::uint64_t kRandomScenes = 12;
+constexpr int kRandomFrames = 12;
 
 struct ThreadScene {
-  const char* name;
+  std::string name;
   int frames;
   Scene scene;
 };
@@ -56,7 +59,7 @@ Scene wallBesideTowers() {
 std::vector<ThreadScene> threadScenes() {
   Scene landing = pileScene(3, {.fall_m = 0.01});
   landing.settings.tolerance_m = 2e-4;
-  return {
+  std::vector<ThreadScene> all = {
       {"wall", 12, awake(wallScene(24, 16))},
       {"wall-sleeps", 45, wallScene(24, 16)},
       {"wall-sways", 6, awake(swaying(wallScene(24, 16), 0.3, 2.0))},
@@ -71,16 +74,26 @@ std::vector<ThreadScene> threadScenes() {
       {"rigid", 6, with(awake(squareOf(unevenTower(18), 6)), Method::rigidPgs)},
       {"rigid-wide", 4, with(awake(wallScene(24, 16)), Method::rigidPgs)},
       {"report", 2, with(awake(squareOf(unevenTower(6), 4)), Method::report)},
+      {"xpbd", 6, with(awake(squareOf(unevenTower(6), 4)), Method::xpbd)},
+      {"rigid-lcp", 2, with(awake(squareOf(towerScene(2), 4)), Method::rigidLcp)},
   };
+  for (std::uint64_t seed = 1; seed <= kRandomScenes; ++seed)
+    all.push_back({"random-" + std::to_string(seed), kRandomFrames, with(randomScene(seed).scene, Method::implicit)});
+  return all;
 }
 
+// Hash of the state in the end, also where the scene diverges before.
 std::uint64_t hashOf(const ThreadScene& played) {
   Simulation simulation(played.scene);
   PrepareOptions options;
   std::uint64_t calls = 0;  // goesOn is called by whatever thread, one call at a time
   options.goesOn = [&](const PrepareProgress&) { return ++calls > 0; };
-  prepare(simulation, options);
-  for (int frame = 0; frame < played.frames; ++frame) stepFrame(simulation);
+  try {
+    prepare(simulation, options);
+    for (int frame = 0; frame < played.frames; ++frame) stepFrame(simulation);
+  } catch (const DivergenceError& error) {
+    std::printf("%s: %s\n", played.name.c_str(), error.what());
+  }
   return stateHash(simulation);
 }
 
@@ -91,7 +104,7 @@ int play(const std::vector<std::string>& names) {
   for (const ThreadScene& scene : threadScenes()) {
     if (!names.empty() && std::find(names.begin(), names.end(), scene.name) == names.end()) continue;
     const std::uint64_t hash = arena.execute([&] { return hashOf(scene); });
-    std::printf("%-20s %4zu blocks %3d frames %016llx\n", scene.name, scene.scene.blocks.size(), scene.frames,
+    std::printf("%-20s %4zu blocks %3d frames %016llx\n", scene.name.c_str(), scene.scene.blocks.size(), scene.frames,
                 static_cast<unsigned long long>(hash));
     std::fflush(stdout);
     ++played;
