@@ -51,20 +51,20 @@ inline void halve(Range range, std::size_t grain, std::vector<Range>& parts) {
   halve({middle, range.last}, grain, parts);
 }
 
-/// The ranges of [0, count), and the value of kernel(first, last) on each. `Part` holds a range and the value, so that no two
-/// values share a byte, as the elements of std::vector<bool> do.
+/// A range, and the value of kernel(first, last) on it: in a struct, so that no two values share a byte, as the elements of
+/// std::vector<bool> do.
 template <class T>
-struct Part {
+struct RangeValue {
   Range range;
   T value;
 };
 
 template <class T, class Kernel>
-std::vector<Part<T>> valuesOfRanges(std::size_t count, std::size_t grain, std::size_t threads, const T& nothing,
-                                    const Kernel& kernel) {
+std::vector<RangeValue<T>> valuesOfRanges(std::size_t count, std::size_t grain, std::size_t threads, const T& nothing,
+                                          const Kernel& kernel) {
   std::vector<Range> ranges;
   halve({0, count}, grain, ranges);
-  std::vector<Part<T>> parts;
+  std::vector<RangeValue<T>> parts;
   parts.reserve(ranges.size());
   for (const Range& range : ranges) parts.push_back({range, nothing});
   forParts(parts.size(), threads, [&](std::size_t i) { parts[i].value = kernel(parts[i].range.first, parts[i].range.last); });
@@ -81,12 +81,12 @@ void forRanges(std::size_t count, std::size_t grain, std::size_t threads, const 
 template <class T, class Kernel, class Merge>
 T mergeRanges(std::size_t count, std::size_t grain, std::size_t threads, T nothing, const Kernel& kernel, const Merge& merge) {
   T all = nothing;
-  for (Part<T>& part : valuesOfRanges(count, grain, threads, nothing, kernel)) all = merge(all, part.value);
+  for (RangeValue<T>& part : valuesOfRanges(count, grain, threads, nothing, kernel)) all = merge(all, part.value);
   return all;
 }
 
-/// Sum over range, of the values of its parts from `next` on: pairwise, by the same halves.
-inline double pairwiseSum(Range range, const std::vector<Part<double>>& parts, std::size_t& next) {
+/// Sum over a range of the values of its parts, of which the first is at `next`: pairwise, by the same halves.
+inline double pairwiseSum(Range range, const std::vector<RangeValue<double>>& parts, std::size_t& next) {
   if (parts[next].range.last == range.last) return 0.0 + parts[next++].value;  // as oneTBB begins each part with zero
   const std::size_t middle = range.first + (range.last - range.first) / 2;
   const double left = pairwiseSum({range.first, middle}, parts, next);
@@ -96,7 +96,7 @@ inline double pairwiseSum(Range range, const std::vector<Part<double>>& parts, s
 template <class Kernel>
 double sumRanges(std::size_t count, std::size_t grain, std::size_t threads, const Kernel& kernel) {
   if (count == 0) return 0.0;
-  const std::vector<Part<double>> parts = valuesOfRanges(count, grain, threads, 0.0, kernel);
+  const std::vector<RangeValue<double>> parts = valuesOfRanges(count, grain, threads, 0.0, kernel);
   std::size_t next = 0;
   return pairwiseSum({0, count}, parts, next);
 }
