@@ -266,7 +266,10 @@ std::uint64_t findPairs(SortAndSweep& sweep, const SweptBoxes& boxes, std::span<
     }
   });
   std::uint64_t tests = 0;
-  std::vector<BlockPair>& ascending = sweep.ascending;
+  // In many parts the ascending pairs go to the result at once, unless others are to be merged with them.
+  const bool inOrder = std::all_of(sweep.found.begin(), sweep.found.begin() + static_cast<std::ptrdiff_t>(parts),
+                                   [](const SortAndSweep::Found& found) { return found.outOfOrder.empty(); });
+  std::vector<BlockPair>& ascending = parts > 1 && inOrder ? pairs : sweep.ascending;
   ascending.clear();
   sweep.outOfOrder.clear();
   for (std::size_t part = 0; part < parts; ++part) {
@@ -280,7 +283,8 @@ std::uint64_t findPairs(SortAndSweep& sweep, const SweptBoxes& boxes, std::span<
     }
     sweep.outOfOrder.insert(sweep.outOfOrder.end(), found.outOfOrder.begin(), found.outOfOrder.end());
   }
-  if (sweep.outOfOrder.empty()) {
+  if (&ascending == &pairs) return tests;
+  if (inOrder) {
     pairs.swap(ascending);
     ascending.reserve(pairs.capacity());  // the two are swapped, so both need the larger capacity
     return tests;

@@ -7,20 +7,7 @@ namespace springtower {
 namespace {
 
 SPRINGTOWER_INLINE void affine(const ParticleArray& values, std::size_t block, AffineField& field) {
-  for (std::size_t a = 0; a < 3; ++a) {
-    const double* p = values.values(a, block);
-    Lanes low, high;
-    load(p, low);
-    load(p + 4, high);
-    const Lanes both = low + high;
-    const Lanes up = high - low;
-    const double even = both[0] + both[2];
-    const double odd = both[1] + both[3];
-    field.centre[a] = 0.125 * (even + odd);
-    field.side[0][a] = 0.25 * (odd - even);
-    field.side[1][a] = 0.25 * ((both[2] + both[3]) - (both[0] + both[1]));
-    field.side[2][a] = 0.25 * sum(up);
-  }
+  for (std::size_t a = 0; a < 3; ++a) affineOfComponent(values.values(a, block), a, field);
 }
 
 SPRINGTOWER_INLINE void cross(const std::array<double, 3>& p, const std::array<double, 3>& q, std::array<double, 3>& result) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/lanes.h"
 #include "core/state.h"
 
 #include <array>
@@ -39,6 +40,21 @@ struct FaceAxes {
 };
 inline constexpr std::array<FaceAxes, kFaces> kFaceAxes = {
     {{0, -0.5, 2, 1}, {0, 0.5, 1, 2}, {1, -0.5, 0, 2}, {1, 0.5, 2, 0}, {2, -0.5, 1, 0}, {2, 0.5, 0, 1}}};
+
+/// One component of the affine part of a field, from its values at the eight corners.
+SPRINGTOWER_INLINE void affineOfComponent(const double* corners, std::size_t component, AffineField& field) {
+  Lanes low, high;
+  load(corners, low);
+  load(corners + 4, high);
+  const Lanes both = low + high;
+  const Lanes up = high - low;
+  const double even = both[0] + both[2];
+  const double odd = both[1] + both[3];
+  field.centre[component] = 0.125 * (even + odd);
+  field.side[0][component] = 0.25 * (odd - even);
+  field.side[1][component] = 0.25 * ((both[2] + both[3]) - (both[0] + both[1]));
+  field.side[2][component] = 0.25 * sum(up);
+}
 
 /// Affine part of a field on one block.
 AffineField affineField(const ParticleArray& values, std::size_t block);

@@ -121,13 +121,11 @@ void addTether(IslandStep& step, const MotionState& state, double time_s) {
   for (std::size_t c = 0; c < kCorners; ++c) step.engine.memo.force.add(index(tether.block), c, corner[c]);
 }
 
-}  // namespace
-
-void evaluateForces(IslandStep& step, const MotionState& state, const ParticleArray& carried, double advance_s,
-                    PointUpdate update) {
+// `carried`: null where engine.memo.carriedMotion is filled already.
+void evaluate(IslandStep& step, const MotionState& state, const ParticleArray* carried, double advance_s, PointUpdate update) {
   StageClock clock(step.times);
   Engine& engine = step.engine;
-  const bool sameMotion = &carried == &state.velocity;
+  const bool sameMotion = carried == &state.velocity;
   const double kick_s = sameMotion && update == PointUpdate::store ? step.kick_s : 0.0;
   const Evaluation evaluation{
       {advance_s, step.maxStiffening, update == PointUpdate::trial ? 0.0 : 1.0, step.sticks, kick_s, step.smoothing_j},
@@ -137,7 +135,7 @@ void evaluateForces(IslandStep& step, const MotionState& state, const ParticleAr
     const auto blocks = step.blocks.subspan(first, last - first);
     computeFrames(state.position, blocks, engine.memo.frames);
     computeMotions(state.velocity, blocks, engine.memo.motion);
-    if (!evaluation.sameMotion) computeMotions(carried, blocks, engine.memo.carriedMotion);
+    if (!sameMotion && carried != nullptr) computeMotions(*carried, blocks, engine.memo.carriedMotion);
   });
   step.counters.contactEvaluations += isWide(step) ? contactsInParallel(step, evaluation) : contactsInOrder(step, evaluation);
   clock.lap(Stage::contacts);
@@ -150,6 +148,17 @@ void evaluateForces(IslandStep& step, const MotionState& state, const ParticleAr
   addTether(step, state, step.time_s + (update == PointUpdate::trial ? advance_s : 0.0));
   clock.lap(Stage::springs);
   step.counters.springEvaluations += kSprings * step.blocks.size();
+}
+
+}  // namespace
+
+void evaluateForces(IslandStep& step, const MotionState& state, const ParticleArray& carried, double advance_s,
+                    PointUpdate update) {
+  evaluate(step, state, &carried, advance_s, update);
+}
+
+void evaluateTrialForces(IslandStep& step) {
+  evaluate(step, step.simulation.state, nullptr, step.drift_s, PointUpdate::trial);
 }
 
 bool isPushed(const IslandStep& step) {

@@ -15,6 +15,10 @@ enum class PointUpdate { discard, store, trial };
 void evaluateForces(IslandStep& step, const MotionState& state, const ParticleArray& carried, double advance_s,
                     PointUpdate update);
 
+/// The same at the end of an implicit step of step.drift_s, with trial points. The affine parts of the blocks' mean velocities
+/// over the step are known: engine.memo.carriedMotion.
+void evaluateTrialForces(IslandStep& step);
+
 /// Whether the hand holds a block of this island; whether a user force acts on one during the frame.
 bool holdsTether(const IslandStep& step);
 bool isPushed(const IslandStep& step);

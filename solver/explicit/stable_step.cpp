@@ -27,6 +27,18 @@ std::array<double, 3> edgeEnd(int edge) {
   return place;
 }
 
+// The stiffness of each block's contacts on its affine part, over its mass (1/s2), lies where an implicit step holds what the
+// past contributes to it: columns 0 and 1 of the matrix in the x of the corners, 2 and 3 in their y.
+Eigen::Map<Eigen::Vector4d> metricColumn(Engine& engine, std::size_t block, std::size_t column) {
+  return Eigen::Map<Eigen::Vector4d>(engine.scratch.pastPosition.values(column / 2, block) + 4 * (column % 2));
+}
+
+Eigen::Matrix4d metricOf(Engine& engine, std::size_t block) {
+  Eigen::Matrix4d metric;
+  for (std::size_t j = 0; j < 4; ++j) metric.col(static_cast<Eigen::Index>(j)) = metricColumn(engine, block, j);
+  return metric;
+}
+
 void addManifold(Simulation& simulation, const ContactView& m) {
   Engine& engine = *simulation.engine;
   const Settings& settings = simulation.scene.settings;
@@ -39,7 +51,7 @@ void addManifold(Simulation& simulation, const ContactView& m) {
                            std::max(1.0 + settings.maxwellRatio, settings.tangentialRatio) * share;
   const auto add = [&](std::size_t block, const std::array<double, 3>& place, double k) {
     const Eigen::Vector4d w = affineWeights(place, settings.inertia, simulation.model.mass[block]);
-    engine.scratch.contactMetric[block] += k * w * w.transpose();
+    for (std::size_t j = 0; j < 4; ++j) metricColumn(engine, block, j) += k * w * w[static_cast<Eigen::Index>(j)];
   };
   for (std::size_t p = 0; p < static_cast<std::size_t>(m.count); ++p) {
     const double k = stiffness * m.penalty(p).stiffening[laneOf(p)];
@@ -74,7 +86,9 @@ void addManifold(Simulation& simulation, const ContactView& m) {
 double spectralBound(Simulation& simulation, std::span<const std::int32_t> blocks, std::span<const std::int32_t> pairs) {
   Engine& engine = *simulation.engine;
   computeFrames(simulation.state.position, blocks, engine.memo.frames);
-  for (const std::int32_t block : blocks) engine.scratch.contactMetric[static_cast<std::size_t>(block)].setZero();
+  for (const std::int32_t block : blocks) {
+    for (std::size_t j = 0; j < 4; ++j) metricColumn(engine, static_cast<std::size_t>(block), j).setZero();
+  }
   for (const std::int32_t at : pairs) {
     const ContactView manifold = contactOf(engine, static_cast<std::size_t>(at));
     if (manifold.phase != PairPhase::separated) addManifold(simulation, manifold);
@@ -85,8 +99,9 @@ double spectralBound(Simulation& simulation, std::span<const std::int32_t> block
     const auto b = static_cast<std::size_t>(block);
     springs = std::max(springs, engine.springRadius[b]);
     // The trace is an upper bound as well, and often shows that a block is not the largest.
-    if (engine.scratch.contactMetric[b].trace() <= contacts) continue;
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> solver(engine.scratch.contactMetric[b], Eigen::EigenvaluesOnly);
+    const Eigen::Matrix4d metric = metricOf(engine, b);
+    if (metric.trace() <= contacts) continue;
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> solver(metric, Eigen::EigenvaluesOnly);
     contacts = std::max(contacts, solver.eigenvalues()[3]);
   }
   return springs + 2.0 * contacts;

@@ -115,7 +115,6 @@ void sizeEngine(Simulation& simulation) {
   e.memo.frames.resize(count);
   e.memo.motion.resize(count);
   e.scratch.contactForce.resize(count);
-  e.scratch.contactMetric.resize(count);
   e.springRadius.resize(count);
   e.memo.previous = simulation.state.position;
   e.memo.blockHistory.assign(count, BlockHistory{});
@@ -164,6 +163,7 @@ Simulation::Simulation(const Scene& given) : scene(given), engine(std::make_uniq
   const MethodTraits traits = traitsOf(scene.settings.method);
   if (traits.family == MethodFamily::report) {
     e.report.resize(count);
+    e.scratch.pastPosition.resize(count);
   } else if (traits.family == MethodFamily::rigid) {
     prepareRigid(*this);
   } else {

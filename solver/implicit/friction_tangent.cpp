@@ -96,15 +96,15 @@ void appendTangents(const IslandStep& step, NewtonSystem& island, const Count& c
     }
     return;
   }
-  std::vector<std::size_t>& start = island.tangentStart;
+  std::vector<std::int32_t>& start = island.tangentStart;
   const auto overTouching = [&](const auto& kernel) { forRanges(pairs, tuning::kPairGrain, true, kernel); };
   start.resize(pairs + 1);
-  start[0] = to.size();
+  start[0] = static_cast<std::int32_t>(to.size());
   overTouching([&](std::size_t first, std::size_t last) {
-    for (std::size_t at = first; at < last; ++at) start[at + 1] = count(at);
+    for (std::size_t at = first; at < last; ++at) start[at + 1] = static_cast<std::int32_t>(count(at));
   });
   std::partial_sum(start.begin(), start.end(), start.begin());
-  to.resize(start[pairs]);
+  to.resize(static_cast<std::size_t>(start[pairs]));
   overTouching([&](std::size_t first, std::size_t last) {
     for (std::size_t at = first; at < last; ++at) {
       if (start[at + 1] > start[at]) put(at, to.data() + start[at]);

@@ -68,7 +68,8 @@ SPRINGTOWER_INLINE void applyTangents(NewtonSystem& island, double* force) {
 }
 
 // Whether the displacements of each direction are stored. In a wide island they would be most of its memory, and one more
-// solution for the combined forces costs about as much as to read them.
+// solution for the combined forces costs about as much as to read them; what is solved first waits in the affine part of
+// island.direction, which is found last.
 bool keepsCorrections(const IslandStep& step) {
   return !isWide(step);
 }
@@ -86,8 +87,26 @@ void makeRoom(const IslandStep& step, std::size_t j, std::size_t count, NewtonSy
   const std::size_t all = island.affine.size();
   const std::size_t room = std::max(tuning::kMinGmresDirections, j + 1);
   if (island.coupledForce.size() < (room + 1) * count) island.coupledForce.resize((room + 1) * count);
-  const std::size_t kept = keepsCorrections(step) ? room + 1 : 1;
-  if (island.correction.size() < kept * all) island.correction.resize(kept * all);
+  if (keepsCorrections(step) && island.correction.size() < (room + 1) * all) island.correction.resize((room + 1) * all);
+}
+
+// Stores the first solution of a wide island, and adds it to the last.
+void keepFirst(const IslandStep& step, NewtonSystem& island) {
+  overBlocks(step, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      for (std::size_t m = 0; m < kAffine; ++m)
+        std::copy_n(island.affine.data() + kNodeSize * i + 3 * m, 3, island.direction[i][m].begin());
+    }
+  });
+}
+void addFirst(const IslandStep& step, NewtonSystem& island) {
+  overBlocks(step, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      for (std::size_t m = 0; m < kAffine; ++m) {
+        for (std::size_t k = 0; k < 3; ++k) island.affine[kNodeSize * i + 3 * m + k] += island.direction[i][m][k];
+      }
+    }
+  });
 }
 
 // Rotates column j of the Hessenberg matrix into triangular form (Givens), and the right-hand side with it.
@@ -146,7 +165,11 @@ bool solveCoupled(IslandStep& step, NewtonSystem& island, double allowed_n) {
   const auto correction = [&](std::size_t j) { return island.correction.data() + (j + 1) * all; };
 
   LeastSquares squares;
-  std::copy(island.affine.begin(), island.affine.end(), island.correction.begin());
+  if (keepsCorrections(step)) {
+    std::copy(island.affine.begin(), island.affine.end(), island.correction.begin());
+  } else {
+    keepFirst(step, island);
+  }
   applyTangents(island, force(0));
   squares.right[0] = std::sqrt(dot(step, force(0), force(0), count));
   if (!(squares.right[0] > allowed)) return true;
@@ -180,7 +203,7 @@ bool solveCoupled(IslandStep& step, NewtonSystem& island, double allowed_n) {
     std::fill_n(sum, count, 0.0);
     for (std::size_t j = 0; j < used; ++j) addScaled(step, squares.right[j], force(j), count, sum);
     solveForCoupled(step, island, sum);
-    addScaled(step, 1.0, island.correction.data(), all, island.affine.data());
+    addFirst(step, island);
     return reached;
   }
   std::copy_n(island.correction.data(), all, island.affine.data());

@@ -113,22 +113,24 @@ double findResidual(IslandStep& step, NewtonSystem& island, double effective_s) 
       [](double a, double b) { return std::max(a, b); });
 }
 
-// A block's velocities at the step's end, and its mean velocities over the step.
+// A block's velocities at the step's end, and the affine part of its mean velocities over the step.
 SPRINGTOWER_INLINE void updateVelocities(IslandStep& step, std::size_t b, double effective_s) {
   Engine& engine = step.engine;
   MotionState& state = step.simulation.state;
   const double rate = 1.0 / effective_s;
   const double stepRate = 1.0 / step.drift_s;
+  AffineField& motion = engine.memo.carriedMotion[b];
   for (std::size_t a = 0; a < 3; ++a) {
     const double* x = state.position.values(a, b);
     const double* before = engine.memo.previous.values(a, b);
     const double* history = engine.scratch.pastPosition.values(a, b);
     double* v = state.velocity.values(a, b);
-    double* carried = engine.scratch.stepVelocity.values(a, b);
+    double carried[kCorners];
     for (std::size_t c = 0; c < kCorners; ++c) {
       v[c] = (x[c] - history[c]) * rate;
       carried[c] = (x[c] - before[c]) * stepRate;
     }
+    affineOfComponent(carried, a, motion);
   }
 }
 
@@ -201,8 +203,8 @@ void reject(IslandStep& step) {
 // Forces and residual at the present positions.
 double evaluateResidual(IslandStep& step, NewtonSystem& island, double effective_s, StageClock& clock) {
   clock.lap(Stage::integration);
-  evaluateForces(step, step.simulation.state, step.engine.scratch.stepVelocity, step.drift_s, PointUpdate::trial);
-  clock.skip();  // evaluateForces times itself
+  evaluateTrialForces(step);
+  clock.skip();  // it times itself
   return findResidual(step, island, effective_s);
 }
 

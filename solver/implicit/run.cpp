@@ -115,7 +115,6 @@ void prepareImplicit(Simulation& simulation) {
   engine.memo.previousVelocity.resize(count);
   engine.scratch.pastPosition.resize(count);
   engine.scratch.freePosition.resize(count);
-  engine.scratch.stepVelocity.resize(count);
   engine.memo.carriedMotion.resize(count);
   engine.memo.newtonSystems.use(count);
   engine.scratch.nodeOf.assign(count, 0);

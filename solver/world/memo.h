@@ -50,7 +50,7 @@ struct Memo {
   ParticleArray force;                       ///< N, [blocks][8]; where forcesKnown, at the positions now
   std::vector<BlockFrame> frames;          ///< affine parts of the blocks at the stage being evaluated; of sleepers, as they lie
   std::vector<AffineField> motion;         ///< and of their velocities
-  std::vector<AffineField> carriedMotion;  ///< and of the velocities that carried them, in the multi-stage methods
+  std::vector<AffineField> carriedMotion;  ///< and of the velocities that carried them, in implicit and multi-stage methods
   ByIsland<NewtonSystem> newtonSystems;    ///< not of rigid methods and the report's
   ByIsland<SparseFactors> sparseFactors;   ///< of `implicitEigen` alone
   GripForce tetherForce;                   ///< the hand's, as last evaluated

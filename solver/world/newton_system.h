@@ -49,12 +49,12 @@ struct NewtonWork {
   std::vector<ModeVectors> direction;      ///< m, the last Newton direction, in the world's frame, by node
   std::vector<double> affine;              ///< right-hand sides and solutions, [nodes][12]
   AlignedVector<ContactTangent> tangents;  ///< differences to the contacts in the factors; may be empty
-  std::vector<std::size_t> tangentStart;   ///< of each touching pair, where tangents are found on many threads
+  std::vector<std::int32_t> tangentStart;  ///< of each touching pair, where tangents are found on many threads
   std::vector<std::int32_t> coupled;       ///< of `solveCoupled`: nodes that the tangents act on
   std::vector<std::int32_t> coupledIndex;  ///< index of each node among them
   std::vector<double> coupledMotion;       ///< m, [coupled][12]
   std::vector<double> coupledForce;        ///< N, [direction][coupled][12]
-  std::vector<double> correction;          ///< m, [direction][nodes][12]
+  std::vector<double> correction;          ///< m, [direction][nodes][12], of a narrow island
 };
 
 /// What an island keeps from implicit step to implicit step: the factors of M / step^2 + K for the contacts when they were last

@@ -27,11 +27,11 @@ void poisonAll(Parts&... parts) {
 void poisonScratch(Engine& engine) {
   Scratch& s = engine.scratch;
   poisonAll(s.awakeBlocks, s.reach, s.mergedKeys, s.mergedFrom, s.mergedColumn, s.cursor, s.watchedPairs, s.path, s.assumedPath,
-            s.newContactCount, s.nodeOf, s.contactForce, s.contactMetric, s.stageAcceleration[0], s.stageAcceleration[1],
-            s.stageAcceleration[2], s.stageAcceleration[3], s.pastPosition, s.stepVelocity, s.freePosition, s.lostNeighbours,
-            s.toWake, s.wakeRoots, s.pushed, s.loadChange, s.support.start, s.support.pairs, s.support.blocks, s.support.parent,
-            s.support.open, s.support.groups, s.support.beneath, s.support.supports, s.touchingEdges, s.restless, s.parent,
-            s.touched, s.joined, s.chunkCounters, s.chunkTimes, s.islandCounters, s.islandTimes, s.islandOutcome);
+            s.newContactCount, s.nodeOf, s.contactForce, s.stageAcceleration[0], s.stageAcceleration[1], s.stageAcceleration[2],
+            s.stageAcceleration[3], s.pastPosition, s.freePosition, s.lostNeighbours, s.toWake, s.wakeRoots, s.pushed,
+            s.loadChange, s.support.start, s.support.pairs, s.support.blocks, s.support.parent, s.support.open, s.support.groups,
+            s.support.beneath, s.support.supports, s.touchingEdges, s.restless, s.parent, s.touched, s.joined, s.chunkCounters,
+            s.chunkTimes, s.islandCounters, s.islandTimes, s.islandOutcome);
   for (MotionState& stage : s.stage) poisonAll(stage.position, stage.velocity);
   for (NewtonSystem& work : engine.memo.newtonSystems.all())
     poisonAll(work.residual, work.direction, work.affine, work.tangents, work.tangentStart, work.coupled, work.coupledIndex,

@@ -9,7 +9,6 @@
 #include "solver/world/sleep_state.h"
 #include "solver/world/support_point.h"
 
-#include <Eigen/Core>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -67,11 +66,10 @@ struct Scratch {
   // Steps.
   std::vector<std::int32_t> firstEqualIsland;      ///< of each island before the first frame: the first that is equal
   std::vector<AffineField> contactForce;           ///< N, contact forces on each block
-  std::vector<Eigen::Matrix4d> contactMetric;      ///< 1/s2, stiffness of each block's contacts on its affine part, over its mass
   std::array<MotionState, 4> stage;                ///< states at the stages of the multi-stage methods; empty for the others
   std::array<ParticleArray, 4> stageAcceleration;  ///< m/s2, of the stages
-  ParticleArray pastPosition;                      ///< m, contribution of past steps to the position at an implicit step's end
-  ParticleArray stepVelocity;                      ///< m/s, mean over the implicit step
+  ParticleArray pastPosition;                      ///< m, contribution of past steps to the position at an implicit step's end;
+                                                   ///< matrices of contacts where explicit steps are chosen
   ParticleArray freePosition;                      ///< m, position at the end of the implicit step without forces
   ByIsland<RigidIsland> rigidIslands;              ///< of rigid methods, and of those that may change to rigid steps
 

@@ -30,7 +30,7 @@ struct DrawnBlock {
   DrawnBlock() {
     step.drift_s = 0.25 * simulation.scene.settings.frame_s;
     effective_s = endShare(Method::implicit) * step.drift_s;
-    evaluateForces(step, simulation.state, simulation.engine->scratch.stepVelocity, step.drift_s, PointUpdate::trial);
+    evaluateTrialForces(step);
     island().trialIsAhead = true;
     island().useConsistentTangent = true;
   }
@@ -84,18 +84,20 @@ struct DrawnBlock {
           for (std::size_t side = 0; side < 3; ++side) moved += 0.5 * cornerSide(c, side) * d[3 + 3 * side + a];
           s.state.position.values(a, b)[c] += moved;
           s.state.velocity.values(a, b)[c] += moved / effective_s;
-          s.engine->scratch.stepVelocity.values(a, b)[c] += moved / step.drift_s;
         }
+        AffineField& carried = s.engine->memo.carriedMotion[b];
+        carried.centre[a] += d[a] / step.drift_s;
+        for (std::size_t side = 0; side < 3; ++side) carried.side[side][a] += d[3 + 3 * side + a] / step.drift_s;
       }
     }
-    evaluateForces(step, s.state, s.engine->scratch.stepVelocity, step.drift_s, PointUpdate::trial);
+    evaluateTrialForces(step);
   }
 
   // Contact forces on the blocks if the step's end were moved by displacements; both [node][12].
   std::vector<double> contactForcesAt(const std::vector<double>& displacement) {
     Simulation& s = simulation;
     const auto place = s.state;
-    const ParticleArray carried = s.engine->scratch.stepVelocity;
+    const std::vector<AffineField> carried = s.engine->memo.carriedMotion;
     move(displacement);
     std::vector<double> force(displacement.size());
     for (const std::int32_t block : step.blocks) {
@@ -108,7 +110,7 @@ struct DrawnBlock {
       }
     }
     s.state = place;
-    s.engine->scratch.stepVelocity = carried;
+    s.engine->memo.carriedMotion = carried;
     return force;
   }
 
