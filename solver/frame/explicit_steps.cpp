@@ -12,6 +12,7 @@
 #include "solver/reference/report_frame.h"
 #include "solver/reference/report_step.h"
 #include "solver/reference/runge_kutta4.h"
+#include "solver/world/checkpoint.h"
 #include "solver/world/stiffness.h"
 
 #include <algorithm>
@@ -110,6 +111,7 @@ IslandOutcome runExplicitSteps(IslandStep& step, double begin_s) {
   const StepFunction takeStep = explicitStepOf(settings.method);
   const bool isReport = traitsOf(settings.method).family == MethodFamily::report;
   const double rest_s = settings.frame_s - begin_s;
+  copyFrameStart(step);
   IslandOutcome outcome;
   outcome.substeps = std::max(1, static_cast<int>(std::ceil(chooseSubsteps(step) * rest_s / settings.frame_s - 1e-9)));
   step.drift_s = rest_s / outcome.substeps;

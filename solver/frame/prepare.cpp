@@ -12,6 +12,7 @@
 #include "solver/implicit/equal_islands.h"
 #include "solver/implicit/equilibrium.h"
 #include "solver/implicit/system.h"
+#include "solver/world/checkpoint.h"
 
 #include <cstdint>
 #include <fmt/format.h>
@@ -27,6 +28,7 @@ IslandOutcome prepareIsland(IslandStep& step) {
   if (step.engine.scratch.firstEqualIsland[static_cast<std::size_t>(island)] != island) return {};
   const Settings& settings = step.simulation.scene.settings;
   step.pointKind = pointKindOf(settings.method);
+  copyFrameStart(step);
   findTouching(step);
   IslandOutcome outcome;
   if (traitsOf(settings.method).family != MethodFamily::rigid && startInEquilibrium(step)) outcome.substeps = 1;
@@ -85,7 +87,11 @@ PrepareResult prepare(Simulation& simulation, const PrepareOptions& options) {
     // The search takes more directions and tangents than the frames to come.
     static_cast<NewtonWork&>(island) = {};
     layOutWork(island);
+    // So does the order of elimination that was tried first and given up.
+    island.matrix.row.shrink_to_fit();
+    island.matrix.target.shrink_to_fit();
   }
+  releaseFrameStart(engine);  // the search has changed all pairs
   simulation.substeps = 0;
   simulation.stageTimes = before;  // of frames
   if (monitor.isStopped()) result.end = monitor.isOutOfTime() ? PrepareEnd::outOfTime : PrepareEnd::cancelled;

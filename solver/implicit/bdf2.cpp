@@ -2,6 +2,7 @@
 
 #include "core/lanes.h"
 #include "solver/contact/evaluate_forces.h"
+#include "solver/world/checkpoint.h"
 #include "solver/world/over_island.h"
 
 #include <algorithm>
@@ -80,6 +81,7 @@ void synchronise(IslandStep& step) {
   for (const std::int32_t block : step.blocks)
     behind_s = std::max(behind_s, engine.memo.blockHistory[static_cast<std::size_t>(block)].lastExplicitStep_s);
   if (behind_s == 0.0) return;
+  copyFrameStart(step);
   ParticleArray& velocity = step.simulation.state.velocity;
   step.kick_s = behind_s;
   evaluateForces(step, step.simulation.state, velocity, behind_s, PointUpdate::store);

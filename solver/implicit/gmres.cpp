@@ -90,8 +90,12 @@ void makeRoom(const IslandStep& step, std::size_t j, std::size_t count, NewtonSy
   if (keepsCorrections(step) && island.correction.size() < (room + 1) * all) island.correction.resize((room + 1) * all);
 }
 
-// Stores the first solution of a wide island, and adds it to the last.
+// Stores the first solution.
 void keepFirst(const IslandStep& step, NewtonSystem& island) {
+  if (keepsCorrections(step)) {
+    std::copy(island.affine.begin(), island.affine.end(), island.correction.begin());
+    return;
+  }
   overBlocks(step, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
       for (std::size_t m = 0; m < kAffine; ++m)
@@ -99,6 +103,8 @@ void keepFirst(const IslandStep& step, NewtonSystem& island) {
     }
   });
 }
+
+// Adds the first solution of a wide island to the last.
 void addFirst(const IslandStep& step, NewtonSystem& island) {
   overBlocks(step, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
@@ -165,11 +171,7 @@ bool solveCoupled(IslandStep& step, NewtonSystem& island, double allowed_n) {
   const auto correction = [&](std::size_t j) { return island.correction.data() + (j + 1) * all; };
 
   LeastSquares squares;
-  if (keepsCorrections(step)) {
-    std::copy(island.affine.begin(), island.affine.end(), island.correction.begin());
-  } else {
-    keepFirst(step, island);
-  }
+  keepFirst(step, island);
   applyTangents(island, force(0));
   squares.right[0] = std::sqrt(dot(step, force(0), force(0), count));
   if (!(squares.right[0] > allowed)) return true;

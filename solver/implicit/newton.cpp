@@ -19,6 +19,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace springtower {
 
@@ -159,21 +160,31 @@ void applyStep(IslandStep& step, const NewtonSystem& island, double share, doubl
   overBlocks(step, [&](std::size_t first, std::size_t last) { applyStepTo(step, island, share, effective_s, first, last); });
 }
 
+// `swaps`: the trial points become what the points were.
 SPRINGTOWER_KERNEL
-void acceptPointsOf(IslandStep& step, std::span<const std::int32_t> touching) {
+void acceptPointsOf(IslandStep& step, std::span<const std::int32_t> touching, bool swaps) {
   Engine& engine = step.engine;
   for (const std::int32_t at : touching) {
     const std::int32_t contact = engine.pairs.contact[static_cast<std::size_t>(at)];
     const PointRows points = engine.contacts.points(contact);
     const PointRows trial = engine.contacts.trial(contact);
-    for (std::size_t r = 0; r < kManifoldRows && points[r] != nullptr; ++r) *points[r] = *trial[r];
+    for (std::size_t r = 0; r < kManifoldRows && points[r] != nullptr; ++r) {
+      if (swaps) {
+        std::swap(*points[r], *trial[r]);
+      } else {
+        *points[r] = *trial[r];
+      }
+    }
   }
 }
 
-void acceptPoints(IslandStep& step, const NewtonSystem& island) {
+// Of a frame's only step, the trial points hold the frame's start.
+void acceptPoints(IslandStep& step, NewtonSystem& island) {
+  island.trialLags = holdsFrameStart(step);
   const std::span<const std::int32_t> touching = island.touching;
-  forRanges(touching.size(), tuning::kPairGrain, isWide(step),
-            [&](std::size_t first, std::size_t last) { acceptPointsOf(step, touching.subspan(first, last - first)); });
+  forRanges(touching.size(), tuning::kPairGrain, isWide(step), [&](std::size_t first, std::size_t last) {
+    acceptPointsOf(step, touching.subspan(first, last - first), island.trialLags);
+  });
 }
 
 // Where the blocks' steps are now implicit ones of this length (s).
@@ -188,8 +199,9 @@ void setLastStep(IslandStep& step, double step_s) {
   });
 }
 
-void accept(IslandStep& step, const NewtonSystem& island) {
+void accept(IslandStep& step, NewtonSystem& island) {
   acceptPoints(step, island);
+  if (island.trialLags) setFrameStartHeld(step);
   setLastStep(step, step.drift_s);
   ++step.counters.implicitSteps;
 }

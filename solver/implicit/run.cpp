@@ -5,6 +5,7 @@
 #include "solver/contact/evaluate_forces.h"
 #include "solver/contact/update.h"
 #include "solver/implicit/step_count.h"
+#include "solver/world/checkpoint.h"
 #include "solver/world/over_island.h"
 
 #include <algorithm>
@@ -100,6 +101,22 @@ double turningSpeed(const AffineField& place, const AffineField& motion) {
   return std::sqrt(fastest);
 }
 
+// Begins with the forces at the end of the last frame, if they are known. Where its step has left what it began with in the trial
+// points, these become the points; except in an island that is not narrow, which evaluates its forces before it reads them.
+void beginWithForces(IslandStep& step, bool known) {
+  Engine& engine = step.engine;
+  NewtonSystem& island = engine.memo.newtonSystems.of(step.blocks.front());
+  island.forcesKnown = known;
+  if (!known || !island.trialLags || step.blocks.size() > tuning::kNarrowBlocks) return;
+  overPairs(step, [&](std::size_t first, std::size_t last) {
+    for (const std::int32_t pair : step.pairs.subspan(first, last - first)) {
+      const auto at = static_cast<std::size_t>(pair);
+      if (engine.pairs.touches(at)) engine.contacts.copyToTrial(engine.pairs.contact[at]);
+    }
+  });
+  island.trialLags = false;
+}
+
 // Sets the number of frames until implicit steps are tried again.
 void leaveImplicitSteps(IslandStep& step, bool mostlyFallen) {
   for (const std::int32_t block : step.blocks)
@@ -190,13 +207,14 @@ IslandOutcome runImplicitSteps(IslandStep& step, bool mostlyFallen, double& reac
   if (!fits) return outcome;
   const auto takeSteps = [&](int count) {
     steps = count;
+    if (count > 1) copyFrameStart(step);
     step.drift_s = (frame_s - reached_s) / count;
     setJacobians(step, endShare(simulation.scene.settings.method) * step.drift_s);
   };
   takeSteps(steps);
   // An island that has mostly fallen goes back to rigid steps where implicit ones do not converge.
   step.maxStiffening = 1.0;
-  island.forcesKnown = known;
+  beginWithForces(step, known);
   while (steps > 0) {
     step.time_s = simulation.time_s + reached_s;
     step.gravity = simulation.scene.gravity.at(step.time_s + step.drift_s);  // forces are those of the step's end

@@ -210,6 +210,7 @@ void moveFreely(RigidBody& body, double step_s) {
 IslandOutcome runRigidSteps(IslandStep& step, int steps, double begin_s) {
   Simulation& simulation = step.simulation;
   const double frame_s = simulation.scene.settings.frame_s;
+  copyFrameStart(step);
   IslandOutcome outcome;
   outcome.substeps = std::max(1, static_cast<int>(std::ceil(steps * (frame_s - begin_s) / frame_s - 1e-9)));
   step.drift_s = (frame_s - begin_s) / outcome.substeps;

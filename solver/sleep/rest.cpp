@@ -6,6 +6,7 @@
 #include "solver/block/inertia.h"
 #include "solver/contact/approach.h"
 #include "solver/sleep/load_change.h"
+#include "solver/world/checkpoint.h"
 #include "solver/world/scales.h"
 #include "solver/world/stage_clock.h"
 
@@ -62,9 +63,9 @@ void updateSleepTimer(Simulation& simulation, std::size_t b) {
 
 // The report's test (its appendix 2.5): the displacement of the block's particles over one frame, compression included.
 void updateSleepTimerOfReport(Simulation& simulation, std::size_t b) {
-  const ParticleArray& before = simulation.engine->checkpoint.state.position;
   double moved = 0.0;
-  for (std::size_t c = 0; c < kCorners; ++c) moved += (simulation.state.position.at(b, c) - before.at(b, c)).norm();
+  for (std::size_t c = 0; c < kCorners; ++c)
+    moved += (simulation.state.position.at(b, c) - frameStartPosition(simulation, b, c)).norm();
   simulation.restTime_s[b] = moved < simulation.scene.settings.reportDisableDistance_m ? simulation.scene.settings.frame_s : 0.0;
 }
 

@@ -1,8 +1,11 @@
 #include "solver/world/checkpoint.h"
 
+#include "core/tuning.h"
 #include "solver/world/over_island.h"
 
 #include <algorithm>
+#include <array>
+#include <cassert>
 
 namespace springtower {
 
@@ -16,10 +19,38 @@ bool hasHistory(const Simulation& simulation) {
   return isImplicit(simulation.scene.settings.method);
 }
 
-void rewindBlock(Simulation& simulation, std::size_t b) {
+FrameStartIn& startOf(Engine& engine, std::int32_t block) {
+  return engine.checkpoint.in[static_cast<std::size_t>(engine.memo.islands.islandOf[static_cast<std::size_t>(block)])];
+}
+
+// Of the island that a pair belongs to: a sleeping block is in none.
+FrameStartIn startOfPair(const Engine& engine, std::size_t at) {
+  const BlockPair& key = engine.pairs.key[at];
+  const std::int32_t first = engine.memo.islands.islandOf[static_cast<std::size_t>(key.a)];
+  const std::int32_t island = first >= 0 ? first : engine.memo.islands.islandOf[static_cast<std::size_t>(key.b)];
+  return engine.checkpoint.in[static_cast<std::size_t>(island)];
+}
+
+void copyBlock(const ParticleArray& from, std::size_t block, std::array<double, 3 * kCorners>& to) {
+  for (std::size_t a = 0; a < 3; ++a) std::copy_n(from.values(a, block), kCorners, to.data() + kCorners * a);
+}
+
+void copyBlock(const std::array<double, 3 * kCorners>& from, std::size_t block, ParticleArray& to) {
+  for (std::size_t a = 0; a < 3; ++a) std::copy_n(from.data() + kCorners * a, kCorners, to.values(a, block));
+}
+
+void rewindBlock(Simulation& simulation, std::size_t b, FrameStartIn in) {
   Engine& engine = *simulation.engine;
-  copyBlock(engine.checkpoint.state.position, b, simulation.state.position);
-  copyBlock(engine.checkpoint.state.velocity, b, simulation.state.velocity);
+  if (in == FrameStartIn::copy) {
+    const std::int32_t saved = engine.checkpoint.savedBlock[b];
+    const SavedBlocks& page = engine.checkpoint.savedBlocks.page(saved);
+    const std::size_t slot = PagePool<SavedBlocks>::slot(saved);
+    copyBlock(page.position[slot], b, simulation.state.position);
+    copyBlock(page.velocity[slot], b, simulation.state.velocity);
+  } else if (in == FrameStartIn::step) {
+    copyBlock(engine.memo.previous, b, simulation.state.position);
+    copyBlock(engine.memo.previousVelocity, b, simulation.state.velocity);
+  }
   engine.memo.blockHistory[b] = engine.checkpoint.history[b];
   engine.memo.islandHistory[b] = engine.checkpoint.islandHistory[b];
   if (!hasHistory(simulation)) return;
@@ -27,7 +58,7 @@ void rewindBlock(Simulation& simulation, std::size_t b) {
   copyBlock(engine.checkpoint.previousVelocity, b, engine.memo.previousVelocity);
 }
 
-void rewindPair(Engine& engine, std::size_t at) {
+void rewindPair(Engine& engine, std::size_t at, FrameStartIn in) {
   PairTable& pairs = engine.pairs;
   const std::int32_t saved = engine.checkpoint.savedPair[at];
   if (saved >= 0) {
@@ -39,25 +70,44 @@ void rewindPair(Engine& engine, std::size_t at) {
     pairs.setAxis(at, page.axis[slot]);
   }
   if (!pairs.touches(at)) return;
-  if (saved >= 0) engine.contacts.restoreShape(pairs.contact[at]);
-  engine.contacts.restorePoints(pairs.contact[at]);
+  const std::int32_t contact = pairs.contact[at];
+  if (saved >= 0) engine.contacts.restoreShape(contact);
+  if (saved >= 0 || in == FrameStartIn::copy) {
+    engine.contacts.restorePoints(contact);
+  } else if (in == FrameStartIn::step) {
+    engine.contacts.copyFromTrial(contact);
+  }
+}
+
+// Copies take as much as most of a wide island's other working space, and it needs none once it is at rest.
+void releaseUnused(Engine& engine) {
+  FrameStart& start = engine.checkpoint;
+  const bool copied = std::any_of(start.in.begin(), start.in.end(), [](FrameStartIn in) { return in == FrameStartIn::copy; });
+  start.framesWithoutCopy = copied ? 0 : start.framesWithoutCopy + 1;
+  if (!engine.contacts.isWide() || start.framesWithoutCopy < tuning::kFramesUntilRelease) return;
+  releaseFrameStart(engine);
+  start.framesWithoutCopy = 0;
 }
 
 }  // namespace
 
 void prepareFrameStart(Simulation& simulation) {
   Engine& engine = *simulation.engine;
-  if (engine.checkpoint.state.position.blockCount() != simulation.model.blockCount()) {
-    engine.checkpoint.state.resize(simulation.model.blockCount());
+  if (engine.checkpoint.history.size() != simulation.model.blockCount()) {
     engine.checkpoint.history.resize(simulation.model.blockCount());
     engine.checkpoint.islandHistory.resize(simulation.model.blockCount());
     engine.checkpoint.stepTravel.resize(simulation.model.blockCount());
+    engine.checkpoint.savedBlock.resize(simulation.model.blockCount());
     if (hasHistory(simulation)) {
       engine.checkpoint.previous.resize(simulation.model.blockCount());
       engine.checkpoint.previousVelocity.resize(simulation.model.blockCount());
     }
   }
   engine.checkpoint.reportContacts = engine.report.contacts;
+  releaseUnused(engine);
+  engine.checkpoint.in.assign(engine.memo.islands.count(), FrameStartIn::state);
+  engine.checkpoint.savedBlocks.clear();
+  engine.checkpoint.savedBlocks.reserve(0, simulation.model.blockCount(), false);
   engine.checkpoint.savedPair.assign(engine.pairs.size(), -1);
   engine.checkpoint.savedPairs.clear();
   engine.checkpoint.savedPairs.reserve(kPageRows, engine.pairs.size(), false);
@@ -68,8 +118,6 @@ void saveFrameStart(IslandStep& step) {
   overBlocks(step, [&](std::size_t first, std::size_t last) {
     for (const std::int32_t block : step.blocks.subspan(first, last - first)) {
       const auto b = static_cast<std::size_t>(block);
-      copyBlock(step.simulation.state.position, b, engine.checkpoint.state.position);
-      copyBlock(step.simulation.state.velocity, b, engine.checkpoint.state.velocity);
       engine.checkpoint.history[b] = engine.memo.blockHistory[b];
       engine.checkpoint.islandHistory[b] = engine.memo.islandHistory[b];
       if (!hasHistory(step.simulation)) continue;
@@ -77,12 +125,58 @@ void saveFrameStart(IslandStep& step) {
       copyBlock(engine.memo.previousVelocity, b, engine.checkpoint.previousVelocity);
     }
   });
+}
+
+void copyFrameStart(IslandStep& step) {
+  Engine& engine = step.engine;
+  FrameStartIn& in = startOf(engine, step.blocks.front());
+  if (in == FrameStartIn::copy) return;
+  assert(in == FrameStartIn::state);
+  FrameStart& start = engine.checkpoint;
+  overBlocks(step, [&](std::size_t first, std::size_t last) {
+    for (const std::int32_t block : step.blocks.subspan(first, last - first)) {
+      const auto b = static_cast<std::size_t>(block);
+      const std::int32_t saved = start.savedBlocks.take();
+      start.savedBlock[b] = saved;
+      SavedBlocks& page = start.savedBlocks.page(saved);
+      const std::size_t slot = PagePool<SavedBlocks>::slot(saved);
+      copyBlock(step.simulation.state.position, b, page.position[slot]);
+      copyBlock(step.simulation.state.velocity, b, page.velocity[slot]);
+    }
+  });
   overPairs(step, [&](std::size_t first, std::size_t last) {
     for (const std::int32_t pair : step.pairs.subspan(first, last - first)) {
       const auto at = static_cast<std::size_t>(pair);
-      if (engine.pairs.touches(at)) engine.contacts.savePoints(engine.pairs.contact[at]);
+      if (engine.pairs.touches(at) && start.savedPair[at] < 0) engine.contacts.savePoints(engine.pairs.contact[at]);
     }
   });
+  in = FrameStartIn::copy;
+}
+
+bool holdsFrameStart(const IslandStep& step) {
+  return startOf(step.engine, step.blocks.front()) == FrameStartIn::state;
+}
+
+void setFrameStartHeld(IslandStep& step) {
+  startOf(step.engine, step.blocks.front()) = FrameStartIn::step;
+}
+
+Vec3 frameStartPosition(const Simulation& simulation, std::size_t block, std::size_t corner) {
+  const Engine& engine = *simulation.engine;
+  const auto island = static_cast<std::size_t>(engine.memo.islands.islandOf[block]);
+  const FrameStartIn in = engine.checkpoint.in[island];
+  if (in == FrameStartIn::state) return simulation.state.position.at(block, corner);
+  if (in == FrameStartIn::step) return engine.memo.previous.at(block, corner);
+  const std::int32_t saved = engine.checkpoint.savedBlock[block];
+  const std::array<double, 3 * kCorners>& position =
+      engine.checkpoint.savedBlocks.page(saved).position[PagePool<SavedBlocks>::slot(saved)];
+  return {position[corner], position[kCorners + corner], position[2 * kCorners + corner]};
+}
+
+void releaseFrameStart(Engine& engine) {
+  engine.checkpoint.savedBlocks = PagePool<SavedBlocks>();
+  engine.checkpoint.savedPairs = PagePool<SavedPairs>();
+  engine.contacts.releaseSaved();
 }
 
 void savePair(Engine& engine, std::size_t at) {
@@ -96,20 +190,30 @@ void savePair(Engine& engine, std::size_t at) {
   page.clearance[slot] = pairs.clearance[at];
   page.travelAtCheck[slot] = pairs.travelAtCheck[at];
   page.axis[slot] = pairs.axisOf(at);
-  if (pairs.touches(at)) engine.contacts.saveShape(pairs.contact[at]);
+  if (!pairs.touches(at)) return;
+  const std::int32_t contact = pairs.contact[at];
+  engine.contacts.saveShape(contact);
+  const FrameStartIn in = startOfPair(engine, at);
+  if (in == FrameStartIn::state) engine.contacts.savePoints(contact);
+  if (in == FrameStartIn::step) engine.contacts.saveTrial(contact);
 }
 
 void restoreFrame(Simulation& simulation) {
   Engine& engine = *simulation.engine;
-  for (const std::int32_t block : engine.memo.islands.blocks) rewindBlock(simulation, static_cast<std::size_t>(block));
-  for (const std::int32_t at : engine.memo.islandPairs) rewindPair(engine, static_cast<std::size_t>(at));
+  for (std::size_t i = 0; i < engine.memo.islands.count(); ++i) {
+    const FrameStartIn in = engine.checkpoint.in[i];
+    for (const std::int32_t block : engine.memo.islands.island(i)) rewindBlock(simulation, static_cast<std::size_t>(block), in);
+    for (std::int32_t k = engine.memo.pairStart[i]; k < engine.memo.pairStart[i + 1]; ++k)
+      rewindPair(engine, static_cast<std::size_t>(engine.memo.islandPairs[static_cast<std::size_t>(k)]), in);
+  }
   for (NewtonSystem& island : engine.memo.newtonSystems.all()) island.forcesKnown = false;
   engine.report.contacts = engine.checkpoint.reportContacts;
 }
 
 void restoreIsland(IslandStep& step) {
-  for (const std::int32_t block : step.blocks) rewindBlock(step.simulation, static_cast<std::size_t>(block));
-  for (const std::int32_t at : step.pairs) rewindPair(step.engine, static_cast<std::size_t>(at));
+  const FrameStartIn in = startOf(step.engine, step.blocks.front());
+  for (const std::int32_t block : step.blocks) rewindBlock(step.simulation, static_cast<std::size_t>(block), in);
+  for (const std::int32_t at : step.pairs) rewindPair(step.engine, static_cast<std::size_t>(at), in);
 }
 
 void saveStep(IslandStep& step) {

@@ -1,6 +1,9 @@
 #pragma once
 
+#include "core/vector.h"
 #include "solver/world/island_step.h"
+
+#include <cstddef>
 
 namespace springtower {
 
@@ -10,11 +13,27 @@ namespace springtower {
 /// Sizes the checkpoint for the coming frame. Precondition: its near pairs are found.
 void prepareFrameStart(Simulation& simulation);
 
-/// Saves what an island starts the frame from: state, histories and the points of its contacts. Islands save in parallel, each
-/// just before its data are read anyway.
+/// Saves the histories with which an island starts the frame. Islands save in parallel, each just before its data are read
+/// anyway.
 void saveFrameStart(IslandStep& step);
 
-/// Saves a pair (its position in engine.pairs) before anything changes in it other than what its points store; that is rare.
+/// Copies the state and the points with which an island started the frame, unless they have been: before anything changes them
+/// but the only implicit step of the frame, which holds them itself. Precondition: no step has been accepted without a copy.
+void copyFrameStart(IslandStep& step);
+
+/// Whether no step of the frame has been accepted, and nothing has been copied: the next step accepted holds the frame's start.
+bool holdsFrameStart(const IslandStep& step);
+/// Notes that this step has been accepted, with what it began with in memo.previous, memo.previousVelocity and the trial points.
+void setFrameStartHeld(IslandStep& step);
+
+/// Position of a corner as the frame began, m. Precondition: the block's island has run.
+Vec3 frameStartPosition(const Simulation& simulation, std::size_t block, std::size_t corner);
+
+/// Returns the memory of what has been copied. Not while frames run.
+void releaseFrameStart(Engine& engine);
+
+/// Saves a pair (its position in engine.pairs), and its points as the frame began, before anything changes in it other than by
+/// the steps; that is rare.
 void savePair(Engine& engine, std::size_t at);
 
 /// Restores the start of the frame, for a whole frame that is run again or for one island.

@@ -2,9 +2,22 @@
 
 #include "core/tuning.h"
 
+#include <algorithm>
 #include <cstring>
 
 namespace springtower {
+
+namespace {
+
+// Rows in pages with room for copies, but not more than are in use.
+template <class Page>
+std::size_t rowsCopied(const PagePool<Page>& pool) {
+  std::size_t rows = 0;
+  pool.forEachPage([&](const Page& page) { rows += page.start.get() != nullptr ? kPageRows : 0; });
+  return std::min(rows, pool.rowsInUse());
+}
+
+}  // namespace
 
 std::int32_t ContactPool::take() {
   const std::int32_t contact = first_.take();
@@ -56,34 +69,54 @@ void ContactPool::forRows(std::int32_t contact, const Visit& visit) {
 }
 
 void ContactPool::savePoints(std::int32_t contact) {
-  forRows(contact, [](auto& page, std::size_t slot) { page.start->before[slot] = page.points[slot]; });
+  forRows(contact, [](auto& page, std::size_t slot) { (*page.start).before[slot] = page.points[slot]; });
+}
+
+void ContactPool::saveTrial(std::int32_t contact) {
+  forRows(contact, [](auto& page, std::size_t slot) { (*page.start).before[slot] = page.trial[slot]; });
 }
 
 void ContactPool::restorePoints(std::int32_t contact) {
-  forRows(contact, [](auto& page, std::size_t slot) { page.points[slot] = page.start->before[slot]; });
+  forRows(contact, [](auto& page, std::size_t slot) { page.points[slot] = (*page.start).before[slot]; });
+}
+
+void ContactPool::copyToTrial(std::int32_t contact) {
+  forRows(contact, [](auto& page, std::size_t slot) { page.trial[slot] = page.points[slot]; });
+}
+
+void ContactPool::copyFromTrial(std::int32_t contact) {
+  forRows(contact, [](auto& page, std::size_t slot) { page.points[slot] = page.trial[slot]; });
 }
 
 void ContactPool::saveShape(std::int32_t contact) {
   First& first = first_.page(contact);
   const std::size_t at = Pool::slot(contact);
-  first.start->shapeBefore[at] = first.shape[at];
-  first.start->poseBefore[at] = first.pose[at];
-  forRows(contact, [](auto& page, std::size_t slot) { page.start->placeBefore[slot] = page.place[slot]; });
+  FirstStart& start = *first.start;
+  start.shapeBefore[at] = first.shape[at];
+  start.poseBefore[at] = first.pose[at];
+  forRows(contact, [](auto& page, std::size_t slot) { (*page.start).placeBefore[slot] = page.place[slot]; });
 }
 
 void ContactPool::restoreShape(std::int32_t contact) {
   First& first = first_.page(contact);
   const std::size_t at = Pool::slot(contact);
   const std::int32_t second = first.shape[at].secondRow;  // a second row taken since is kept
-  first.shape[at] = first.start->shapeBefore[at];
+  const FirstStart& start = *first.start;
+  first.shape[at] = start.shapeBefore[at];
   first.shape[at].secondRow = second;
-  first.pose[at] = first.start->poseBefore[at];
-  forRows(contact, [](auto& page, std::size_t slot) { page.place[slot] = page.start->placeBefore[slot]; });
+  first.pose[at] = start.poseBefore[at];
+  forRows(contact, [](auto& page, std::size_t slot) { page.place[slot] = (*page.start).placeBefore[slot]; });
+}
+
+void ContactPool::releaseSaved() {
+  const auto release = [](auto& page) { page.start.release(); };
+  first_.forEachPage(release);
+  second_.forEachPage(release);
 }
 
 void ContactPool::poisonStartRows() {
   const auto poison = [](auto& page) {
-    if (page.start != nullptr) std::memset(static_cast<void*>(page.start.get()), 0xFF, sizeof *page.start);
+    if (auto* start = page.start.get()) std::memset(static_cast<void*>(start), 0xFF, sizeof *start);
   };
   first_.forEachPage(poison);
   second_.forEachPage(poison);
@@ -94,7 +127,8 @@ std::size_t ContactPool::bytes() const {
 }
 
 std::size_t ContactPool::stepBytes() const {
-  return (kFirstStepBytes + (first_.isWide() ? kWideBytes : 0)) * first_.rowsInUse() + kSecondStepBytes * second_.rowsInUse();
+  return (kFirstStepBytes + (first_.isWide() ? kWideBytes : 0)) * first_.rowsInUse() + kSecondStepBytes * second_.rowsInUse() +
+         sizeof(FirstStart) / kPageRows * rowsCopied(first_) + sizeof(SecondStart) / kPageRows * rowsCopied(second_);
 }
 
 }  // namespace springtower

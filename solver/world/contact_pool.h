@@ -5,6 +5,7 @@
 #include "solver/world/page_pool.h"
 
 #include <array>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -52,18 +53,17 @@ inline ManifoldShape shapeOf(const StoredShape& stored, const PairOfBlocks& pair
 }
 
 /// The contacts of touching pairs, structure of arrays: four points a row, and a second row for points five to eight. Beside the
-/// persistent rows lie those of the frame and the step: the points as the frame began, and the trial points at the end of an
-/// implicit step that is not yet accepted. (Trial points outlive the step: where the forces are known, the next step begins with
-/// them.)
+/// persistent rows lie those of the step, the trial points at the end of an implicit step that is not yet accepted, and copies
+/// for running the frame again, made where something is copied. (Trial points outlive the step: where the forces are known, the
+/// next step begins with them.)
 class ContactPool {
  public:
   /// Bytes of a touching pair with up to four points; of a second row; and what frames and steps add to each.
   static constexpr std::size_t kFirstBytes = sizeof(StoredShape) + sizeof(SleepLoad) + sizeof(PlaceRow) + sizeof(PointRow);
   static constexpr std::size_t kSecondBytes = sizeof(PlaceRow) + sizeof(PointRow);
-  static constexpr std::size_t kFirstStepBytes =
-      2 * sizeof(PointRow) + sizeof(PlaceRow) + sizeof(StoredShape) + sizeof(RelativePose);
+  static constexpr std::size_t kFirstStepBytes = sizeof(PointRow) + sizeof(RelativePose);
   static constexpr std::size_t kWideBytes = sizeof(PairForce);  ///< more in wide islands
-  static constexpr std::size_t kSecondStepBytes = 2 * sizeof(PointRow) + sizeof(PlaceRow);
+  static constexpr std::size_t kSecondStepBytes = sizeof(PointRow);
 
   /// Takes a contact for a pair, without points. Any thread.
   std::int32_t take();
@@ -148,12 +148,22 @@ class ContactPool {
   /// Forces of the pair, for the sums of a wide island. Precondition: reserved as wide.
   [[nodiscard]] PairForce& pairForce(std::int32_t contact) { return (*first_.page(contact).pairForce)[Pool::slot(contact)]; }
 
-  /// Saves the points as the frame begins, and restores them.
+  /// Saves the points as the frame began, from the points now or, once its only step is accepted, from the trial points; and
+  /// restores them. Any thread, one thread a contact.
   void savePoints(std::int32_t contact);
+  void saveTrial(std::int32_t contact);
   void restorePoints(std::int32_t contact);
+  /// Copies the points to the trial points, and back.
+  void copyToTrial(std::int32_t contact);
+  void copyFromTrial(std::int32_t contact);
   /// Saves shape, places and pose too, before they change in the frame, and restores them.
   void saveShape(std::int32_t contact);
   void restoreShape(std::int32_t contact);
+
+  /// Whether islands sum their forces pair by pair.
+  [[nodiscard]] bool isWide() const { return first_.isWide(); }
+  /// Returns the memory of all that is saved. Not while frames run.
+  void releaseSaved();
 
   /// Overwrites with NaN what is saved for rollbacks.
   void poisonStartRows();
@@ -161,7 +171,7 @@ class ContactPool {
   [[nodiscard]] std::size_t inUse() const { return first_.rowsInUse(); }
   [[nodiscard]] std::size_t secondRowsInUse() const { return second_.rowsInUse(); }
   [[nodiscard]] std::size_t bytes() const;      ///< of the contacts in use
-  [[nodiscard]] std::size_t stepBytes() const;  ///< that frames and steps add to those
+  [[nodiscard]] std::size_t stepBytes() const;  ///< that frames and steps add to those, with all that is made for copies
 
  private:
   // Owned by a page beside its rows, and filled anew by frames or steps: not copied, but made by `prepare`.
@@ -173,6 +183,30 @@ class ContactPool {
     Working(Working&&) noexcept = default;
     Working& operator=(Working&&) noexcept = default;
     ~Working() = default;
+  };
+
+  // The same, made when first asked for, on any thread.
+  template <class T>
+  class OnDemand {
+   public:
+    OnDemand() = default;
+    OnDemand(const OnDemand& /*other*/) {}
+    OnDemand& operator=(const OnDemand& /*other*/) { return *this; }
+    ~OnDemand() { release(); }
+    T& operator*() {
+      T* const there = made_.load(std::memory_order_acquire);
+      return there != nullptr ? *there : make();
+    }
+    [[nodiscard]] T* get() const { return made_.load(std::memory_order_acquire); }
+    void release() { delete made_.exchange(nullptr); }
+
+   private:
+    T& make() {
+      auto made = std::make_unique<T>();
+      T* there = nullptr;
+      return made_.compare_exchange_strong(there, made.get()) ? *made.release() : *there;  // otherwise another thread was first
+    }
+    std::atomic<T*> made_{nullptr};
   };
 
   struct FirstStart {
@@ -192,10 +226,9 @@ class ContactPool {
     Column<PointRow> points;
     Column<RelativePose> pose;
     Column<PointRow> trial;
-    Working<FirstStart> start;
+    OnDemand<FirstStart> start;
     Working<Column<PairForce>> pairForce;
     void prepare(bool wide) {
-      if (start == nullptr) start.reset(new FirstStart);
       if (wide && pairForce == nullptr) pairForce.reset(new Column<PairForce>);
     }
   };
@@ -203,10 +236,8 @@ class ContactPool {
     Column<PlaceRow> place;
     Column<PointRow> points;
     Column<PointRow> trial;
-    Working<SecondStart> start;
-    void prepare(bool /*wide*/) {
-      if (start == nullptr) start.reset(new SecondStart);
-    }
+    OnDemand<SecondStart> start;
+    void prepare(bool /*wide*/) {}
   };
   using Pool = PagePool<First>;
 

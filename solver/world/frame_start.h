@@ -6,6 +6,7 @@
 #include "solver/world/page_pool.h"
 #include "solver/world/report_state.h"
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -20,15 +21,31 @@ struct SavedPairs {
   void prepare(bool /*wide*/) {}
 };
 
-/// The start of a frame, for running it again; the points of contacts are saved in their pool. Written by
-/// solver/world/checkpoint. Not in snapshots.
+/// Blocks as the frame began: their corners' positions (m) and velocities (m/s).
+struct SavedBlocks {
+  Column<std::array<double, 3 * kCorners>> position;
+  Column<std::array<double, 3 * kCorners>> velocity;
+  void prepare(bool /*wide*/) {}
+};
+
+/// Where the state and the points are with which an island began the frame: nothing has changed them yet, but a step that is not
+/// accepted; the only step of the frame is accepted, and still holds what it began with (memo.previous, memo.previousVelocity,
+/// the trial points); or they have been copied.
+enum class FrameStartIn : std::uint8_t { state, step, copy };
+
+/// The start of a frame, for running it again. An island at rest takes one step a frame and needs no copy of what it began with,
+/// which would be most of its working space. Points of contacts are saved in their pool. Written by solver/world/checkpoint. Not
+/// in snapshots.
 struct FrameStart {
-  MotionState state;
+  std::vector<FrameStartIn> in;  ///< [islands]
+  int framesWithoutCopy = 0;     ///< frames up to the last in which no island has copied its start
   std::vector<BlockHistory> history;
   std::vector<IslandHistory> islandHistory;
-  ParticleArray previous;               ///< m, memo.previous: start positions of the last implicit step
-  ParticleArray previousVelocity;       ///< m/s
-  std::vector<double> stepTravel;       ///< m, of each block as a rigid step began
+  ParticleArray previous;                ///< m, memo.previous: start positions of the last implicit step
+  ParticleArray previousVelocity;        ///< m/s
+  std::vector<double> stepTravel;        ///< m, of each block as a rigid step began
+  std::vector<std::int32_t> savedBlock;  ///< [blocks]: index of its saved row, where it is copied
+  PagePool<SavedBlocks> savedBlocks;
   std::vector<std::int32_t> savedPair;  ///< by position in engine.pairs: index of its saved row, -1 if unchanged
   PagePool<SavedPairs> savedPairs;
   std::vector<std::vector<ReportContact>> reportContacts;  ///< of method `report`

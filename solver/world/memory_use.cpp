@@ -2,6 +2,8 @@
 
 #include "solver/world/engine.h"
 
+#include <algorithm>
+
 namespace springtower {
 namespace {
 
@@ -106,10 +108,16 @@ std::size_t ofScratch(const Scratch& s) {
   return sum;
 }
 
+// Of all pages that are made, as far as `most` rows can be in use.
+template <class Page>
+std::size_t rowBytes(const PagePool<Page>& pool, std::size_t most) {
+  return sizeof(Page) / kPageRows * std::min(kPageRows * pool.pageCount(), most);
+}
+
 std::size_t ofFrameStart(const FrameStart& start) {
-  return bytesOf(start.state) + sizeof(SavedPairs) / kPageRows * start.savedPairs.rowsInUse() +
-         sumOf(start.history, start.islandHistory, start.previous, start.previousVelocity, start.stepTravel,
-               start.reportContacts);
+  return rowBytes(start.savedBlocks, start.savedBlock.size()) + rowBytes(start.savedPairs, start.savedPair.size()) +
+         sumOf(start.in, start.history, start.islandHistory, start.previous, start.previousVelocity, start.stepTravel,
+               start.savedBlock, start.reportContacts);
 }
 
 // Columns of the pair table and all lists with one entry a pair.
@@ -128,7 +136,7 @@ MemoryUse memoryUse(const Simulation& simulation) {
   const Engine& engine = *simulation.engine;
   MemoryUse use;
   use.state = bytesOf(simulation.state) + sumOf(simulation.asleep, simulation.restTime_s);
-  use.model = ofModel(simulation.model);
+  use.model = ofModel(simulation.model) + bytesOf(simulation.scene.blocks);
   use.factor = ofFactors(engine.memo);
   use.nearPairs = engine.pairs.size();
   use.touchingPairs = engine.contacts.inUse();

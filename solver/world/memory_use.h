@@ -9,7 +9,7 @@ namespace springtower {
 /// Bytes that a running scene holds, by purpose; without spare capacity.
 struct MemoryUse {
   std::size_t state = 0;     ///< what moves: positions and velocities, sleep and rest times
-  std::size_t model = 0;     ///< what does not move: dimensions, masses, springs
+  std::size_t model = 0;     ///< what does not move: the scene's blocks, dimensions, masses, springs
   std::size_t contacts = 0;  ///< near pairs, and the points of those that touch
   std::size_t factor = 0;    ///< matrices of the implicit method and their factors
   std::size_t working = 0;   ///< forces, frames, boxes, islands, and the checkpoint of the frame

@@ -75,6 +75,7 @@ struct NewtonSystem : NewtonWork {
   bool limited = false;               ///< whether one of them was at its limit then
   int directions = 0;                 ///< GMRES directions that the last correction took beside the factors
   bool trialIsAhead = false;          ///< whether the trial points belong to a state after the step's start
+  bool trialLags = false;             ///< whether the trial points are those with which the last accepted step began
   bool useConsistentTangent = false;  ///< whether the residual is small enough for the consistent friction tangent
   bool assumesSupport = false;        ///< whether every point of every manifold counts as pushing and sticking
   bool forcesKnown = false;           ///< whether engine.memo.force holds the forces at the island's present state

@@ -114,6 +114,13 @@ class PagePool {
     }
   }
 
+  template <class Visit>
+  void forEachPage(const Visit& visit) const {
+    for (std::size_t i = 0; i < tableSize_; ++i) {
+      if (const Page* page = table_[i].load()) visit(*page);
+    }
+  }
+
   [[nodiscard]] bool isWide() const { return wide_; }
   [[nodiscard]] std::size_t rowsInUse() const { return rows_ + taken_.load(std::memory_order_relaxed) - free_.size(); }
   [[nodiscard]] std::size_t pageCount() const {

@@ -37,6 +37,7 @@ void poisonScratch(Engine& engine) {
     poisonAll(work.residual, work.direction, work.affine, work.tangents, work.tangentStart, work.coupled, work.coupledIndex,
               work.coupledMotion, work.coupledForce, work.correction);
   engine.contacts.poisonStartRows();
+  engine.checkpoint.savedBlocks.forEachPage([](SavedBlocks& page) { std::memset(static_cast<void*>(&page), 0xFF, sizeof page); });
   for (RigidIsland& island : s.rigidIslands.all()) {
     LcpWorkspace& lcp = island.pivoting;
     poisonAll(island.bodies, island.contacts, island.movers, island.points, island.known, lcp.matrix, lcp.inverse, lcp.impulse,

@@ -102,8 +102,8 @@ TEST(MemoryUse, OfABlockOfTheTower) {
   RecordProperty("state_bytes", fmt::format("{:.0f}", each(use.state)));
   // Eight corners with three coordinates and velocities, a flag and a time.
   EXPECT_EQ(each(use.state), 8 * 6 * 8 + 1 + 8);
-  // Three sizes, a mass, and three numbers for each of seven groups of springs.
-  EXPECT_EQ(each(use.model), 3 * 8 + 8 + 7 * 3 * 8);
+  // The block of the scene, three sizes, a mass, and three numbers for each of seven groups of springs.
+  EXPECT_EQ(each(use.model), sizeof(BlockSpec) + 3 * 8 + 8 + 7 * 3 * 8);
   EXPECT_GT(each(use.contacts), 500.0);
   EXPECT_LT(each(use.contacts), 3000.0);
   EXPECT_LT(each(use.factor), 3200.0);

@@ -1,6 +1,7 @@
 // Memory of pairs of blocks, touching or not.
 #include "solver/world/memory_use.h"
 
+#include "scenarios/walls.h"
 #include "solver/runner/run.h"
 #include "solver/world/contact_pool.h"
 #include "tests/support/block_scenes.h"
@@ -49,6 +50,19 @@ TEST(MemoryUse, ATouchingPairAddsAtMost700Bytes) {
              each(use.touchingSteps));
   EXPECT_LE(each(use.touching), 380.0);
   EXPECT_LE(each(use.touchingSteps), 700.0);
+}
+
+// A wall of 200 by 25 blocks at rest: one island, whose factor takes 6.6 kB a block. What a frame begins with is not copied.
+TEST(MemoryUse, AWideIslandAtRestTakesAtMost6000BytesABlockBesideItsFactor) {
+  Scene scene = wallScene(200, 25);
+  scene.settings.sleep = Sleep::off;
+  Simulation simulation(scene);
+  stepFor(simulation, 0.5);
+  const MemoryUse use = memoryUse(simulation);
+  const double each = static_cast<double>(use.total() - use.factor) / static_cast<double>(simulation.model.blockCount());
+  fmt::print("{:.0f} bytes a block beside the factor\n", each);
+  RecordProperty("bytes_a_block", fmt::format("{:.0f}", each));
+  EXPECT_LE(each, 6000.0);
 }
 
 }  // namespace
