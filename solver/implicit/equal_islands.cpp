@@ -1,6 +1,7 @@
 #include "solver/implicit/equal_islands.h"
 
 #include "core/tuning.h"
+#include "solver/world/checkpoint.h"
 
 #include <algorithm>
 #include <cmath>
@@ -89,14 +90,15 @@ std::vector<std::int32_t> firstEqualIslands(const Simulation& simulation) {
 
 void copyEquilibrium(const IslandStep& from, IslandStep& to) {
   Engine& engine = to.engine;
-  const ParticleArray& placed = engine.checkpoint.state.position;
   ParticleArray& position = to.simulation.state.position;
   for (std::size_t i = 0; i < to.blocks.size(); ++i) {
     const auto a = static_cast<std::size_t>(from.blocks[i]);
     const auto b = static_cast<std::size_t>(to.blocks[i]);
     for (std::size_t c = 0; c < kCorners; ++c) {
-      position.set(b, c, placed.at(b, c) + (position.at(a, c) - placed.at(a, c)));
-      engine.memo.previous.set(b, c, placed.at(b, c) + (engine.memo.previous.at(a, c) - placed.at(a, c)));
+      const Vec3 before = frameStartPosition(from.simulation, a, c);
+      const Vec3 placed = position.at(b, c);
+      position.set(b, c, placed + (position.at(a, c) - before));
+      engine.memo.previous.set(b, c, placed + (engine.memo.previous.at(a, c) - before));
       to.simulation.state.velocity.set(b, c, from.simulation.state.velocity.at(a, c));
     }
     engine.memo.blockHistory[b] = engine.memo.blockHistory[a];

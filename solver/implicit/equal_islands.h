@@ -13,7 +13,7 @@ namespace springtower {
 std::vector<std::int32_t> firstEqualIslands(const Simulation& simulation);
 
 /// Moves and joins the blocks of `to` as those of `from`, which is equal, have moved and been joined since they were placed.
-/// Precondition: both have a checkpoint of where they were placed.
+/// Precondition: `from` has a checkpoint of where it was placed, and `to` is there still.
 void copyEquilibrium(const IslandStep& from, IslandStep& to);
 
 }  // namespace springtower
