@@ -75,6 +75,7 @@ PrepareResult prepare(Simulation& simulation, const PrepareOptions& options) {
   engine.scratch.firstEqualIsland = firstEqualIslands(simulation);
   overIslands(simulation, prepareIsland, &monitor);
   copyToEqualIslands(simulation, monitor);
+  engine.scratch.firstEqualIsland = {};
   for (std::size_t i = 0; i < engine.memo.islands.count(); ++i) {
     const std::size_t blocks = engine.memo.islands.island(i).size();
     result.blocks += blocks;

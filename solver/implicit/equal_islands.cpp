@@ -4,6 +4,7 @@
 #include "solver/world/checkpoint.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <map>
@@ -49,7 +50,10 @@ bool isPlacedAlike(const Simulation& simulation, std::size_t a, std::size_t b, c
 
 // The place of a block among those of its island; -1 for the floor.
 std::ptrdiff_t placeOf(const PlacedIsland& island, std::int32_t block) {
-  return block < 0 ? -1 : std::lower_bound(island.blocks.begin(), island.blocks.end(), block) - island.blocks.begin();
+  if (block < 0) return -1;
+  const auto found = std::lower_bound(island.blocks.begin(), island.blocks.end(), block);
+  assert(found != island.blocks.end() && *found == block);
+  return found - island.blocks.begin();
 }
 
 bool areEqual(const Simulation& simulation, const PlacedIsland& one, const PlacedIsland& other) {
@@ -78,12 +82,17 @@ std::vector<std::int32_t> firstEqualIslands(const Simulation& simulation) {
   std::map<std::pair<std::size_t, std::size_t>, std::vector<std::int32_t>> firstOfSize;  // by numbers of blocks and of pairs
   for (std::size_t i = 0; i < memo.islands.count(); ++i) {
     const PlacedIsland island = placedIsland(memo, i);
+    first.push_back(static_cast<std::int32_t>(i));
+    if (island.blocks.size() == 1) continue;
     std::vector<std::int32_t>& known = firstOfSize[{island.blocks.size(), island.pairs.size()}];
     const auto equal = std::find_if(known.begin(), known.end(), [&](std::int32_t j) {
       return areEqual(simulation, placedIsland(memo, static_cast<std::size_t>(j)), island);
     });
-    first.push_back(equal != known.end() ? *equal : static_cast<std::int32_t>(i));
-    if (equal == known.end()) known.push_back(static_cast<std::int32_t>(i));
+    if (equal != known.end()) {
+      first.back() = *equal;
+    } else {
+      known.push_back(static_cast<std::int32_t>(i));
+    }
   }
   return first;
 }

@@ -39,15 +39,14 @@ bool mayRest(const IslandStep& step) {
 }
 
 // Takes a step from rest and updates the contacts; returns the displacement of the fastest corner over the tolerance, infinity
-// where the step fails or the island falls.
+// where the step fails, as it does where the island falls.
 double advance(IslandStep& step, double effective_s, StepFromRest kind) {
   constexpr double kFailed = std::numeric_limits<double>::infinity();
   setJacobians(step, effective_s);
   if (!stepFromRest(step, effective_s, kind)) return kFailed;
   const double farthest = stop(step) / step.simulation.tolerance_m;
   const double travel_m = refreshTravel(step.simulation);
-  const double most = tuning::kMaxEquilibriumDisplacement * step.simulation.lengths.blockHeight_m / step.simulation.tolerance_m;
-  return farthest < most && updateContacts(step, {travel_m, travel_m, travel_m}) ? farthest : kFailed;
+  return updateContacts(step, {travel_m, travel_m, travel_m}) ? farthest : kFailed;
 }
 
 double lastStep_s(const IslandStep& step) {
@@ -131,8 +130,8 @@ class EquilibriumSearch {
     if (settleSmoothed(step_)) return;
     path.back().state.restore(step_);
     double falls = 1.0;  // the least share at which it was found to fall
-    while (!isStopped()) {
-      halveRise(path, falls);
+    for (int failed = 0; !isStopped(); ++failed) {
+      if (failed <= tuning::kMaxEquilibriumRetries) halveRise(path, falls);
       if (path.size() == 1) return;
       tiltTo(path.back().share);
       if (finishSmoothed(step_) && settleAfterSmoothing(step_)) return;

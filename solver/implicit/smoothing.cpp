@@ -53,14 +53,16 @@ void removeSmoothing(IslandStep& step) {
 // Steps that are smoothed from `first` on less and less, to at least `last`.
 bool approach(IslandStep& step, double first, double last) {
   const double effective_s = tuning::kLastEquilibriumStep * step.simulation.lengths.fallTime_s;
-  const double most_m = tuning::kMaxEquilibriumDisplacement * step.simulation.lengths.blockHeight_m;
   const double unit_j = meanWeight(step) * step.simulation.tolerance_m;
   if (!(unit_j > 0.0)) return false;
   setJacobians(step, effective_s);
   bool converged = true;
   for (double smoothing = first; converged && smoothing >= last; smoothing *= tuning::kSmoothingReduction) {
     step.smoothing_j = smoothing * unit_j;
-    converged = stepFromRest(step, effective_s, StepFromRest::smoothed) && stop(step) < most_m && addTravel(step);
+    converged = stepFromRest(step, effective_s, StepFromRest::smoothed);
+    if (!converged) break;
+    stop(step);
+    converged = addTravel(step);
   }
   return converged;
 }

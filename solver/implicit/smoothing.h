@@ -11,7 +11,7 @@ namespace springtower {
 /// within its bounds. Returns false where a step does not converge.
 bool approachSmoothed(IslandStep& step);
 
-/// The first of these steps, which tells at a third of the cost whether the island stands; contacts stay smoothed.
+/// The first of these steps, which tells at a part of the cost whether the island stands; contacts stay smoothed.
 bool beginSmoothed(IslandStep& step);
 /// The others. Precondition: beginSmoothed has converged, and nothing has changed since.
 bool finishSmoothed(IslandStep& step);

@@ -83,10 +83,11 @@ void rewindPair(Engine& engine, std::size_t at, FrameStartIn in) {
 void releaseUnused(Engine& engine) {
   FrameStart& start = engine.checkpoint;
   const bool copied = std::any_of(start.in.begin(), start.in.end(), [](FrameStartIn in) { return in == FrameStartIn::copy; });
+  if (start.framesWithoutCopy == tuning::kFramesUntilRelease && !copied) return;  // they have been returned
   start.framesWithoutCopy = copied ? 0 : start.framesWithoutCopy + 1;
   if (!engine.contacts.isWide() || start.framesWithoutCopy < tuning::kFramesUntilRelease) return;
-  releaseFrameStart(engine);
-  start.framesWithoutCopy = 0;
+  start.savedBlocks = PagePool<SavedBlocks>();
+  engine.contacts.releaseSaved();
 }
 
 }  // namespace

@@ -17,8 +17,9 @@ void prepareFrameStart(Simulation& simulation);
 /// anyway.
 void saveFrameStart(IslandStep& step);
 
-/// Copies the state and the points with which an island started the frame, unless they have been: before anything changes them
-/// but the only implicit step of the frame, which holds them itself. Precondition: no step has been accepted without a copy.
+/// Copies the state and the points with which an island started the frame, unless they have been. To be called before they
+/// change, except by the only implicit step of a frame, which holds them itself. Precondition: no step has been accepted without
+/// a copy.
 void copyFrameStart(IslandStep& step);
 
 /// Whether no step of the frame has been accepted, and nothing has been copied: the next step accepted holds the frame's start.

@@ -28,9 +28,9 @@ struct SavedBlocks {
   void prepare(bool /*wide*/) {}
 };
 
-/// Where the state and the points are with which an island began the frame: nothing has changed them yet, but a step that is not
-/// accepted; the only step of the frame is accepted, and still holds what it began with (memo.previous, memo.previousVelocity,
-/// the trial points); or they have been copied.
+/// Where the state and the points are with which an island began the frame: in place, as at most a rejected step has touched
+/// them; in the only step of the frame, which is accepted and still holds what it began with (memo.previous,
+/// memo.previousVelocity, the trial points); or in a copy.
 enum class FrameStartIn : std::uint8_t { state, step, copy };
 
 /// The start of a frame, for running it again. An island at rest takes one step a frame and needs no copy of what it began with,
@@ -38,7 +38,7 @@ enum class FrameStartIn : std::uint8_t { state, step, copy };
 /// in snapshots.
 struct FrameStart {
   std::vector<FrameStartIn> in;  ///< [islands]
-  int framesWithoutCopy = 0;     ///< frames up to the last in which no island has copied its start
+  int framesWithoutCopy = 0;     ///< runs of frames since an island copied its start, up to tuning::kFramesUntilRelease
   std::vector<BlockHistory> history;
   std::vector<IslandHistory> islandHistory;
   ParticleArray previous;                ///< m, memo.previous: start positions of the last implicit step

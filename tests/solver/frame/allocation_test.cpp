@@ -87,7 +87,7 @@ INSTANTIATE_TEST_SUITE_P(Frames, AllocationTest,
                                            Case{.name = "RigidLcp", .rows = 2, .method = Method::rigidLcp, .frames = 5},
                                            Case{.name = "Xpbd", .tilt_deg = 14.5, .method = Method::xpbd},
                                            // More blocks than tuning::kParallelBlocks: kernels run in ranges.
-                                           Case{.name = "LargeIsland", .rows = 90, .frames = 1}),
+                                           Case{.name = "LargeIsland", .rows = 90}),
                          [](const auto& one) { return one.param.name; });
 
 // Bytes a block of the settled tower of 18 rows. The bounds are the measured values plus a tenth.

@@ -7,9 +7,11 @@
 #include "tests/support/block_scenes.h"
 #include "tests/support/prepare_and_step.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <gtest/gtest.h>
+#include <numbers>
 #include <oneapi/tbb/global_control.h>
 #include <vector>
 
@@ -92,7 +94,7 @@ TEST(EqualIslands, ShareTheForcesBetweenTheirBlocks) {
 std::size_t solvedIslands(const Scene& scene) {
   Simulation simulation(scene);
   prepare(simulation);
-  const std::vector<std::int32_t>& first = simulation.engine->scratch.firstEqualIsland;
+  const std::vector<std::int32_t> first = firstEqualIslands(simulation);  // equal islands have moved alike
   std::size_t solved = 0;
   for (std::size_t i = 0; i < first.size(); ++i) solved += first[i] == static_cast<std::int32_t>(i) ? 1 : 0;
   return solved;
@@ -116,11 +118,53 @@ TEST(EqualIslands, DifferInAnythingThatDecidesTheEquilibrium) {
   EXPECT_EQ(solvedIslands(other), 2U);
 }
 
+// Even and uneven towers by turns.
 TEST(EqualIslands, AreFoundWhateverTheOrderOfTheTowers) {
-  Scene mixed = squareOf(unevenTower(), 2);
+  Scene mixed = squareOf(unevenTower(), 4);
   const Scene other = squareOf(towerScene(6), 4);
-  for (std::size_t b = 2 * 18; b < other.blocks.size(); ++b) mixed.blocks.push_back(other.blocks[b]);
+  const std::size_t blocks = other.blocks.size() / 4;
+  for (const std::size_t tower : {1U, 3U})
+    std::copy_n(other.blocks.begin() + static_cast<std::ptrdiff_t>(tower * blocks), blocks,
+                mixed.blocks.begin() + static_cast<std::ptrdiff_t>(tower * blocks));
   EXPECT_EQ(solvedIslands(mixed), 2U);
+}
+
+// A tower that is turned by a quarter, or a stiffer one: nine rows in place of six.
+TEST(EqualIslands, AreNeitherTurnedNorStiffer) {
+  Scene scene = squareOf(towerScene(6), 2);
+  const Vec3 middle = scene.blocks[19].centre;  // the middle block of the second tower's lowest row
+  const Eigen::Quaterniond quarter(Eigen::AngleAxisd(0.5 * std::numbers::pi, Vec3::UnitZ()));
+  for (std::size_t b = 18; b < 36; ++b) {
+    scene.blocks[b].centre = middle + quarter * (scene.blocks[b].centre - middle);
+    scene.blocks[b].orientation = quarter * scene.blocks[b].orientation;
+  }
+  EXPECT_EQ(solvedIslands(scene), 2U);
+}
+
+// Methods whose contacts have stiffness start from the equilibrium, explicit ones as well; rigid ones as placed.
+TEST(EqualIslands, AreAlikeInEveryMethod) {
+  for (const Method method : {Method::semiImplicitEuler, Method::xpbd, Method::rigidPgs, Method::implicitEuler}) {
+    Scene one = awake(towerScene(3));
+    one.settings.method = method;
+    Simulation square(squareOf(one, 4));
+    stepFor(square, 0.1);
+    const std::vector<Vec3> expected = displacements(square, 0, one.blocks.size());
+    for (std::size_t tower = 1; tower < 4; ++tower) {
+      const std::vector<Vec3> moved = displacements(square, tower, one.blocks.size());
+      for (std::size_t b = 0; b < moved.size(); ++b)
+        EXPECT_LE((moved[b] - expected[b]).norm(), 1e-3 * square.tolerance_m) << nameOf(method) << ", block " << b;
+    }
+  }
+}
+
+// Where the search is ended before it begins, all of them start as placed.
+TEST(EqualIslands, StartAsPlacedWhereTheSearchIsEnded) {
+  Simulation square(squareOf(unevenTower(), 4));
+  PrepareOptions options;
+  options.budget_s = 0.0;
+  EXPECT_EQ(prepare(square, options).blocksInBalance, 0U);
+  for (std::size_t b = 0; b < square.scene.blocks.size(); ++b)
+    EXPECT_LE((centre(square.state.position, b) - square.scene.blocks[b].centre).norm(), 1e-15);
 }
 
 TEST(EqualIslands, HaveTheSameBitsOnAnyNumberOfThreads) {
