@@ -102,10 +102,9 @@ class EquilibriumSearch {
   // Moves the island into equilibrium; false, and everything as placed, where none is found. `mayFall`: whether an island that
   // falls under tilted gravity is put into an equilibrium at nearly the largest share of the tilt at which it stands.
   bool find(bool mayFall) {
-    tiltTo(mayFall ? 0.0 : 1.0);
-    if (!settles(settleAtOnce) && !settles(settleSmoothed)) return false;
-    if (mayFall) raiseTilt();
-    if (!isStopped()) return true;
+    tiltTo(1.0);
+    const bool found = mayFall ? findTilted() : settles(settleAtOnce) || settles(settleSmoothed);
+    if (found && !isStopped()) return true;
     startAgain();
     return false;
   }
@@ -121,24 +120,29 @@ class EquilibriumSearch {
     SavedIsland state;
   };
 
-  // From the equilibrium on level ground, under gravity that is tilted as far as the island stands: at once, or else by halving
-  // the rise.
-  void raiseTilt() {
+  // From level ground, where contacts stay smoothed unless all of the weight at once does, to gravity that is tilted as far as
+  // the island stands: at once, or else by halving the rise.
+  bool findTilted() {
+    tiltTo(0.0);
+    const bool level = settles(settleAtOnce);
+    if (!level && (isStopped() || !beginSmoothed(step_))) return false;
     std::vector<Standing> path;
     path.push_back({0.0, SavedIsland(step_)});
     tiltTo(1.0);
-    if (settleSmoothed(step_)) return;
+    if (settleSmoothed(step_)) return true;
     path.back().state.restore(step_);
     double falls = 1.0;  // the least share at which it was found to fall
     for (int failed = 0; !isStopped(); ++failed) {
       if (failed <= tuning::kMaxEquilibriumRetries) halveRise(path, falls);
-      if (path.size() == 1) return;
+      const bool isLevel = path.size() == 1;
       tiltTo(path.back().share);
-      if (finishSmoothed(step_) && settleAfterSmoothing(step_)) return;
+      if ((isLevel && level) || (finishSmoothed(step_) && settleAfterSmoothing(step_))) return true;
+      if (isLevel) return false;
       falls = path.back().share;
       path.pop_back();
       path.back().state.restore(step_);
     }
+    return false;
   }
 
   // Extends the path by shares at which the island stands, while more than tuning::kTiltGap lies between them and `falls`.
