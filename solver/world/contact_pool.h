@@ -185,7 +185,7 @@ class ContactPool {
     ~Working() = default;
   };
 
-  // The same, made when first asked for, on any thread.
+  // The same, allocated at first use, on any thread.
   template <class T>
   class OnDemand {
    public:
