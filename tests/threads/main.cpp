@@ -9,6 +9,7 @@
 #include "solver/frame/prepare.h"
 #include "solver/world/engine.h"
 #include "solver/world/simulation.h"
+#include "tests/support/uneven_tower.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -35,13 +36,6 @@ struct ThreadScene {
 Scene with(Scene scene, Method method) {
   scene.settings.method = method;
   return scene;
-}
-
-Scene unevenTower(int rows) {
-  TowerOptions options;
-  options.heightsSigma_m = kUnevenHeightsSigma_m;
-  options.seed = 3;
-  return towerScene(rows, options);
 }
 
 // A wide island, whose kernels take ranges, beside narrow ones: both kinds of parallelism at once, one within the other.

@@ -6,6 +6,7 @@
 #include "solver/world/engine.h"
 #include "solver/world/simulation.h"
 #include "tests/support/prepare_and_step.h"
+#include "tests/support/uneven_tower.h"
 
 #include <algorithm>
 #include <functional>
@@ -38,13 +39,6 @@ void expectSameOnAnyThreads(const Scene& scene, int frames) {
   EXPECT_EQ(hashAfter(scene, frames, 1), one) << "twice in one process";
   EXPECT_EQ(hashAfter(scene, frames, 2), one);
   EXPECT_EQ(hashAfter(scene, frames, 4), one);
-}
-
-Scene unevenTower(int rows) {
-  TowerOptions options;
-  options.heightsSigma_m = kUnevenHeightsSigma_m;
-  options.seed = 3;
-  return towerScene(rows, options);
 }
 
 // Many islands, which run in parallel.

@@ -6,6 +6,7 @@
 #include "solver/world/simulation.h"
 #include "tests/support/block_scenes.h"
 #include "tests/support/prepare_and_step.h"
+#include "tests/support/uneven_tower.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -33,20 +34,14 @@ std::vector<Vec3> displacements(const Simulation& simulation, std::size_t tower,
   return moved;
 }
 
-Scene unevenTower() {
-  TowerOptions options;
-  options.heightsSigma_m = kUnevenHeightsSigma_m;
-  return towerScene(6, options);
-}
-
 TEST(EqualIslands, OfManyOneIsSolved) {
-  const Scene one = unevenTower();
+  const Scene one = unevenTower(6);
   EXPECT_EQ(factorisationsToPrepare(squareOf(one, 9)), factorisationsToPrepare(one));
 }
 
 // 0.3 m and its multiples are no binary fractions: the towers' places differ by rounding, 1e-16 m, and so do their poses.
 TEST(EqualIslands, EachStandsAsOneAloneDoes) {
-  const Scene one = awake(unevenTower());
+  const Scene one = awake(unevenTower(6));
   Simulation alone(one);
   Simulation square(squareOf(one, 9));
   prepare(alone);
@@ -61,7 +56,7 @@ TEST(EqualIslands, EachStandsAsOneAloneDoes) {
 
 // All rest: from the first frame on nothing moves by more than a thousandth of the tolerance, and no step fails.
 TEST(EqualIslands, NothingMovesInTheFirstFrames) {
-  Simulation square(squareOf(awake(unevenTower()), 9));
+  Simulation square(squareOf(awake(unevenTower(6)), 9));
   prepareAndStep(square);
   const ParticleArray first = square.state.position;
   stepFor(square, 0.5);
@@ -72,7 +67,7 @@ TEST(EqualIslands, NothingMovesInTheFirstFrames) {
 
 // Contacts and their friction are those of the tower that was solved: at a tilt at which blocks lean on one another.
 TEST(EqualIslands, ShareTheForcesBetweenTheirBlocks) {
-  const Scene one = leaning(awake(unevenTower()), 10.0);
+  const Scene one = leaning(awake(unevenTower(6)), 10.0);
   const Scene four = squareOf(one, 4);
   Simulation square(four);
   prepare(square);
@@ -101,7 +96,7 @@ std::size_t solvedIslands(const Scene& scene) {
 }
 
 TEST(EqualIslands, DifferInAnythingThatDecidesTheEquilibrium) {
-  const Scene four = squareOf(unevenTower(), 4);
+  const Scene four = squareOf(unevenTower(6), 4);
   const std::size_t last = four.blocks.size() - 1;
   EXPECT_EQ(solvedIslands(four), 1U);
   Scene other = four;
@@ -120,7 +115,7 @@ TEST(EqualIslands, DifferInAnythingThatDecidesTheEquilibrium) {
 
 // Even and uneven towers by turns.
 TEST(EqualIslands, AreFoundWhateverTheOrderOfTheTowers) {
-  Scene mixed = squareOf(unevenTower(), 4);
+  Scene mixed = squareOf(unevenTower(6), 4);
   const Scene other = squareOf(towerScene(6), 4);
   const std::size_t blocks = other.blocks.size() / 4;
   for (const std::size_t tower : {1U, 3U})
@@ -159,7 +154,7 @@ TEST(EqualIslands, AreAlikeInEveryMethod) {
 
 // Where the search is ended before it begins, all of them start as placed.
 TEST(EqualIslands, StartAsPlacedWhereTheSearchIsEnded) {
-  Simulation square(squareOf(unevenTower(), 4));
+  Simulation square(squareOf(unevenTower(6), 4));
   PrepareOptions options;
   options.budget_s = 0.0;
   EXPECT_EQ(prepare(square, options).blocksInBalance, 0U);
@@ -170,7 +165,7 @@ TEST(EqualIslands, StartAsPlacedWhereTheSearchIsEnded) {
 TEST(EqualIslands, HaveTheSameBitsOnAnyNumberOfThreads) {
   const auto hashOn = [](int threads) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
-    Simulation square(squareOf(awake(unevenTower()), 9));
+    Simulation square(squareOf(awake(unevenTower(6)), 9));
     stepFor(square, 0.1);
     return stateHash(square);
   };
