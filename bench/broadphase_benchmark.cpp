@@ -60,7 +60,8 @@ SweptBoxes boxesOf(const MotionState& state) {
   SweptBoxes boxes;
   boxes.resize(blocks);
   std::vector<double> reach(blocks);
-  computeSweptBoxes(state, allBlocks(blocks), kStandardGravity_m_s2, kFrame_s, kMargin_m, boxes, reach);
+  const std::vector<double> margins(blocks, kMargin_m);
+  computeSweptBoxes(state, allBlocks(blocks), kStandardGravity_m_s2, kFrame_s, Way::onwards, margins, boxes, reach);
   return boxes;
 }
 
@@ -70,8 +71,9 @@ void sweptBoxes(benchmark::State& run) {
   SweptBoxes boxes;
   boxes.resize(all.size());
   std::vector<double> reach(all.size());
+  const std::vector<double> margins(all.size(), kMargin_m);
   for (auto iteration : run) {
-    computeSweptBoxes(state, all, kStandardGravity_m_s2, kFrame_s, kMargin_m, boxes, reach);
+    computeSweptBoxes(state, all, kStandardGravity_m_s2, kFrame_s, Way::onwards, margins, boxes, reach);
     benchmark::ClobberMemory();
   }
   run.SetItemsProcessed(run.iterations() * run.range(0));

@@ -10,33 +10,38 @@
 namespace springtower {
 namespace {
 
-void sweepBoxes(const MotionState& state, std::span<const std::int32_t> blocks, double gravity, double duration_s,
-                double margin_m, SweptBoxes& boxes, std::span<double> reach) {
+void sweepBoxes(const MotionState& state, std::span<const std::int32_t> blocks, double gravity, double duration_s, Way way,
+                std::span<const double> margin_m, SweptBoxes& boxes, std::span<double> reach) {
   using Corners = Eigen::Map<const Eigen::Array<double, static_cast<int>(kCorners), 1>>;
-  const double common = 0.5 * gravity * duration_s * duration_s + margin_m;
+  const double fall = 0.5 * gravity * duration_s * duration_s;
   for (const std::int32_t block : blocks) {
     const auto b = static_cast<std::size_t>(block);
     const Corners vx(state.velocity.values(0, b));
     const Corners vy(state.velocity.values(1, b));
     const Corners vz(state.velocity.values(2, b));
-    const double speed = std::sqrt((vx * vx + vy * vy + vz * vz).maxCoeff());
-    reach[b] = speed * duration_s + common;
+    double along[3] = {0.0, 0.0, 0.0};
+    if (way == Way::onwards) {
+      for (std::size_t a = 0; a < 3; ++a) along[a] = Corners(state.velocity.values(a, b)).mean();
+    }
+    const double speed = std::sqrt(((vx - along[0]).square() + (vy - along[1]).square() + (vz - along[2]).square()).maxCoeff());
+    reach[b] = speed * duration_s + fall + margin_m[b];
     for (std::size_t a = 0; a < 3; ++a) {
       const Corners x(state.position.values(a, b));
-      boxes.lower[a][b] = x.minCoeff() - reach[b];
-      boxes.upper[a][b] = x.maxCoeff() + reach[b];
+      boxes.lower[a][b] = x.minCoeff() + std::min(0.0, along[a]) * duration_s - reach[b];
+      boxes.upper[a][b] = x.maxCoeff() + std::max(0.0, along[a]) * duration_s + reach[b];
     }
   }
 }
 
 }  // namespace
 
-void computeSweptBoxes(const MotionState& state, std::span<const std::int32_t> blocks, double gravity, double duration_s,
-                       double margin_m, SweptBoxes& boxes, std::span<double> reach) {
-  assert(boxes.blockCount() == state.position.blockCount() && reach.size() == boxes.blockCount());
+void computeSweptBoxes(const MotionState& state, std::span<const std::int32_t> blocks, double gravity, double duration_s, Way way,
+                       std::span<const double> margin_m, SweptBoxes& boxes, std::span<double> reach) {
+  assert(boxes.blockCount() == state.position.blockCount() && reach.size() == boxes.blockCount() &&
+         margin_m.size() == boxes.blockCount());
   forRanges(blocks.size(), tuning::kBlockGrain, blocks.size() >= tuning::kParallelBlocks,
             [&](std::size_t first, std::size_t last) {
-              sweepBoxes(state, blocks.subspan(first, last - first), gravity, duration_s, margin_m, boxes, reach);
+              sweepBoxes(state, blocks.subspan(first, last - first), gravity, duration_s, way, margin_m, boxes, reach);
             });
 }
 

@@ -265,6 +265,24 @@ void createAhead(IslandStep& step, std::size_t at, double reach_m) {
   if (fresh.count > 0) storeContact(step.engine, at, fresh);
 }
 
+void createTouching(IslandStep& step, std::size_t at) {
+  PairTable& pairs = step.engine.pairs;
+  const BlockPair pair = pairs.key[at];
+  const CornerView a = cornersOf(step.simulation.state.position, static_cast<std::size_t>(pair.a));
+  Manifold fresh;
+  fresh.kind = step.pointKind;
+  if (pair.b < 0) {
+    fresh.upper = pair.a;
+    buildFloorManifold(a, limitsOf(step.simulation), fresh);
+  } else {
+    const CornerView b = cornersOf(step.simulation.state.position, static_cast<std::size_t>(pair.b));
+    chooseManifold(findSeparation(a, b), a, b, limitsOf(step.simulation), 0.0, edgeSlackOf(step.simulation), pair, {}, fresh);
+  }
+  if (fresh.count == 0) return;
+  ++step.counters.contactsCreated;
+  storeContact(step.engine, at, fresh);
+}
+
 double clearanceNow(const Simulation& simulation, std::size_t at) {
   const PairTable& pairs = simulation.engine->pairs;
   const BlockPair& pair = pairs.key[at];

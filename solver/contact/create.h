@@ -12,6 +12,9 @@ void updateSeparated(IslandStep& step, std::size_t at, Counters& counters, Stage
 /// Makes a separated pair no farther apart than `reach_m` a contact, of points that do not touch.
 void createAhead(IslandStep& step, std::size_t at, double reach_m);
 
+/// Makes a separated pair a contact at the present positions.
+void createTouching(IslandStep& step, std::size_t at);
+
 /// Present gap (m) of a separated pair along its stored axis, at least 0.
 double clearanceNow(const Simulation& simulation, std::size_t at);
 

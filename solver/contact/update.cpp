@@ -60,9 +60,9 @@ struct Paths {
   bool asAssumed = true;  // none has a longer path than the list of active pairs assumes
 };
 
-// Adds the path of each block's fastest corner. A block has diverged when its corners move relative to one another by half its
-// least side in one step; free flight may have any speed. The condition is written so that NaN, which fails every comparison,
-// counts as diverged.
+// Adds the path of each block's fastest corner. A block of springs has diverged when its corners move relative to one another by
+// half its least side in one step; free flight may have any speed, and a rigid block any spin. The condition is written so that
+// NaN, which fails every comparison, counts as diverged.
 SPRINGTOWER_KERNEL
 Paths addPathsOf(IslandStep& step, std::span<const std::int32_t> blocks) {
   Paths paths;
@@ -70,7 +70,9 @@ Paths addPathsOf(IslandStep& step, std::span<const std::int32_t> blocks) {
     const auto b = static_cast<std::size_t>(block);
     const auto [path, deformed] = blockTravel(step.simulation.state.position, step.engine.memo.previous, b);
     const double most = tuning::kMaxDeformationPerStep * step.simulation.model.dimensions[b].minCoeff();
-    if (!(deformed < static_cast<double>(kCorners) * most * most)) paths.diverged = std::min(paths.diverged, block);
+    const double limit = step.pointKind == PointKind::penalty ? static_cast<double>(kCorners) * most * most
+                                                              : std::numeric_limits<double>::infinity();
+    if (!(deformed < limit)) paths.diverged = std::min(paths.diverged, block);
     BlockHistory& history = step.engine.memo.blockHistory[b];
     history.travel += path;
     step.engine.scratch.path[b] = path;
@@ -204,6 +206,11 @@ SPRINGTOWER_INLINE bool isDue(const Engine& engine, std::size_t at, double least
   return engine.pairs.touches(at) ? used > leastRefresh : !(used < engine.pairs.clearance[at]);
 }
 
+// Whether points of the pair have been listed for a rigid step, so that it needs no test of its motion.
+SPRINGTOWER_INLINE bool isCovered(const IslandStep& step, std::size_t at) {
+  return step.pointKind == PointKind::impulse && step.engine.scratch.covered[at] != 0;
+}
+
 double minRefreshTravel(const RefreshTravel& renewal) {
   return std::min({renewal.resting_m, renewal.sliding_m, renewal.rolling_m});
 }
@@ -304,7 +311,7 @@ bool updateContacts(IslandStep& step, const RefreshTravel& renewal) {
   if (!isWide(step)) {
     for (const std::int32_t pair : step.activePairs) {
       const auto at = static_cast<std::size_t>(pair);
-      if (isDue(step.engine, at, least)) updatePair(step, at, renewal, step.counters, step.times);
+      if (!isCovered(step, at) && isDue(step.engine, at, least)) updatePair(step, at, renewal, step.counters, step.times);
     }
     if (list) listActivePairs(step);
     clock.lap(Stage::candidates);
@@ -325,7 +332,7 @@ bool updateContacts(IslandStep& step, const RefreshTravel& renewal) {
       const std::size_t last = std::min(step.activePairs.size(), (chunk + 1) * tuning::kPairChunk);
       for (std::size_t i = chunk * tuning::kPairChunk; i < last; ++i) {
         const auto at = static_cast<std::size_t>(step.activePairs[i]);
-        if (isDue(step.engine, at, least)) updatePair(step, at, renewal, counted[chunk], timed[chunk]);
+        if (!isCovered(step, at) && isDue(step.engine, at, least)) updatePair(step, at, renewal, counted[chunk], timed[chunk]);
       }
       all.lap(Stage::candidates);
     }

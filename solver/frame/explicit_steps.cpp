@@ -110,7 +110,7 @@ IslandOutcome runExplicitSteps(IslandStep& step, double begin_s) {
   const Settings& settings = simulation.scene.settings;
   const StepFunction takeStep = explicitStepOf(settings.method);
   const bool isReport = traitsOf(settings.method).family == MethodFamily::report;
-  const double rest_s = settings.frame_s - begin_s;
+  const double rest_s = step.part.end_s - begin_s;
   copyFrameStart(step);
   IslandOutcome outcome;
   outcome.substeps = std::max(1, static_cast<int>(std::ceil(chooseSubsteps(step) * rest_s / settings.frame_s - 1e-9)));

@@ -7,24 +7,37 @@
 #include "solver/implicit/equilibrium.h"
 #include "solver/implicit/run.h"
 #include "solver/rigid/run.h"
+#include "solver/world/checkpoint.h"
 
 namespace springtower {
 
 namespace {
 
+// Puts an island that was in rigid steps back to where they left it: the springs that it got for implicit steps have taken its
+// overlaps as their rest depths, which would add up over the tries. Returns the time of the frame, s.
+double takeBackImplicitSteps(IslandStep& step) {
+  std::vector<IslandHistory>& history = step.engine.memo.islandHistory;
+  const std::int32_t frames = history[static_cast<std::size_t>(step.blocks.front())].explicitFrames;
+  restoreIsland(step);
+  for (const std::int32_t block : step.blocks) history[static_cast<std::size_t>(block)].explicitFrames = frames;
+  return step.part.begin_s;
+}
+
 // Implicit steps, as far as they fit and converge; then rigid or explicit ones, as the table of island_modes.h has it.
 IslandOutcome runByModes(IslandStep& step) {
-  const double frame_s = step.simulation.scene.settings.frame_s;
   const IslandFacts facts = islandFacts(step);
   IslandOutcome outcome;
-  double begin_s = 0.0;
-  IslandMode mode = nextMode(ModeChange::frameBegins, facts);
+  double begin_s = step.part.begin_s;
+  IslandMode mode = nextMode(begin_s > 0.0 ? ModeChange::frameContinues : ModeChange::frameBegins, facts);
   setMode(step, mode);
   if (mode == IslandMode::implicit) {
     outcome = runImplicitSteps(step, facts.mostlyFallen, begin_s);
-    if (!outcome.inside || begin_s >= frame_s) return outcome;
+    if (!outcome.inside || begin_s >= step.part.end_s) return outcome;
     mode = nextMode(ModeChange::implicitFailed, facts);
-    if (mode == IslandMode::rigid) setMode(step, mode);
+    if (mode == IslandMode::rigid) {
+      if (facts.rigidBefore) begin_s = takeBackImplicitSteps(step);
+      setMode(step, mode);
+    }
   }
   const int before = outcome.substeps;
   outcome = mode == IslandMode::rigid ? runRigidMode(step, begin_s) : runExplicitSteps(step, begin_s);
@@ -42,12 +55,12 @@ IslandOutcome advanceIsland(IslandStep& step) {
     case MethodFamily::implicit:
       return runByModes(step);
     case MethodFamily::rigid:
-      return runRigidSteps(step, rigidSubsteps(settings), 0.0);
+      return runRigidSteps(step, rigidSubsteps(settings), step.part.begin_s);
     case MethodFamily::explicitSprings:
     case MethodFamily::report:
       break;
   }
-  return runExplicitSteps(step, 0.0);
+  return runExplicitSteps(step, step.part.begin_s);
 }
 
 }  // namespace springtower

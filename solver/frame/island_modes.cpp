@@ -44,7 +44,7 @@ Motion motionOf(const IslandStep& step) {
 }
 
 bool isLeftAlone(const IslandStep& step) {
-  return step.blocks.size() < tuning::kParallelBlocks && !holdsTether(step) && !isPushed(step);
+  return !holdsTether(step) && !isPushed(step);
 }
 
 // Converts the spring forces of a manifold's points to initial impulses.
@@ -89,7 +89,7 @@ void impulseToPenalty(const IslandStep& step, std::int32_t contact, const Contac
 }  // namespace
 
 bool mayEnterRigidMode(std::size_t blocks) {
-  return blocks >= tuning::kMinRigidModeBlocks && blocks < tuning::kParallelBlocks;
+  return blocks >= tuning::kMinRigidModeBlocks;
 }
 
 IslandFacts islandFacts(const IslandStep& step) {
@@ -115,8 +115,10 @@ IslandFacts islandFacts(const IslandStep& step) {
 
 IslandMode nextMode(ModeChange when, const IslandFacts& facts) {
   if (when == ModeChange::implicitFailed)
-    return facts.leftAlone && facts.mostlyFallen ? IslandMode::rigid : IslandMode::explicitFallback;
+    return facts.leftAlone && (facts.mostlyFallen || facts.blocks >= tuning::kParallelBlocks) ? IslandMode::rigid
+                                                                                              : IslandMode::explicitFallback;
   if (!facts.leftAlone) return IslandMode::implicit;
+  if (when == ModeChange::frameContinues) return facts.rigidBefore ? IslandMode::rigid : IslandMode::implicit;
   const bool rigid = facts.rigidBefore ? facts.rigidPinned || facts.moving : mayEnterRigidMode(facts.blocks) && facts.fast;
   return rigid ? IslandMode::rigid : IslandMode::implicit;
 }
@@ -155,15 +157,18 @@ IslandOutcome runRigidMode(IslandStep& step, double begin_s) {
     fastest = std::max(fastest, fastestCorner(simulation.state.velocity, static_cast<std::size_t>(block), Vec3::Zero()));
   const double steps =
       fastest * simulation.scene.settings.frame_s / (tuning::kMaxRigidModeDisplacement * simulation.lengths.blockHeight_m);
-  const IslandOutcome outcome = runRigidSteps(
-      step, std::clamp(static_cast<int>(std::ceil(steps)), tuning::kMinRigidModeSteps, tuning::kMaxRigidModeSteps), begin_s);
+  const double share = (step.part.end_s - begin_s) / simulation.scene.settings.frame_s;
+  const double most =
+      std::clamp(steps, static_cast<double>(tuning::kMinRigidModeSteps), static_cast<double>(tuning::kMaxRigidModeSteps));
+  const int groups = static_cast<int>(std::ceil(most * share / tuning::kSubstepsPerStep));
+  const IslandOutcome outcome = runRigidSteps(step, groups * tuning::kSubstepsPerStep, begin_s);
   for (const std::int32_t block : step.blocks) {
     BlockHistory& history = step.engine.memo.blockHistory[static_cast<std::size_t>(block)];
     history.lastExplicitStep_s = 0.0;
     history.lastImplicitStep_s = 0.0;
     history.explicitLast = true;
     IslandHistory& island = step.engine.memo.islandHistory[static_cast<std::size_t>(block)];
-    island.explicitFrames = std::max(0, island.explicitFrames - 1);
+    if (step.part.begin_s == 0.0) island.explicitFrames = std::max(0, island.explicitFrames - 1);
   }
   step.engine.memo.newtonSystems.of(step.blocks.front()).forcesKnown = false;
   return outcome;

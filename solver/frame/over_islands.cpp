@@ -57,7 +57,8 @@ IslandStep islandStep(Simulation& simulation, const ContactLaw& law, std::size_t
           std::span<const std::int32_t>(engine.memo.islandPairs).subspan(first, count),
           engine.scratch.islandCounters[island],
           engine.scratch.islandTimes[island],
-          law};
+          law,
+          engine.scratch.part};
 }
 
 bool overIslands(Simulation& simulation, IslandOutcome (*advance)(IslandStep&), SearchMonitor* monitor) {
@@ -78,6 +79,7 @@ bool overIslands(Simulation& simulation, IslandOutcome (*advance)(IslandStep&), 
   }
   FirstDivergence divergence;
   forEach(islands, [&](std::size_t i) {
+    if (engine.scratch.takesPart[i] == 0) return;
     try {
       runIsland(simulation, law, i, advance, monitor);
     } catch (const DivergenceError&) {
@@ -86,11 +88,7 @@ bool overIslands(Simulation& simulation, IslandOutcome (*advance)(IslandStep&), 
   });
   divergence.throwIfAny();
   bool inside = true;
-  simulation.substeps = 0;
-  for (std::size_t i = 0; i < islands; ++i) {
-    inside = inside && engine.scratch.islandOutcome[i] >= 0;
-    simulation.substeps = std::max(simulation.substeps, engine.scratch.islandOutcome[i]);
-  }
+  for (std::size_t i = 0; i < islands; ++i) inside = inside && engine.scratch.islandOutcome[i] >= 0;
   for (std::size_t i = 0; i < islands; ++i) simulation.stageTimes += engine.scratch.islandTimes[i];
   return inside;
 }

@@ -108,10 +108,13 @@ bool mergePairs(Simulation& simulation) {
   return true;
 }
 
-// The island that a pair belongs to: that of its awake block.
+// The island that a pair belongs to: that of its awake blocks. None where these are at different times of the frame.
 std::int32_t islandOf(const Engine& engine, const BlockPair& pair) {
   const std::int32_t island = engine.memo.islands.islandOf[static_cast<std::size_t>(pair.a)];
-  return island >= 0 || pair.b < 0 ? island : engine.memo.islands.islandOf[static_cast<std::size_t>(pair.b)];
+  if (pair.b < 0) return island;
+  const std::int32_t other = engine.memo.islands.islandOf[static_cast<std::size_t>(pair.b)];
+  if (island >= 0 && other >= 0 && island != other) return -1;
+  return island >= 0 ? island : other;
 }
 
 // Lists the pairs of each island, in order; for islands that run on many threads those of each block as well.
@@ -156,9 +159,43 @@ void listIslandPairs(Simulation& simulation) {
   }
 }
 
+// Boxes for the part of the frame that comes: of blocks that move through the frame in several parts, by rigid steps without
+// rebound, for this part; of others for all of it.
+void sweepBoxes(Simulation& simulation) {
+  Engine& engine = *simulation.engine;
+  const auto sweep = [&](std::span<const std::int32_t> blocks, double duration_s, Way way) {
+    computeSweptBoxes(simulation.state, blocks, simulation.scene.gravity.magnitude, duration_s, way, engine.memo.sweepMargin,
+                      engine.memo.boxes, engine.scratch.reach);
+  };
+  std::vector<std::int32_t>& ordered = engine.scratch.byDuration;
+  ordered.clear();
+  std::size_t count = 0;
+  for (const bool inParts : {true, false}) {
+    for (const std::int32_t block : engine.scratch.awakeBlocks) {
+      if ((engine.scratch.inParts[static_cast<std::size_t>(block)] != 0) == inParts) ordered.push_back(block);
+    }
+    if (inParts) count = ordered.size();
+  }
+  const std::span<const std::int32_t> all(ordered);
+  sweep(all.first(count), engine.scratch.part.duration_s(), Way::onwards);
+  sweep(all.subspan(count), simulation.scene.settings.frame_s, Way::anySide);
+}
+
+// Blocks that are at different times of the frame are not in one island.
+std::span<const BlockPair> edgesOfIslands(Engine& engine) {
+  const std::vector<std::uint8_t>& inParts = engine.scratch.inParts;
+  if (std::find(inParts.begin(), inParts.end(), 1) == inParts.end()) return engine.memo.sweptPairs;
+  std::vector<BlockPair>& edges = engine.scratch.islandEdges;
+  edges.clear();
+  for (const BlockPair& pair : engine.memo.sweptPairs) {
+    if (inParts[static_cast<std::size_t>(pair.a)] == inParts[static_cast<std::size_t>(pair.b)]) edges.push_back(pair);
+  }
+  return edges;
+}
+
 }  // namespace
 
-void findNearPairs(Simulation& simulation, double margin_m) {
+void findNearPairs(Simulation& simulation) {
   Engine& engine = *simulation.engine;
   {
     const StageTimer timer(simulation.stageTimes, Stage::broadphase);
@@ -166,8 +203,7 @@ void findNearPairs(Simulation& simulation, double margin_m) {
     for (std::size_t b = 0; b < simulation.asleep.size(); ++b) {
       if (simulation.asleep[b] == 0) engine.scratch.awakeBlocks.push_back(static_cast<std::int32_t>(b));
     }
-    computeSweptBoxes(simulation.state, engine.scratch.awakeBlocks, simulation.scene.gravity.magnitude,
-                      simulation.scene.settings.frame_s, margin_m, engine.memo.boxes, engine.scratch.reach);
+    sweepBoxes(simulation);
     for (const std::int32_t block : engine.scratch.awakeBlocks) {
       const auto b = static_cast<std::size_t>(block);
       engine.memo.travelAtSweep[b] = engine.memo.blockHistory[b].travel;
@@ -181,7 +217,7 @@ void findNearPairs(Simulation& simulation, double margin_m) {
   }
   const StageTimer timer(simulation.stageTimes, Stage::islandsAndSleep);
   engine.memo.topologyChanged =
-      updateIslands(engine.memo.islands, engine.memo.sweptPairs, simulation.asleep) || engine.memo.topologyChanged;
+      updateIslands(engine.memo.islands, edgesOfIslands(engine), simulation.asleep) || engine.memo.topologyChanged;
   if (engine.memo.topologyChanged) listIslandPairs(simulation);
   // A snapshot restores islands, and the places of their factors, but no scratch.
   if (!engine.memo.newtonSystems.isUsed()) {
@@ -189,6 +225,7 @@ void findNearPairs(Simulation& simulation, double margin_m) {
   } else if (engine.scratch.rigidIslands.isUsed()) {
     engine.scratch.rigidIslands.follow(engine.memo.newtonSystems);
   }
+  engine.scratch.covered.assign(engine.pairs.size(), 0);
   engine.scratch.watchedPairs.resize(engine.memo.islandPairs.size());  // also where a snapshot has restored other lists
 }
 

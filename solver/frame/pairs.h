@@ -4,8 +4,8 @@
 
 namespace springtower {
 
-/// Sort and sweep for the coming frame: swept boxes of the awake blocks (grown by `margin_m`), pairs, islands, and the pairs of
-/// each island. Pairs found before keep their contacts; pairs of two sleeping blocks are unchanged.
-void findNearPairs(Simulation& simulation, double margin_m);
+/// Sort and sweep for the coming frame: swept boxes of the awake blocks (grown by memo.sweepMargin), pairs, islands, and the
+/// pairs of each island. Pairs found before keep their contacts; pairs of two sleeping blocks are unchanged.
+void findNearPairs(Simulation& simulation);
 
 }  // namespace springtower

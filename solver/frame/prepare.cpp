@@ -70,9 +70,11 @@ PrepareResult prepare(Simulation& simulation, const PrepareOptions& options) {
   const double processorStart_s = processorTime_s();
   SearchMonitor monitor(engine.sleep.awakeCount, options.budget_s, options.goesOn);
   // On its way into equilibrium the top of a tower sinks by the gaps of all rows.
-  findNearPairs(simulation, tuning::kReplayMarginGrowth * tuning::kSweepMargin * simulation.lengths.blockHeight_m);
+  std::fill(engine.scratch.inParts.begin(), engine.scratch.inParts.end(), 0);
+  findNearPairs(simulation);           // with the margins of the setup
   simulation.counters.blockPairs = 0;  // counts the sweeps of frames
   engine.scratch.firstEqualIsland = firstEqualIslands(simulation);
+  engine.scratch.takesPart.assign(engine.memo.islands.count(), 1);
   overIslands(simulation, prepareIsland, &monitor);
   copyToEqualIslands(simulation, monitor);
   engine.scratch.firstEqualIsland = {};

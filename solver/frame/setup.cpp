@@ -111,6 +111,8 @@ void sizeEngine(Simulation& simulation) {
   e.scratch.path.assign(count, 0.0);
   e.scratch.assumedPath.assign(count, 0.0);
   e.memo.travelAtSweep.assign(count, 0.0);
+  e.scratch.inParts.assign(count, 0);
+  e.memo.sweepMargin.assign(count, tuning::kReplayMarginGrowth * tuning::kSweepMargin * simulation.lengths.blockHeight_m);
   e.memo.force.resize(count);
   e.memo.frames.resize(count);
   e.memo.motion.resize(count);

@@ -1,24 +1,17 @@
 #include "core/error.h"
 #include "core/tuning.h"
-#include "solver/contact/query.h"
-#include "solver/frame/island.h"
-#include "solver/frame/over_islands.h"
-#include "solver/frame/pairs.h"
+#include "solver/frame/parts.h"
 #include "solver/frame/plane.h"
 #include "solver/frame/prepare.h"
-#include "solver/reference/report_frame.h"
 #include "solver/sleep/rest.h"
-#include "solver/world/checkpoint.h"
-#include "solver/world/island_step.h"
 #include "solver/world/poison.h"
 
 #include <algorithm>
-#include <cmath>
-#include <exception>
+#include <cstddef>
+#include <cstdint>
 #include <fmt/format.h>
-#include <mutex>
-#include <optional>
-#include <utility>
+#include <span>
+#include <vector>
 
 namespace springtower {
 
@@ -44,33 +37,15 @@ void stepFrame(Simulation& simulation) {
   Engine& engine = *simulation.engine;
   if (!isPrepared(simulation))
     throw InputError("stepFrame: found a simulation that is not prepared, allowed is one after prepare");
-  const bool isReport = traitsOf(simulation.scene.settings.method).family == MethodFamily::report;
 #ifndef NDEBUG
   poisonScratch(engine);
 #endif
   wakeForInputs(simulation);
   engine.scratch.lostNeighbours.clear();
+  simulation.substeps = 0;
   if (engine.sleep.awakeCount > 0) {
-    double margin = tuning::kSweepMargin * simulation.lengths.blockHeight_m;
-    findNearPairs(simulation, margin);
-    while (true) {
-      // The frame is run again with a larger swept box where a block was hit and left its own, so that no contact is missed; and
-      // with sleeping blocks awake where their supports failed.
-      if (wakeOnImpact(simulation)) findNearPairs(simulation, margin);
-      if (isReport) prepareReportFrame(simulation);
-      const bool inside = overIslands(simulation, advanceIsland);
-      const bool failed = inside && wakeFailedSupports(simulation);
-      if (inside && !failed) break;
-      ++simulation.counters.replayedFrames;
-      if (!inside) margin *= tuning::kReplayMarginGrowth;
-      restoreFrame(simulation);
-      if (isReport) rewindReportFrame(simulation);
-      findNearPairs(simulation, margin);
-    }
-    for (const Counters& island : engine.scratch.islandCounters) simulation.counters += island;
+    advanceThroughParts(simulation);
     simulation.counters.steps += static_cast<std::uint64_t>(simulation.substeps);
-  } else {
-    simulation.substeps = 0;
   }
   ++simulation.frame;
   ++simulation.counters.frames;

@@ -75,6 +75,12 @@ int implicitSteps(const IslandStep& step, bool forced, bool known, bool mostlyFa
   return steps;
 }
 
+// Steps in the part of the frame that is run, of so many in a whole frame.
+int stepsInPart(const IslandStep& step, int steps) {
+  const double share = step.part.duration_s() / step.simulation.scene.settings.frame_s;
+  return std::max(1, static_cast<int>(std::ceil(steps * share - 1e-9)));
+}
+
 // Step count for retrying the rest of the frame after Newton failed: 4 a frame, and 8 if 4 were already in use. Needed when a
 // whole face starts to slip at once.
 int retryStepCount(double share, int steps) {
@@ -184,21 +190,21 @@ IslandOutcome runImplicitSteps(IslandStep& step, bool mostlyFallen, double& reac
   Simulation& simulation = step.simulation;
   Engine& engine = step.engine;
   IslandOutcome outcome;
-  const double frame_s = simulation.scene.settings.frame_s;
-  reached_s = 0.0;
+  reached_s = step.part.begin_s;
+  const double end_s = step.part.end_s;
   NewtonSystem& island = engine.memo.newtonSystems.of(step.blocks.front());
   const bool forced = holdsTether(step) || isPushed(step);
   const bool wasForced = engine.memo.islandHistory[static_cast<std::size_t>(step.blocks.front())].forced;
   if (wasForced && !forced) resetHistory(step);
   int steps = implicitSteps(step, forced, forced == wasForced, mostlyFallen);
-  bool fits = implicitStepsFit(step, frame_s / steps);
+  bool fits = implicitStepsFit(step, step.part.duration_s() / stepsInPart(step, steps));
   if (!fits && steps < tuning::kStandardImplicitSteps && simulation.scene.settings.substeps == 0) {
     steps = tuning::kStandardImplicitSteps;
-    fits = implicitStepsFit(step, frame_s / steps);
+    fits = implicitStepsFit(step, step.part.duration_s() / stepsInPart(step, steps));
   }
   for (const std::int32_t block : step.blocks) {
     IslandHistory& history = engine.memo.islandHistory[static_cast<std::size_t>(block)];
-    history.explicitFrames = std::max(0, history.explicitFrames - 1);
+    if (reached_s == 0.0) history.explicitFrames = std::max(0, history.explicitFrames - 1);
     history.forced = forced;
   }
   // If pairs, islands and forces are unchanged, the forces are those at the end of the last frame.
@@ -208,17 +214,17 @@ IslandOutcome runImplicitSteps(IslandStep& step, bool mostlyFallen, double& reac
   const auto takeSteps = [&](int count) {
     steps = count;
     if (count > 1) copyFrameStart(step);
-    step.drift_s = (frame_s - reached_s) / count;
+    step.drift_s = (end_s - reached_s) / count;
     setJacobians(step, endShare(simulation.scene.settings.method) * step.drift_s);
   };
-  takeSteps(steps);
+  takeSteps(stepsInPart(step, steps));
   // An island that has mostly fallen goes back to rigid steps where implicit ones do not converge.
   step.maxStiffening = 1.0;
   beginWithForces(step, known);
   while (steps > 0) {
     step.time_s = simulation.time_s + reached_s;
     step.gravity = simulation.scene.gravity.at(step.time_s + step.drift_s);  // forces are those of the step's end
-    const int finer = retryStepCount(1.0 - reached_s / frame_s, steps);
+    const int finer = retryStepCount((end_s - reached_s) / simulation.scene.settings.frame_s, steps);
     const bool canRetryFiner = finer > steps && simulation.scene.settings.substeps == 0 && !mostlyFallen;
     if (!stepImplicit(step, canRetryFiner || mostlyFallen)) {
       if (canRetryFiner) {
@@ -230,7 +236,7 @@ IslandOutcome runImplicitSteps(IslandStep& step, bool mostlyFallen, double& reac
     }
     ++outcome.substeps;
     --steps;
-    reached_s = frame_s - steps * step.drift_s;
+    reached_s = end_s - steps * step.drift_s;
     const std::uint64_t looked = step.counters.manifoldRefreshes + step.counters.contactsCreated;
     outcome.inside = updateContacts(step, refreshTravelOfImplicitSteps(simulation));
     if (!outcome.inside) return outcome;

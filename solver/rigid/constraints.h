@@ -1,23 +1,26 @@
 #pragma once
 
+#include "core/lanes.h"
 #include "solver/world/island_step.h"
 #include "solver/world/rigid_island.h"
 
 namespace springtower {
 
-// The manifolds of narrowphase/ as constraints for sequential impulses. Their points store the same as in
-// solver/contact/rigid_contacts.h.
+/// Arms, normals, gaps and effective masses of all points at the present poses and orientations of the island's bodies. The
+/// movers must have been read.
+void placeConstraints(RigidIsland& island);
 
-/// Lists all points of an island's touching manifolds at the poses of engine.memo.frames, with the impulses of the step before.
-/// `again`: the step is repeated from the same poses, where only the contacts found in it are new. Reads the movers.
-void gatherPoints(IslandStep& step, RigidIsland& island, bool again);
-
-/// Stores the impulses of a step in the manifolds, as forces.
-void keepPoints(IslandStep& step, const RigidIsland& island);
+/// Gaps of all points after the bodies have moved by `moved` and `turned`, to first order.
+void moveGaps(RigidIsland& island);
 
 /// Velocities of the island's bodies for the passes, and back.
 void readMovers(RigidIsland& island);
 void writeMovers(RigidIsland& island);
+
+/// A vector in the first three of four lanes.
+SPRINGTOWER_INLINE void toLanes(const Vec3& v, Lanes& lanes) {
+  lanes = Lanes{v[0], v[1], v[2], 0.0};
+}
 
 SPRINGTOWER_INLINE void crossLanes(const Lanes& p, const Lanes& q, Lanes& result) {
   Lanes pTurned, qTurned;

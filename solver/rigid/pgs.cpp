@@ -1,5 +1,4 @@
 #include "core/tuning.h"
-#include "solver/contact/rigid_contacts.h"
 #include "solver/rigid/constraints.h"
 #include "solver/rigid/methods.h"
 #include "solver/rigid/run.h"
@@ -30,10 +29,11 @@ Softness softness(double step_s) {
 // Parameters common to all points in a pass.
 struct Pass {
   double step_s;
-  double kinetic;  // coefficient of friction
-  double most;     // m/s, largest push-out speed
-  Softness soft;   // of those that overlap
-  bool push;       // true: overlapping blocks are pushed apart; false: the push-out is removed from the velocities
+  double kinetic;   // coefficient of friction
+  double most;      // m/s, largest push-out speed
+  double rounding;  // m: faces placed flush overlap by less, or not at all
+  Softness soft;    // of those that overlap
+  bool push;        // true: overlapping blocks are pushed apart; false: the push-out is removed from the velocities
 };
 
 // One point: friction first, bounded by the cone of the accumulated normal impulse, then the normal impulse, so that along the
@@ -49,8 +49,8 @@ SPRINGTOWER_INLINE void solvePoint(const Pass& pass, std::vector<SolverBody>& bo
   double least = 0.0;
   double share = 1.0;
   double released = 0.0;
-  if (p.gap > 0.0) {
-    least = -p.gap / pass.step_s;
+  if (p.gap > -pass.rounding) {
+    least = -std::max(0.0, p.gap) / pass.step_s;
   } else if (pass.push) {
     least = std::min(-pass.soft.rate * p.gap, pass.most);
     share = pass.soft.mass;
@@ -112,31 +112,15 @@ void applyWarmStart(std::vector<SolverBody>& bodies, const std::vector<ContactCo
   }
 }
 
-// Updates the gaps to the step's end, to first order in the rotations.
-SPRINGTOWER_KERNEL
-void moveGaps(const std::vector<RigidBody>& bodies, std::vector<ContactConstraint>& points) {
-  const auto read = [&](std::int32_t at, Lanes& moved, Lanes& turned) {
-    moved = turned = Lanes{0.0, 0.0, 0.0, 0.0};
-    if (static_cast<std::size_t>(at) == bodies.size()) return;
-    const RigidBody& body = bodies[static_cast<std::size_t>(at)];
-    moved = Lanes{body.moved[0], body.moved[1], body.moved[2], 0.0};
-    turned = Lanes{body.turned[0], body.turned[1], body.turned[2], 0.0};
-  };
-  for (ContactConstraint& p : points) {
-    Lanes movedUpper, turnedUpper, movedLower, turnedLower;
-    read(p.upper, movedUpper, turnedUpper);
-    read(p.lower, movedLower, turnedLower);
-    p.gap += sum(p.normal * (movedUpper - movedLower) + (p.leverUpper * turnedUpper - p.leverLower * turnedLower));
-  }
-}
-
 // Marks the bodies with a contact that pushes. Returns whether there is any.
 bool markPushed(RigidIsland& island) {
   for (RigidBody& body : island.bodies) body.pushed = false;
-  for (const ContactConstraint& p : island.points) {
-    for (const std::int32_t at : {p.upper, p.lower}) {
-      if (p.push > 0.0 && static_cast<std::size_t>(at) < island.bodies.size())
-        island.bodies[static_cast<std::size_t>(at)].pushed = true;
+  for (const PointList* list : {&island.steady, &island.fast}) {
+    for (const ContactConstraint& p : list->points) {
+      if (!(p.push > 0.0)) continue;
+      for (const std::int32_t at : {p.upper, p.lower}) {
+        if (at != unmovedBody(island)) island.bodies[static_cast<std::size_t>(at)].pushed = true;
+      }
     }
   }
   return std::any_of(island.bodies.begin(), island.bodies.end(), [](const RigidBody& body) { return body.pushed; });
@@ -145,7 +129,10 @@ bool markPushed(RigidIsland& island) {
 // Whether any two blocks overlap deeply.
 bool isDeep(const IslandStep& step, const RigidIsland& island) {
   const double deep = -tuning::kDeepOverlap * step.simulation.lengths.blockHeight_m;
-  return std::any_of(island.points.begin(), island.points.end(), [&](const ContactConstraint& p) { return p.gap < deep; });
+  const auto any = [&](const PointList& list) {
+    return std::any_of(list.points.begin(), list.points.end(), [&](const ContactConstraint& p) { return p.gap < deep; });
+  };
+  return any(island.steady) || any(island.fast);
 }
 
 double kineticEnergy(const std::vector<RigidBody>& bodies) {
@@ -178,29 +165,42 @@ void runPasses(IslandStep& step, RigidIsland& island, int passes, bool push) {
   pass.most = tuning::kMaxPushSpeed * step.simulation.lengths.blockHeight_m / step.simulation.lengths.fallTime_s;
   pass.soft = isRigid(scene.settings.method) ? softness(step.drift_s) : Softness{tuning::kRigidModeBaumgarte / step.drift_s};
   pass.push = push;
-  if (push) applyWarmStart(island.movers, island.points);
-  for (int i = 0; i < passes; ++i) solvePoints(pass, island.movers, island.points);
-  step.counters.contactEvaluations += static_cast<std::uint64_t>(passes) * island.points.size();
+  pass.rounding = step.simulation.lengths.contactError_m;
+  if (push) {
+    applyWarmStart(island.movers, island.steady.points);
+    applyWarmStart(island.movers, island.fast.points);
+  }
+  for (int i = 0; i < passes; ++i) {
+    solvePoints(pass, island.movers, island.steady.points);
+    solvePoints(pass, island.movers, island.fast.points);
+  }
+  step.counters.contactEvaluations +=
+      static_cast<std::uint64_t>(passes) * (island.steady.points.size() + island.fast.points.size());
   writeMovers(island);
 }
 
-}  // namespace
+// One pass while an island is fast; more where its blocks overlap, or are coming to rest: then the load of a pile sinks in by
+// what a pass leaves, and there is no energy to lift it again.
+int rigidModePasses(const IslandStep& step, const RigidIsland& island) {
+  if (isDeep(step, island)) return tuning::kDeepOverlapPasses;
+  double mass = 0.0;
+  for (const RigidBody& body : island.bodies) mass += 1.0 / body.inverseMass;
+  const Lengths& lengths = step.simulation.lengths;
+  const double slow = tuning::kRigidEntrySpeed * lengths.blockHeight_m / lengths.fallTime_s;
+  return 2.0 * island.energyBefore_j < mass * slow * slow ? tuning::kSlowIslandPasses : 1;
+}
 
-// Sequential impulses (projected Gauss-Seidel on velocities; Catto 2005) with warm starting. Separated blocks may approach by
-// their gap in one step; overlapping ones are pushed apart softly, and a second set of passes removes that push from the
-// velocities (soft contacts with relaxation, as in Catto's Solver2D, 2024).
-void solveAndIntegratePgs(IslandStep& step, RigidIsland& island, bool again) {
-  const bool rigidMode = !isRigid(step.simulation.scene.settings.method);
-  island.energyBefore_j = kineticEnergy(island.bodies);
-  applyForces(step);
-  gatherPoints(step, island, again);
-  int passes = step.simulation.scene.settings.iterations;
-  if (rigidMode && isDeep(step, island)) passes = std::max(passes, tuning::kDeepOverlapPasses);
-  runPasses(step, island, passes, true);
-  island.touches = markPushed(island);
+// Friction is static where a point stuck in the substep before, otherwise kinetic.
+void chooseFriction(const Scene& scene, PointList& list) {
+  for (ContactConstraint& p : list.points) p.coefficient = p.sliding ? scene.kineticFriction : scene.staticFriction;
+}
+
+// Moves the bodies by their velocities; adds the work of gravity to island.energyBefore_j.
+void moveBodies(IslandStep& step, RigidIsland& island) {
   for (RigidBody& body : island.bodies) {
     moveFreely(body, step.drift_s);
-    if (rigidMode && !body.pushed) {  // in free flight: moves by its mean velocity, not by that of the step's end
+    if (!isRigid(step.simulation.scene.settings.method) && !body.pushed) {
+      // In free flight: moves by its mean velocity, not by that of the step's end.
       const Vec3 lag = 0.5 * step.drift_s * step.drift_s * step.gravity;
       body.place -= lag;
       body.moved -= lag;
@@ -209,14 +209,35 @@ void solveAndIntegratePgs(IslandStep& step, RigidIsland& island, bool again) {
   }
 }
 
-void relaxPgs(IslandStep& step, RigidIsland& island) {
-  moveGaps(island.bodies, island.points);
+}  // namespace
+
+// Sequential impulses (projected Gauss-Seidel on velocities; Catto 2005) with warm starting. Separated blocks may approach by
+// their gap in one step; overlapping ones are pushed apart softly, and a second set of passes removes that push from the
+// velocities (soft contacts with relaxation, as in Catto's Solver2D, 2024).
+void stepImpulses(IslandStep& step, RigidIsland& island) {
+  const Scene& scene = step.simulation.scene;
+  const bool rigidMode = !isRigid(scene.settings.method);
+  for (RigidBody& body : island.bodies) {
+    updateInertia(body);
+    body.moved.setZero();
+    body.turned.setZero();
+  }
+  island.energyBefore_j = kineticEnergy(island.bodies);
+  applyForces(step);
   readMovers(island);
-  runPasses(step, island, step.simulation.scene.settings.iterations, false);
+  placeConstraints(island);
+  chooseFriction(scene, island.steady);
+  chooseFriction(scene, island.fast);
+  int passes = scene.settings.iterations;
+  if (rigidMode) passes = std::max(passes, rigidModePasses(step, island));
+  runPasses(step, island, passes, true);
+  island.touches = markPushed(island);
+  moveBodies(step, island);
+  moveGaps(island);
+  readMovers(island);
+  runPasses(step, island, scene.settings.iterations, false);
   // Not in the rigid methods: there, blocks of a stack move by such slow pushes only, and the clamp would suppress them.
-  if (!isRigid(step.simulation.scene.settings.method) && island.touches)
-    removeAddedEnergy(island.bodies, kineticEnergy(island.bodies) - island.energyBefore_j);
-  keepPoints(step, island);
+  if (rigidMode && island.touches) removeAddedEnergy(island.bodies, kineticEnergy(island.bodies) - island.energyBefore_j);
 }
 
 }  // namespace springtower

@@ -7,7 +7,9 @@
 #include "solver/contact/evaluate_forces.h"
 #include "solver/contact/rigid_contacts.h"
 #include "solver/contact/update.h"
+#include "solver/rigid/list_points.h"
 #include "solver/rigid/methods.h"
+#include "solver/rigid/warm_start.h"
 #include "solver/world/checkpoint.h"
 #include "solver/world/stage_clock.h"
 
@@ -53,6 +55,7 @@ void readPoses(IslandStep& step) {
     body.moment = momentOf(simulation, b, body);
     body.inverseMoment = body.moment.inverse();
     body.inverseMass = 1.0 / simulation.model.mass[b];
+    body.radius_m = Vec3(body.corner[0][0], body.corner[1][0], body.corner[2][0]).norm();
     step.engine.scratch.nodeOf[b] = static_cast<std::int32_t>(i);
   }
 }
@@ -83,28 +86,49 @@ void writeVelocities(IslandStep& step) {
   }
 }
 
-void stepOnce(IslandStep& step, bool again) {
+// A step of the LCP or the position-based method.
+void stepOnce(IslandStep& step) {
   StageClock clock(step.times);
   RigidIsland& island = rigidIslandOf(step);
   for (RigidBody& body : island.bodies) {
-    if (!again) updateInertia(body);
+    updateInertia(body);
     body.moved.setZero();
     body.turned.setZero();
   }
-  const Method method = step.simulation.scene.settings.method;
-  if (method == Method::rigidLcp || method == Method::xpbd) {
-    gatherContacts(step, island);
-    clock.lap(Stage::contacts);
-    if (method == Method::rigidLcp) {
-      stepRigidLcp(step, island);
-    } else {
-      stepXpbd(step, island);
-    }
-    storeForces(step, island);
-  } else {
-    solveAndIntegratePgs(step, island, again);
-  }
+  gatherContacts(step, island);
   clock.lap(Stage::contacts);
+  if (step.simulation.scene.settings.method == Method::rigidLcp) {
+    stepRigidLcp(step, island);
+  } else {
+    stepXpbd(step, island);
+  }
+  storeForces(step, island);
+  clock.lap(Stage::contacts);
+  writePositions(island, step.blocks, step.simulation.state.position);
+  clock.lap(Stage::integration);
+}
+
+// The same with sequential impulses: substeps over the points that may touch in the step.
+void stepThroughSubsteps(IslandStep& step, double begin_s, int substeps, bool again) {
+  StageClock clock(step.times);
+  RigidIsland& island = rigidIslandOf(step);
+  const double step_s = step.drift_s;
+  const double substep_s = step_s / substeps;
+  listPoints(step, island, substep_s, again);
+  step.drift_s = substep_s;
+  for (int i = 0; i < substeps; ++i) {
+    step.time_s = begin_s + i * substep_s;
+    step.gravity = step.simulation.scene.gravity.at(step.time_s);
+    if (i > 0) addOutrun(step, island, step_s);
+    if (!island.fastPairs.empty()) {
+      if (i > 0) writePositions(island, step.blocks, step.simulation.state.position);
+      listFastPoints(step, island, i == 0);
+    }
+    clock.lap(Stage::candidates);
+    stepImpulses(step, island);
+    clock.lap(Stage::contacts);
+  }
+  step.drift_s = step_s;
   writePositions(island, step.blocks, step.simulation.state.position);
   clock.lap(Stage::integration);
 }
@@ -207,37 +231,70 @@ void moveFreely(RigidBody& body, double step_s) {
   body.turned += step_s * middle;
 }
 
+namespace {
+
+// Substeps of sequential impulses in a step, of so many in all: the most up to tuning::kSubstepsPerStep that divide them evenly.
+int substepsOf(int all) {
+  int substeps = tuning::kSubstepsPerStep;
+  while (all % substeps != 0) --substeps;
+  return substeps;
+}
+
+// Runs `steps`, of `substeps` each (0: the method has none); returns whether all blocks have stayed in their swept boxes. A step
+// in which a pair meets that was not listed is repeated with its contact, so that its blocks stop at the surface.
+bool runSteps(IslandStep& step, int steps, int substeps, double begin_s) {
+  const Simulation& simulation = step.simulation;
+  RigidIsland& island = rigidIslandOf(step);
+  const bool sequential = substeps > 0;
+  bool inside = true;
+  for (int i = 0; i < steps && inside; ++i) {
+    const double at_s = simulation.time_s + begin_s + i * step.drift_s;
+    step.time_s = at_s;
+    step.gravity = simulation.scene.gravity.at(at_s);
+    saveStep(step);
+    for (int repeat = 0;; ++repeat) {
+      const std::uint64_t born = step.counters.contactsCreated;
+      if (sequential) {
+        stepThroughSubsteps(step, at_s, substeps, repeat > 0);
+      } else {
+        stepOnce(step);
+      }
+      inside = findContacts(step);
+      const bool met = sequential ? hasUncoveredContact(step, island) : born != step.counters.contactsCreated;
+      if (!inside || !met || repeat == tuning::kMaxRigidStepRepeats) break;
+      restoreStep(step);
+      recomputeClearances(step);
+    }
+    computeFrames(simulation.state.position, step.blocks, step.engine.memo.frames);
+    if (sequential && inside) keepPoints(step, island);
+    if (!sequential && inside) refreshContacts(step, refreshTravelOfExplicitSteps(simulation));
+  }
+  return inside;
+}
+
+}  // namespace
+
 IslandOutcome runRigidSteps(IslandStep& step, int steps, double begin_s) {
   Simulation& simulation = step.simulation;
-  const double frame_s = simulation.scene.settings.frame_s;
   copyFrameStart(step);
-  IslandOutcome outcome;
-  outcome.substeps = std::max(1, static_cast<int>(std::ceil(steps * (frame_s - begin_s) / frame_s - 1e-9)));
-  step.drift_s = (frame_s - begin_s) / outcome.substeps;
-  step.kick_s = step.advance_s = step.drift_s;
   const Method method = simulation.scene.settings.method;
   step.pointKind = method == Method::xpbd ? PointKind::anchor : PointKind::impulse;
   const bool sequential = method != Method::rigidLcp && method != Method::xpbd;
+  const int substeps = sequential ? substepsOf(steps) : 0;
+  const int count = sequential ? steps / substeps : steps;
+  IslandOutcome outcome;
+  outcome.substeps = steps;
+  step.drift_s = (step.part.end_s - begin_s) / count;
+  step.kick_s = step.advance_s = step.drift_s;
   readPoses(step);
   computeFrames(simulation.state.position, step.blocks, step.engine.memo.frames);
   step.usesActiveList = true;
   step.activeListSteps = 0;
-  for (int substep = 0; substep < outcome.substeps && outcome.inside; ++substep) {
-    step.time_s = simulation.time_s + begin_s + substep * step.drift_s;
-    step.gravity = simulation.scene.gravity.at(step.time_s);
-    saveStep(step);
-    for (int repeat = 0;; ++repeat) {
-      const std::uint64_t born = step.counters.contactsCreated;
-      stepOnce(step, repeat > 0);
-      outcome.inside = findContacts(step);
-      if (!outcome.inside || born == step.counters.contactsCreated || repeat == tuning::kMaxRigidStepRepeats) break;
-      restoreStep(step);
-      recomputeClearances(step);
-    }
-    if (sequential) relaxPgs(step, rigidIslandOf(step));
-    computeFrames(simulation.state.position, step.blocks, step.engine.memo.frames);
-    if (outcome.inside) refreshContacts(step, refreshTravelOfExplicitSteps(simulation));
-  }
+  RigidIsland& island = rigidIslandOf(step);
+  forgetPoints(island);
+  outcome.inside = runSteps(step, count, substeps, begin_s);
+  if (sequential && outcome.inside) storeInManifolds(step, island, step.drift_s / substeps);
+  equaliseMemory(island);
   writeVelocities(step);
   for (const std::int32_t block : step.blocks) {
     step.engine.memo.blockHistory[static_cast<std::size_t>(block)].lastExplicitStep_s = step.drift_s;

@@ -16,11 +16,11 @@ Eigen::Matrix3d straightAxes(const ParticleArray& position, std::size_t block);
 /// Steps of a frame: from the settings, or the default.
 int rigidSubsteps(const Settings& settings);
 
-/// Advances an island through the frame from `begin_s` on, with steps of the size at which a whole frame takes `steps`: reads
-/// poses from the particles, then for each step runs the solver of the method (sequential impulses for an island of another
-/// method in rigid mode) and updates the contacts. A step in which blocks make contact is repeated with the contacts found, so
-/// that they stop at the surface. Blocks keep their present shape. Sets `inside` to false if a block has left its swept box.
-/// Throws DivergenceError.
+/// Advances an island from `begin_s` to the end of the part of the frame with `steps` solutions of its contacts (> 0): reads
+/// poses from the particles, solves and moves by the method (by sequential impulses for an island of another method in rigid
+/// mode), and looks for contacts, with sequential impulses after every few solutions, between which the points are known that may
+/// touch (list_points.h). What is followed by an unforeseen contact is repeated with it, so that blocks stop at the surface.
+/// Blocks keep their present shape. Sets `inside` to false if a block has left its swept box. Throws DivergenceError.
 IslandOutcome runRigidSteps(IslandStep& step, int steps, double begin_s);
 
 /// The island's working data.

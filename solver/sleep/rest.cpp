@@ -201,6 +201,7 @@ void wake(Simulation& simulation, std::size_t block, WakeReason reason) {
   if (simulation.asleep[block] == 0) return;
   ++simulation.wakes[static_cast<std::size_t>(reason)];
   simulation.asleep[block] = 0;
+  simulation.engine->scratch.inParts[block] = simulation.engine->scratch.part.begin_s > 0.0 ? 1 : 0;  // at rest at any time
   simulation.engine->sleep.checkedLoads.clear();
   simulation.restTime_s[block] = 0.0;
   ++simulation.engine->sleep.awakeCount;

@@ -202,6 +202,7 @@ void savePair(Engine& engine, std::size_t at) {
 void restoreFrame(Simulation& simulation) {
   Engine& engine = *simulation.engine;
   for (std::size_t i = 0; i < engine.memo.islands.count(); ++i) {
+    if (engine.scratch.takesPart[i] == 0) continue;
     const FrameStartIn in = engine.checkpoint.in[i];
     for (const std::int32_t block : engine.memo.islands.island(i)) rewindBlock(simulation, static_cast<std::size_t>(block), in);
     for (std::int32_t k = engine.memo.pairStart[i]; k < engine.memo.pairStart[i + 1]; ++k)

@@ -37,7 +37,7 @@ void releaseFrameStart(Engine& engine);
 /// the steps; that is rare.
 void savePair(Engine& engine, std::size_t at);
 
-/// Restores the start of the frame, for a whole frame that is run again or for one island.
+/// Restores the start of the frame, or of its part that was run last, for all islands that took part or for one.
 void restoreFrame(Simulation& simulation);
 void restoreIsland(IslandStep& step);
 

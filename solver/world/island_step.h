@@ -2,6 +2,7 @@
 
 #include "solver/law/contact_force.h"
 #include "solver/world/engine.h"
+#include "solver/world/frame_part.h"
 
 #include <cstdint>
 #include <span>
@@ -10,8 +11,8 @@ namespace springtower {
 
 class SearchMonitor;  // solver/implicit/search_monitor.h
 
-/// One island during one frame: what a method's step needs, and where it may write. Everything it writes belongs to this island
-/// alone, so islands run in parallel.
+/// One island during one frame or a part of it: what a method's step needs, and where it may write. Everything it writes belongs
+/// to this island alone, so islands run in parallel.
 struct IslandStep {
   Simulation& simulation;
   Engine& engine;
@@ -20,6 +21,7 @@ struct IslandStep {
   Counters& counters;
   StageTimes& times;
   ContactLaw law;
+  FramePart part{};             ///< s, from where to where in the frame it is run now
   Vec3 gravity = Vec3::Zero();  ///< m/s2, at the time of the step
   double time_s = 0.0;          ///< s, start of the step
   double drift_s = 0.0;         ///< s, step of the positions

@@ -33,6 +33,7 @@ struct Memo {
   SortAndSweep sweep;
   SweptBoxes boxes;                   ///< of awake blocks at the last sweep; of sleeping ones, when they fell asleep
   std::vector<double> travelAtSweep;  ///< m, [blocks]
+  std::vector<double> sweepMargin;    ///< m, [blocks]: growth of the boxes for motion that contacts add
   bool prepared = false;              ///< whether the search for the equilibrium before the first frame is over
   bool swept = false;                 ///< whether the order of the sweep has been set up
   std::vector<BlockPair> sweptPairs;

@@ -76,9 +76,9 @@ std::size_t ofNewton(const NewtonSystem& island) {
 
 // Without what is counted by pair.
 std::size_t ofMemo(const Memo& memo) {
-  std::size_t sum =
-      sumOf(memo.travelAtSweep, memo.pairStart, memo.blockPairStart, memo.blockPairs, memo.blockHistory, memo.islandHistory,
-            memo.previous, memo.previousVelocity, memo.carried, memo.force, memo.frames, memo.motion, memo.carriedMotion);
+  std::size_t sum = sumOf(memo.travelAtSweep, memo.sweepMargin, memo.pairStart, memo.blockPairStart, memo.blockPairs,
+                          memo.blockHistory, memo.islandHistory, memo.previous, memo.previousVelocity, memo.carried, memo.force,
+                          memo.frames, memo.motion, memo.carriedMotion);
   sum += sumOf(memo.sweep.order, memo.sweep.place, memo.sweep.columns, memo.sweep.awake, memo.sweep.renewed, memo.sweep.ascending,
                memo.sweep.outOfOrder);
   for (const SortAndSweep::Found& found : memo.sweep.found) sum += sumOf(found.ascending, found.outOfOrder);
@@ -91,19 +91,21 @@ std::size_t ofMemo(const Memo& memo) {
 }
 
 std::size_t ofScratch(const Scratch& s) {
-  std::size_t sum = sumOf(s.awakeBlocks, s.reach, s.cursor, s.path, s.assumedPath, s.newContactCount, s.nodeOf, s.contactForce,
-                          s.pastPosition, s.freePosition, s.lostNeighbours, s.toWake, s.wakeRoots, s.pushed, s.loadChange,
-                          s.support.start, s.support.pairs, s.support.blocks, s.support.parent, s.support.open, s.support.groups,
-                          s.support.beneath, s.support.supports, s.touchingEdges, s.restless, s.parent, s.touched, s.joined,
-                          s.chunkCounters, s.chunkTimes, s.islandCounters, s.islandTimes, s.islandOutcome);
+  std::size_t sum =
+      sumOf(s.awakeBlocks, s.reach, s.cursor, s.path, s.assumedPath, s.newContactCount, s.nodeOf, s.contactForce, s.pastPosition,
+            s.freePosition, s.lostNeighbours, s.toWake, s.wakeRoots, s.pushed, s.loadChange, s.support.start, s.support.pairs,
+            s.support.blocks, s.support.parent, s.support.open, s.support.groups, s.support.beneath, s.support.supports,
+            s.touchingEdges, s.restless, s.parent, s.touched, s.joined, s.chunkCounters, s.chunkTimes, s.islandCounters,
+            s.islandTimes, s.islandOutcome, s.inParts, s.takesPart, s.byDuration, s.islandEdges, s.covered);
   for (const MotionState& stage : s.stage) sum += bytesOf(stage);
   for (const ParticleArray& acceleration : s.stageAcceleration) sum += bytesOf(acceleration);
   sum += s.rigidIslands.indexBytes();
   for (const RigidIsland& island : s.rigidIslands.all()) {
     const LcpWorkspace& lcp = island.pivoting;
-    sum += sizeof(RigidIsland) + sumOf(island.bodies, island.contacts, island.movers, island.points, island.known, lcp.matrix,
-                                       lcp.inverse, lcp.impulse, lcp.velocity, lcp.least, lcp.most, lcp.impulseChange,
-                                       lcp.velocityChange, lcp.column, lcp.clamped, lcp.placeOf);
+    sum += sizeof(RigidIsland) + sumOf(island.bodies, island.contacts, island.movers, island.listedPairs, island.fastPairs,
+                                       island.fastPairsBefore, lcp.matrix, lcp.inverse, lcp.impulse, lcp.velocity, lcp.least,
+                                       lcp.most, lcp.impulseChange, lcp.velocityChange, lcp.column, lcp.clamped, lcp.placeOf);
+    for (const PointList* list : listsOf(island)) sum += sumOf(list->points, list->groups);
   }
   return sum;
 }

@@ -31,7 +31,8 @@ void poisonScratch(Engine& engine) {
             s.stageAcceleration[3], s.pastPosition, s.freePosition, s.lostNeighbours, s.toWake, s.wakeRoots, s.pushed,
             s.loadChange, s.support.start, s.support.pairs, s.support.blocks, s.support.parent, s.support.open, s.support.groups,
             s.support.beneath, s.support.supports, s.touchingEdges, s.restless, s.parent, s.touched, s.joined, s.chunkCounters,
-            s.chunkTimes, s.islandCounters, s.islandTimes, s.islandOutcome);
+            s.chunkTimes, s.islandCounters, s.islandTimes, s.islandOutcome, s.inParts, s.takesPart, s.byDuration, s.islandEdges,
+            s.covered);
   for (MotionState& stage : s.stage) poisonAll(stage.position, stage.velocity);
   for (NewtonSystem& work : engine.memo.newtonSystems.all())
     poisonAll(work.residual, work.direction, work.affine, work.tangents, work.tangentStart, work.coupled, work.coupledIndex,
@@ -40,8 +41,10 @@ void poisonScratch(Engine& engine) {
   engine.checkpoint.savedBlocks.forEachPage([](SavedBlocks& page) { std::memset(static_cast<void*>(&page), 0xFF, sizeof page); });
   for (RigidIsland& island : s.rigidIslands.all()) {
     LcpWorkspace& lcp = island.pivoting;
-    poisonAll(island.bodies, island.contacts, island.movers, island.points, island.known, lcp.matrix, lcp.inverse, lcp.impulse,
-              lcp.velocity, lcp.least, lcp.most, lcp.impulseChange, lcp.velocityChange, lcp.column, lcp.clamped, lcp.placeOf);
+    poisonAll(island.bodies, island.contacts, island.movers, island.listedPairs, island.fastPairs, lcp.matrix, lcp.inverse,
+              lcp.impulse, lcp.velocity, lcp.least, lcp.most, lcp.impulseChange, lcp.velocityChange, lcp.column, lcp.clamped,
+              lcp.placeOf);
+    for (PointList* list : listsOf(island)) poisonAll(list->points, list->groups);
   }
 }
 

@@ -3,6 +3,7 @@
 #include "core/block.h"
 #include "core/lanes.h"
 #include "core/vector.h"
+#include "narrowphase/near_points.h"
 
 #include <array>
 #include <cstddef>
@@ -26,11 +27,13 @@ struct RigidBody : RigidPose {
   Eigen::Matrix3d moment = Eigen::Matrix3d::Zero();          ///< kg m2, of inertia, own axes
   Eigen::Matrix3d inverseMoment = Eigen::Matrix3d::Zero();   ///< 1/(kg m2)
   double inverseMass = 0.0;                                  ///< 1/kg
+  double radius_m = 0.0;                                     ///< of its farthest corner from the centre
   Eigen::Matrix3d inverseInertia = Eigen::Matrix3d::Zero();  ///< 1/(kg m2), world axes
   RigidPose before;                                          ///< at the start of the step
   Vec3 moved = Vec3::Zero();                                 ///< m, displacement so far in the step
   Vec3 turned = Vec3::Zero();                                ///< rad, rotation so far in the step, to first order
   bool pushed = false;                                       ///< whether a contact pushes it in this step
+  bool outruns = false;  ///< whether its velocity has changed since the step began by more than the points listed allow for
 };
 
 /// One point of a manifold as a constraint: along the normal the blocks may separate, in the tangents they stick or slip.
@@ -60,28 +63,53 @@ struct alignas(32) SolverBody {
   double inverseMass;       ///< 1/kg; 0 of what does not move
 };
 
-/// One point of a manifold in sequential impulses. Vectors fill three of four lanes.
+/// One point of two blocks in sequential impulses; `upper` is the pair's first block, or what does not move. Vectors fill three
+/// of four lanes. The point is fixed to its blocks; arms, normal, gap and masses are those at the present poses.
 struct alignas(32) ContactConstraint {
-  Lanes normal;        ///< unit, from lower to upper
-  Lanes armUpper;      ///< m, from the body's centre to the point
-  Lanes armLower;      ///< m
-  Lanes leverUpper;    ///< m, arm x normal
-  Lanes leverLower;    ///< m
-  Lanes turnUpper;     ///< rad/s, change of the body's spin by an impulse of 1 N s along the normal
-  Lanes turnLower;     ///< likewise, with opposite sign
-  Lanes friction;      ///< N s, on upper, tangential
-  double push;         ///< N s along the normal
-  double normalMass;   ///< kg, effective along the normal
-  double acrossMass;   ///< kg, lower bound of the effective tangential mass
-  double gap;          ///< m at the start of the step; negative where the blocks overlap by more than the allowed depth
-  double coefficient;  ///< of friction: static or kinetic, by the point's state in the last step
-  std::int32_t upper;  ///< index of its body in the island; the last index stands for what does not move
+  Lanes placeUpper;      ///< m, in the body's axes from its centre; in the world on what does not move
+  Lanes placeLower;      ///< m, likewise
+  Lanes ownNormal;       ///< the normal in the axes of the body that it turns with, or in the world's
+  Lanes normal;          ///< unit, from lower to upper
+  Lanes armUpper;        ///< m, from the body's centre to half way between the two places
+  Lanes armLower;        ///< m
+  Lanes leverUpper;      ///< m, arm x normal
+  Lanes leverLower;      ///< m
+  Lanes turnUpper;       ///< rad/s, change of the body's spin by an impulse of 1 N s along the normal
+  Lanes turnLower;       ///< likewise, with opposite sign
+  Lanes friction{};      ///< N s, on upper, tangential
+  double push = 0.0;     ///< N s along the normal
+  double normalMass;     ///< kg, effective along the normal
+  double acrossMass;     ///< kg, lower bound of the effective tangential mass
+  double gap;            ///< m at the start of the step; negative where the blocks overlap by more than the allowed depth
+  double rest = 0.0;     ///< m, overlap of springs without force
+  double allowed = 0.0;  ///< m, overlap that is not pushed out: of springs with the force at which the point was taken over
+  double coefficient;    ///< of friction: static or kinetic, by the point's state in the last substep
+  std::int32_t upper;    ///< index of its body in the island; the last index stands for what does not move
   std::int32_t lower;
-  std::int32_t pair;   ///< position in engine.pairs
-  std::int32_t point;  ///< of its manifold
-  bool sliding;        ///< whether friction is at its bound
-  bool idle;           ///< whether its normal and friction impulses are zero so far
+  NormalOf normalOf;     ///< a: upper, b: lower
+  bool sliding = false;  ///< whether friction is at its bound
+  bool idle = true;      ///< whether its normal and friction impulses are zero so far
 };
+
+/// The points of a pair in a list.
+struct PointGroup {
+  std::int32_t pair;  ///< position in engine.pairs
+  std::int32_t first;
+  std::int32_t count;
+  double reach_m;  ///< all points have been listed that may touch after relative motion by this
+  double moved_m;  ///< upper bound of the relative motion since
+};
+
+/// Points of an island, pair by pair, ascending.
+struct PointList {
+  std::vector<ContactConstraint> points;
+  std::vector<PointGroup> groups;
+};
+
+inline void clear(PointList& list) {
+  list.points.clear();
+  list.groups.clear();
+}
 
 /// Working space of the pivoting method: rows are the contacts' normals, then their tangents.
 struct LcpWorkspace {
@@ -102,13 +130,31 @@ struct LcpWorkspace {
 struct RigidIsland {
   std::vector<RigidBody> bodies;  ///< [blocks of the island]
   std::vector<RigidContact> contacts;
-  std::vector<SolverBody> movers;         ///< those of `bodies`, and one for what does not move
-  std::vector<ContactConstraint> points;  ///< of sequential impulses, in place of `contacts`
-  std::vector<ContactConstraint> known;   ///< those of the attempt before, in repeated steps
-  double energyBefore_j = 0.0;            ///< kinetic energy before the step plus the work of gravity in it
-  bool touches = false;                   ///< whether any contact pushes in the step
+  std::vector<SolverBody> movers;  ///< those of `bodies`, and one for what does not move
+  // Of sequential impulses, in place of `contacts` (solver/rigid/list_points.h).
+  PointList steady;                           ///< points found before a step
+  PointList fast;                             ///< points found before a substep
+  PointList steadyKnown;                      ///< the same of the step before,
+  PointList fastKnown;                        ///< of its last substep,
+  PointList fastBefore;                       ///< and of the substep before
+  std::vector<std::int32_t> listedPairs;      ///< looked at for the step
+  std::vector<std::int32_t> fastPairs;        ///< of these, whose points are found before a substep
+  std::vector<std::int32_t> fastPairsBefore;  ///< working space
+  bool knowsManifolds = false;                ///< points start with the forces of manifolds where no others are known
+  double energyBefore_j = 0.0;                ///< kinetic energy before the step plus the work of gravity in it
+  bool touches = false;                       ///< whether any contact pushes in the step
   LcpWorkspace pivoting;
 };
+
+template <class Island>
+auto listsOf(Island& island) {
+  return std::array{&island.steady, &island.fast, &island.steadyKnown, &island.fastKnown, &island.fastBefore};
+}
+
+/// The index that stands for what does not move: the floor, sleeping blocks.
+inline std::int32_t unmovedBody(const RigidIsland& island) {
+  return static_cast<std::int32_t>(island.bodies.size());
+}
 
 /// Nothing of it outlives a step.
 inline void reset(RigidIsland& /*island*/) {}

@@ -5,6 +5,7 @@
 #include "core/state.h"
 #include "solver/block/affine.h"
 #include "solver/world/by_island.h"
+#include "solver/world/frame_part.h"
 #include "solver/world/rigid_island.h"
 #include "solver/world/sleep_state.h"
 #include "solver/world/support_point.h"
@@ -57,10 +58,16 @@ struct Scratch {
   std::vector<std::int32_t> mergedFrom;       ///< previous index of each of them, or -1,
   std::vector<std::byte> mergedColumn;        ///< and space for one column of the table
   std::vector<std::int32_t> cursor;           ///< of counting sorts
+  FramePart part;                             ///< that is run now
+  std::vector<std::uint8_t> inParts;          ///< 1 where a block moves through the frame in several parts, [blocks]
+  std::vector<std::uint8_t> takesPart;        ///< 1 for the islands that are run now, [islands]
+  std::vector<std::int32_t> byDuration;       ///< awake blocks, those in parts first
+  std::vector<BlockPair> islandEdges;         ///< swept pairs of blocks that are at the same time of the frame
   std::vector<std::int32_t> watchedPairs;     ///< active pairs of each island, by position in islandPairs
   std::vector<double> path;                   ///< m, path of each block's fastest corner in the last step, [blocks]
   std::vector<double> assumedPath;            ///< m, upper bound of that path for which a list of active pairs is valid, [blocks]
   std::vector<std::int32_t> newContactCount;  ///< [blocks]: pairs of the block that may make first contact in this frame
+  std::vector<std::uint8_t> covered;          ///< 1 where a pair has constraints in a rigid step, by position in engine.pairs
   std::vector<std::int32_t> nodeOf;           ///< index of each block in its island, for implicit steps and rigid methods
 
   // Steps.

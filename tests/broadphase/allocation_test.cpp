@@ -3,8 +3,8 @@
 #include "broadphase/islands.h"
 #include "broadphase/sort_and_sweep.h"
 #include "broadphase/swept_boxes.h"
-#include "tests/broadphase/random.h"
 #include "tests/support/allocations.h"
+#include "tests/support/random.h"
 
 #include <gtest/gtest.h>
 #include <numeric>
@@ -22,6 +22,7 @@ struct Broadphase {
   std::vector<std::int32_t> all = std::vector<std::int32_t>(kBlocks);
   SortAndSweep sweep;
   std::vector<BlockPair> pairs;
+  std::vector<double> margins = std::vector<double>(kBlocks, 0.001);  // m
   Islands islands;
   std::vector<std::int32_t> parent;
   std::vector<std::uint8_t> connected = std::vector<std::uint8_t>(kBlocks);
@@ -37,7 +38,7 @@ struct Broadphase {
         state.position.set(b, c, place + 0.03 * Vec3(cornerSide(c, 0), cornerSide(c, 1), cornerSide(c, 2)));
       }
     }
-    computeSweptBoxes(state, all, 9.81, 0.01, 0.001, boxes, reach);
+    computeSweptBoxes(state, all, 9.81, 0.01, Way::onwards, margins, boxes, reach);
     reset(sweep, boxes);
   }
 
@@ -47,7 +48,7 @@ struct Broadphase {
       for (std::size_t c = 0; c < kCorners; ++c) state.position.add(b, c, Vec3::Constant(b % 3 == 0 ? direction : 0.0));
       asleep[b] = b % 3 == 1 && frame % 40 > 10 ? 1 : 0;
     }
-    computeSweptBoxes(state, all, 9.81, 0.01, 0.001, boxes, reach);
+    computeSweptBoxes(state, all, 9.81, 0.01, Way::onwards, margins, boxes, reach);
     findPairs(sweep, boxes, asleep, pairs);
     updateIslands(islands, pairs, asleep);
     connectedBlocks(pairs, std::span(all).first(1), parent, connected);

@@ -1,6 +1,6 @@
 #include "broadphase/islands.h"
 
-#include "tests/broadphase/random.h"
+#include "tests/support/random.h"
 
 #include <deque>
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 #include "broadphase/sort_and_sweep.h"
 
-#include "tests/broadphase/random.h"
+#include "tests/support/random.h"
 
 #include <algorithm>
 #include <cmath>

@@ -40,7 +40,7 @@ TEST(ChooseMethod, WhatFallsFarAndAskewIsTakenAsRigid) {
   }
 }
 
-// Implicit methods change to rigid steps by themselves for falls of some blocks, but not of very many, which run on many threads.
+// Implicit methods change to rigid steps by themselves for falls of three blocks and more.
 TEST(ChooseMethod, SomeBlocksThatFallAskewAreSteppedImplicitly) {
   const auto heap = [](int blocks) {
     Scene scene = fallingBlock(0.05, 10.0);
@@ -52,8 +52,7 @@ TEST(ChooseMethod, SomeBlocksThatFallAskewAreSteppedImplicitly) {
   };
   EXPECT_EQ(chooseMethod(heap(2)).method, Method::rigidPgs);
   EXPECT_EQ(chooseMethod(heap(3)).method, Method::implicit);
-  EXPECT_EQ(chooseMethod(heap(255)).method, Method::implicit);
-  EXPECT_EQ(chooseMethod(heap(256)).method, Method::rigidPgs);
+  EXPECT_EQ(chooseMethod(heap(300)).method, Method::implicit);
 }
 
 // A block thrown at another rocks like one that falls askew; a single block that slides collides with nothing.

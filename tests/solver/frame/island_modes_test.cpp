@@ -25,10 +25,10 @@ TEST(IslandModes, FastIslandsThatAreLeftAloneTakeRigidSteps) {
 }
 
 TEST(IslandModes, OneOrTwoBlocksReboundSoTheyStayImplicit) {
-  for (const std::size_t blocks : {1U, 2U, 3U, 255U, 256U}) {
+  for (const std::size_t blocks : {1U, 2U, 3U, 255U, 256U, 10000U}) {
     IslandFacts facts = fastIsland();
     facts.blocks = blocks;
-    const bool rigid = blocks == 3 || blocks == 255;
+    const bool rigid = blocks >= 3;
     EXPECT_EQ(nextMode(ModeChange::frameBegins, facts), rigid ? IslandMode::rigid : IslandMode::implicit) << blocks;
   }
 }
@@ -54,6 +54,22 @@ TEST(IslandModes, FailedImplicitStepsAreFollowedByRigidOnesWhereBlocksHaveFallen
   EXPECT_EQ(nextMode(ModeChange::implicitFailed, facts), IslandMode::rigid);
   facts.leftAlone = false;
   EXPECT_EQ(nextMode(ModeChange::implicitFailed, facts), IslandMode::explicitFallback);
+}
+
+// Explicit steps of hundreds of blocks would take seconds a frame.
+TEST(IslandModes, FailedImplicitStepsOfLargeIslandsAreFollowedByRigidOnes) {
+  IslandFacts facts = fastIsland();
+  facts.blocks = 432;
+  EXPECT_EQ(nextMode(ModeChange::implicitFailed, facts), IslandMode::rigid);
+}
+
+// Between the parts of a frame its speed decides nothing.
+TEST(IslandModes, AFrameInPartsGoesOnAsItBegan) {
+  IslandFacts facts = fastIsland();
+  EXPECT_EQ(nextMode(ModeChange::frameContinues, facts), IslandMode::implicit);
+  facts.rigidBefore = true;
+  facts.moving = facts.fast = false;
+  EXPECT_EQ(nextMode(ModeChange::frameContinues, facts), IslandMode::rigid);
 }
 
 }  // namespace

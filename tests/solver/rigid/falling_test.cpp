@@ -1,5 +1,6 @@
 #include "core/random.h"
 #include "core/scene/scene.h"
+#include "scenarios/registry.h"
 #include "solver/block/inertia.h"
 #include "solver/metrics/measures.h"
 #include "solver/runner/run.h"
@@ -101,6 +102,25 @@ TEST(Falling, BlocksInTheAirFlyAndTumbleAsFreeBodies) {
   const Vec3 expected = from + Vec3(0.3 * time, 0.0, time - 0.5 * kStandardGravity_m_s2 * time * time);
   EXPECT_LT((centre(simulation.state.position, 1) - expected).norm(), 1e-6);
   EXPECT_LT((momentum(1) - before).norm(), 1e-6 * before.norm());
+}
+
+// Hundreds of blocks fall askew onto one another. Their one island moves in rigid steps, few parts of frames are run again, and
+// no block gets into another by more than a millimetre.
+TEST(Falling, AHeapOfHundredsFallsInRigidSteps) {
+  Scene scene = sceneNamed("heap:300");
+  scene.settings.sleep = Sleep::off;
+  Simulation simulation(scene);
+  PenetrationWorkspace workspace;
+  double deepest_m = 0.0;
+  for (int frame = 0; frame < 40; ++frame) {
+    prepareAndStep(simulation);
+    deepest_m = std::max(deepest_m, maxPenetration(simulation.state.position, true, workspace).depth);
+  }
+  EXPECT_TRUE(anyFalls(simulation));
+  EXPECT_LE(deepest_m, 1e-3);
+  EXPECT_LE(simulation.counters.replayedFrames, 20U);
+  EXPECT_GT(simulation.counters.contactsCreated, 3U * scene.blocks.size());
+  EXPECT_EQ(simulation.counters.contactsCreatedPenetrating, 0U);
 }
 
 // Twenty blocks above one another with random orientations.

@@ -1,0 +1,168 @@
+#include "solver/rigid/warm_start.h"
+
+#include "core/tuning.h"
+#include "solver/contact/create.h"
+#include "solver/contact/rigid_contacts.h"
+#include "solver/world/checkpoint.h"
+
+#include <algorithm>
+#include <array>
+
+namespace springtower {
+
+namespace {
+
+// The points of a pair's manifold at the poses of memo.frames.
+PointForces manifoldPoints(const IslandStep& step, const ContactView& manifold) {
+  static const AffineField still{};
+  const auto side = [&](std::int32_t block) {
+    return block < 0 ? ContactSide{} : ContactSide{&step.engine.memo.frames[static_cast<std::size_t>(block)], &still, &still};
+  };
+  return pointForces(manifold, side(manifold.upper), side(manifold.lower), step.law);
+}
+
+// Place of a point on its upper body, m, world.
+Vec3 placeOf(const RigidIsland& island, const ContactConstraint& point) {
+  Vec3 own(point.placeUpper[0], point.placeUpper[1], point.placeUpper[2]);
+  if (point.upper == unmovedBody(island)) return own;
+  const RigidBody& body = island.bodies[static_cast<std::size_t>(point.upper)];
+  return body.place + body.axes * own;
+}
+
+double takeoverSquared(const IslandStep& step) {
+  const double radius = tuning::kPointTakeover * step.simulation.lengths.blockHeight_m;
+  return radius * radius;
+}
+
+void clearForces(const PointRows& rows, std::int32_t count) {
+  for (std::size_t r = 0; r < rowsFor(count); ++r) {
+    ImpulseRow& row = rows[r]->impulse;
+    row.normalForce = {};
+    row.friction = {};
+    row.slipping = {};
+    row.restDepth = {};
+  }
+}
+
+// Adds a point's impulse to that point of a manifold. `swapped`: the manifold's upper block is the point's lower one.
+void addForce(const ContactConstraint& p, double rate, bool swapped, std::size_t to, const PointRows& rows) {
+  ImpulseRow& row = rows[rowOf(to)]->impulse;
+  const std::size_t lane = laneOf(to);
+  row.normalForce[lane] += rate * p.push;
+  for (std::size_t k = 0; k < 3; ++k) row.friction[k][lane] += (swapped ? -rate : rate) * p.friction[static_cast<int>(k)];
+  if (p.sliding) row.slipping[lane] = 1.0;
+  row.restDepth[lane] = std::max(row.restDepth[lane], p.rest);
+}
+
+// Finds the manifold of a pair at the present positions; returns whether it touches.
+bool renewManifold(IslandStep& step, std::size_t at, bool pushes) {
+  PairTable& pairs = step.engine.pairs;
+  if (!pairs.touches(at) && !pushes) return false;
+  savePair(step.engine, at);
+  if (pairs.touches(at)) {
+    refreshManifold(step, at, step.counters);
+  } else {
+    createTouching(step, at);
+  }
+  if (!pairs.touches(at)) return false;
+  pairs.travelAtCheck[at] = travelOf(step.engine, at);
+  return true;
+}
+
+void storePair(IslandStep& step, const RigidIsland& island, std::size_t at, std::span<const ContactConstraint> points,
+               double rate) {
+  const bool pushes = std::any_of(points.begin(), points.end(), [](const ContactConstraint& p) { return p.push > 0.0; });
+  if (!renewManifold(step, at, pushes)) return;
+  const ContactView manifold = contactOf(step.engine, at);
+  const PointRows rows = step.engine.contacts.points(step.engine.pairs.contact[at]);
+  clearForces(rows, manifold.count);
+  if (!pushes || manifold.count == 0) return;
+  const PointForces now = manifoldPoints(step, manifold);
+  const bool swapped = manifold.upper != step.engine.pairs.key[at].a;
+  for (const ContactConstraint& p : points) {
+    if (!(p.push > 0.0)) continue;
+    const Vec3 place = placeOf(island, p);
+    std::size_t nearest = 0;
+    for (std::size_t i = 1; i < static_cast<std::size_t>(manifold.count); ++i) {
+      if ((now.place[i] - place).squaredNorm() < (now.place[nearest] - place).squaredNorm()) nearest = i;
+    }
+    addForce(p, rate, swapped, nearest, rows);
+  }
+}
+
+}  // namespace
+
+void warmStartFromKnown(const IslandStep& step, const KnownGroup& known, std::span<ContactConstraint> points) {
+  const std::span<const ContactConstraint> old =
+      std::span(known.list->points)
+          .subspan(static_cast<std::size_t>(known.group->first), static_cast<std::size_t>(known.group->count));
+  std::uint32_t taken = 0;
+  for (ContactConstraint& p : points) {
+    double nearest = takeoverSquared(step);
+    std::size_t from = old.size();
+    for (std::size_t i = 0; i < old.size(); ++i) {
+      const Lanes apart = old[i].placeUpper - p.placeUpper;
+      const double squared = sum(apart * apart);
+      if ((taken >> i & 1U) != 0 || !(squared < nearest)) continue;
+      nearest = squared;
+      from = i;
+    }
+    if (from == old.size()) continue;
+    taken |= 1U << from;
+    const ContactConstraint& q = old[from];
+    p.push = q.push;
+    p.idle = !(p.push > 0.0);
+    if (!p.idle) p.friction = q.friction;
+    p.rest = q.rest;
+    p.allowed = q.allowed;
+    p.sliding = q.sliding;
+  }
+}
+
+void warmStartFromManifold(const IslandStep& step, const RigidIsland& island, std::size_t at, double substep_s,
+                           std::span<ContactConstraint> points) {
+  const ContactView manifold = contactOf(step.engine, at);
+  const PointForces now = manifoldPoints(step, manifold);
+  const double sign = manifold.upper == step.engine.pairs.key[at].a ? substep_s : -substep_s;
+  std::uint32_t taken = 0;
+  for (ContactConstraint& p : points) {
+    const Vec3 place = placeOf(island, p);
+    double nearest = takeoverSquared(step);
+    std::size_t from = kManifoldPoints;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(manifold.count); ++i) {
+      const double squared = (now.place[i] - place).squaredNorm();
+      if ((taken >> i & 1U) != 0 || !(squared < nearest)) continue;
+      nearest = squared;
+      from = i;
+    }
+    if (from == kManifoldPoints) continue;
+    taken |= 1U << from;
+    const ImpulseRow& row = manifold.impulse(from);
+    const std::size_t lane = laneOf(from);
+    p.push = substep_s * row.normalForce[lane];
+    p.idle = !(p.push > 0.0);
+    if (!p.idle) p.friction = sign * Lanes{row.friction[0][lane], row.friction[1][lane], row.friction[2][lane], 0.0};
+    p.rest = row.restDepth[lane];
+    p.allowed = p.rest + springDepthOfForce(step.simulation, manifold, from);
+    p.sliding = slipsAt(manifold, from);
+  }
+}
+
+void storeInManifolds(IslandStep& step, RigidIsland& island, double substep_s) {
+  std::array<const PointList*, 2> lists = {&island.steady, &island.fast};
+  std::array<std::size_t, 2> at{};
+  for (const std::int32_t pair : step.pairs) {
+    step.engine.scratch.covered[static_cast<std::size_t>(pair)] = 0;
+    std::span<const ContactConstraint> points;
+    for (std::size_t k = 0; k < 2; ++k) {
+      const std::vector<PointGroup>& groups = lists[k]->groups;
+      while (at[k] < groups.size() && groups[at[k]].pair < pair) ++at[k];
+      if (at[k] == groups.size() || groups[at[k]].pair != pair) continue;
+      points = std::span(lists[k]->points)
+                   .subspan(static_cast<std::size_t>(groups[at[k]].first), static_cast<std::size_t>(groups[at[k]].count));
+    }
+    storePair(step, island, static_cast<std::size_t>(pair), points, 1.0 / substep_s);
+  }
+}
+
+}  // namespace springtower
