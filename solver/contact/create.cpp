@@ -173,6 +173,24 @@ bool isSeparatedByTurningFace(const Vec3& normal, const MovingBlock& a, const Mo
   return true;
 }
 
+// Stores the manifold of a separated pair at the present positions; returns whether it has any point.
+bool storeManifoldNow(IslandStep& step, std::size_t at) {
+  const BlockPair pair = step.engine.pairs.key[at];
+  const ParticleArray& position = step.simulation.state.position;
+  const CornerView a = cornersOf(position, static_cast<std::size_t>(pair.a));
+  Manifold fresh;
+  fresh.kind = step.pointKind;
+  if (pair.b < 0) {
+    fresh.upper = pair.a;
+    buildFloorManifold(a, limitsOf(step.simulation), fresh);
+  } else {
+    const CornerView b = cornersOf(position, static_cast<std::size_t>(pair.b));
+    chooseManifold(findSeparation(a, b), a, b, limitsOf(step.simulation), 0.0, edgeSlackOf(step.simulation), pair, {}, fresh);
+  }
+  if (fresh.count > 0) storeContact(step.engine, at, fresh);
+  return fresh.count > 0;
+}
+
 }  // namespace
 
 double refreshTravel(const Simulation& simulation) {
@@ -244,43 +262,20 @@ void updateSeparated(IslandStep& step, std::size_t at, Counters& counters, Stage
 }
 
 void createAhead(IslandStep& step, std::size_t at, double reach_m) {
-  PairTable& pairs = step.engine.pairs;
-  const BlockPair pair = pairs.key[at];
-  const CornerView a = cornersOf(step.simulation.state.position, static_cast<std::size_t>(pair.a));
+  const BlockPair pair = step.engine.pairs.key[at];
+  const ParticleArray& position = step.simulation.state.position;
+  const CornerView a = cornersOf(position, static_cast<std::size_t>(pair.a));
   if (pair.b < 0) {
-    if (lowestCorner(a) > reach_m) return;
-    Manifold fresh;
-    fresh.upper = pair.a;
-    fresh.kind = step.pointKind;
-    buildFloorManifold(a, limitsOf(step.simulation), fresh);
-    storeContact(step.engine, at, fresh);
+    if (lowestCorner(a) <= reach_m) storeManifoldNow(step, at);
     return;
   }
-  const CornerView b = cornersOf(step.simulation.state.position, static_cast<std::size_t>(pair.b));
-  const Separation apart = findSeparation(a, b);
+  const Separation apart = findSeparation(a, cornersOf(position, static_cast<std::size_t>(pair.b)));
   if (apart.best() > reach_m || 2.0 * std::pow(apart.bestNormal().dot(step.gravity.normalized()), 2) < 1.0) return;
-  Manifold fresh;
-  fresh.kind = step.pointKind;
-  chooseManifold(apart, a, b, limitsOf(step.simulation), 0.0, edgeSlackOf(step.simulation), pair, {}, fresh);
-  if (fresh.count > 0) storeContact(step.engine, at, fresh);
+  storeManifoldNow(step, at);
 }
 
 void createTouching(IslandStep& step, std::size_t at) {
-  PairTable& pairs = step.engine.pairs;
-  const BlockPair pair = pairs.key[at];
-  const CornerView a = cornersOf(step.simulation.state.position, static_cast<std::size_t>(pair.a));
-  Manifold fresh;
-  fresh.kind = step.pointKind;
-  if (pair.b < 0) {
-    fresh.upper = pair.a;
-    buildFloorManifold(a, limitsOf(step.simulation), fresh);
-  } else {
-    const CornerView b = cornersOf(step.simulation.state.position, static_cast<std::size_t>(pair.b));
-    chooseManifold(findSeparation(a, b), a, b, limitsOf(step.simulation), 0.0, edgeSlackOf(step.simulation), pair, {}, fresh);
-  }
-  if (fresh.count == 0) return;
-  ++step.counters.contactsCreated;
-  storeContact(step.engine, at, fresh);
+  if (storeManifoldNow(step, at)) ++step.counters.contactsCreated;
 }
 
 double clearanceNow(const Simulation& simulation, std::size_t at) {

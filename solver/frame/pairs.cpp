@@ -159,6 +159,11 @@ void listIslandPairs(Simulation& simulation) {
   }
 }
 
+bool anyInParts(const Engine& engine) {
+  const std::vector<std::uint8_t>& inParts = engine.scratch.inParts;
+  return std::find(inParts.begin(), inParts.end(), 1) != inParts.end();
+}
+
 // Boxes for the part of the frame that comes: of blocks that move through the frame in several parts, by rigid steps without
 // rebound, for this part; of others for all of it.
 void sweepBoxes(Simulation& simulation) {
@@ -167,6 +172,7 @@ void sweepBoxes(Simulation& simulation) {
     computeSweptBoxes(simulation.state, blocks, simulation.scene.gravity.magnitude, duration_s, way, engine.memo.sweepMargin,
                       engine.memo.boxes, engine.scratch.reach);
   };
+  if (!anyInParts(engine)) return sweep(engine.scratch.awakeBlocks, simulation.scene.settings.frame_s, Way::anySide);
   std::vector<std::int32_t>& ordered = engine.scratch.byDuration;
   ordered.clear();
   std::size_t count = 0;
@@ -183,8 +189,8 @@ void sweepBoxes(Simulation& simulation) {
 
 // Blocks that are at different times of the frame are not in one island.
 std::span<const BlockPair> edgesOfIslands(Engine& engine) {
+  if (!anyInParts(engine)) return engine.memo.sweptPairs;
   const std::vector<std::uint8_t>& inParts = engine.scratch.inParts;
-  if (std::find(inParts.begin(), inParts.end(), 1) == inParts.end()) return engine.memo.sweptPairs;
   std::vector<BlockPair>& edges = engine.scratch.islandEdges;
   edges.clear();
   for (const BlockPair& pair : engine.memo.sweptPairs) {

@@ -120,10 +120,10 @@ void stepThroughSubsteps(IslandStep& step, double begin_s, int substeps, bool ag
     step.time_s = begin_s + i * substep_s;
     step.gravity = step.simulation.scene.gravity.at(step.time_s);
     if (i > 0) addOutrun(step, island, step_s);
-    if (!island.fastPairs.empty()) {
-      if (i > 0) writePositions(island, step.blocks, step.simulation.state.position);
-      listFastPoints(step, island, i == 0);
-    }
+    // Both what is listed now and the hand's force follow the positions of the substep.
+    if (i > 0 && (!island.fastPairs.empty() || holdsTether(step)))
+      writePositions(island, step.blocks, step.simulation.state.position);
+    if (!island.fastPairs.empty()) listFastPoints(step, island, i == 0);
     clock.lap(Stage::candidates);
     stepImpulses(step, island);
     clock.lap(Stage::contacts);

@@ -31,12 +31,18 @@ std::vector<double> margins(std::size_t blocks, double margin_m) {
   return std::vector<double>(blocks, margin_m);
 }
 
-TEST(SweptBoxes, AreTheCornersOnTheirWayGrownByTheReach) {
+// Two blocks, of which the second is a box of 2 x 4 x 1 m about (5, -7, 0) m at rest.
+MotionState boxAtFiveMinusSeven() {
   MotionState state;
   state.resize(2);
   for (std::size_t c = 0; c < kCorners; ++c) {
     state.position.set(1, c, Vec3(5.0 + cornerSide(c, 0), -7.0 + 2.0 * cornerSide(c, 1), 0.5 * cornerSide(c, 2)));
   }
+  return state;
+}
+
+TEST(SweptBoxes, AreTheCornersOnTheirWayGrownByTheReach) {
+  MotionState state = boxAtFiveMinusSeven();
   for (std::size_t c = 0; c < kCorners; ++c) state.velocity.set(1, c, Vec3(4.0, -2.0, 0.0));
   state.velocity.add(1, 3, Vec3(2.0, 3.0, 6.0));  // two opposite corners, so that the centre moves at the same speed
   state.velocity.add(1, 4, Vec3(-2.0, -3.0, -6.0));
@@ -58,11 +64,7 @@ TEST(SweptBoxes, AreTheCornersOnTheirWayGrownByTheReach) {
 
 // What may rebound is looked for on all sides, as far as its fastest corner goes.
 TEST(SweptBoxes, GrowByTheSpeedOnAllSidesWhereBlocksRebound) {
-  MotionState state;
-  state.resize(2);
-  for (std::size_t c = 0; c < kCorners; ++c) {
-    state.position.set(1, c, Vec3(5.0 + cornerSide(c, 0), -7.0 + 2.0 * cornerSide(c, 1), 0.5 * cornerSide(c, 2)));
-  }
+  MotionState state = boxAtFiveMinusSeven();
   state.velocity.set(1, 3, Vec3(0.0, 1.0, 0.0));
   state.velocity.set(1, 6, Vec3(2.0, -3.0, 6.0));
   SweptBoxes boxes;
