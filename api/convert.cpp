@@ -135,9 +135,16 @@ springtower::Scene toEngine(const Scene& scene) {
   result.blocks.reserve(scene.blocks.size());
   for (const Block& block : scene.blocks) {
     result.blocks.push_back({toEngine(block.centre), toEngine(block.dimensions), toEngine(block.orientation),
-                             toEngine(block.velocity), toEngine(block.spin), block.mass_kg, block.row, block.position});
+                             toEngine(block.velocity), toEngine(block.spin), block.mass_kg, block.row, block.position,
+                             block.fixed});
   }
   for (const Force& force : scene.forces) result.forces.push_back(toEngine(force));
+  for (const Drive& drive : scene.drives) {
+    result.drives.push_back({drive.block, toEngine(drive.velocity_m_s), toEngine(drive.spin_rad_s), toEngine(drive.amplitude_m),
+                             drive.frequency_hz, drive.start_s, drive.end_s});
+    const auto block = static_cast<std::size_t>(drive.block);
+    if (block < result.blocks.size()) result.blocks[block].fixed = true;  // others are refused when the scene is checked
+  }
   result.gravity = toEngine(scene.gravity);
   result.floor = scene.floor;
   result.plane = scene.plane;
@@ -154,10 +161,14 @@ Scene toPublic(const springtower::Scene& scene) {
   result.blocks.reserve(scene.blocks.size());
   for (const springtower::BlockSpec& block : scene.blocks) {
     result.blocks.push_back({toPublic(block.centre), toPublic(block.dimensions), toPublic(block.orientation),
-                             toPublic(block.velocity), toPublic(block.spin), block.mass, block.row, block.position});
+                             toPublic(block.velocity), toPublic(block.spin), block.mass, block.row, block.position, block.fixed});
   }
   for (const springtower::UserForce& force : scene.forces)
     result.forces.push_back({force.block, force.corner, toPublic(force.force), force.start_s, force.end_s});
+  for (const springtower::Drive& drive : scene.drives) {
+    result.drives.push_back({drive.block, toPublic(drive.velocity), toPublic(drive.spin), toPublic(drive.amplitude),
+                             drive.frequency_hz, drive.start_s, drive.end_s});
+  }
   result.gravity = toPublic(scene.gravity);
   result.floor = scene.floor;
   result.plane = scene.plane;

@@ -58,6 +58,7 @@ void pushThroughFrame(World& world, int block, const Vec3& force_n) {
     const springtower::UserForce force =
         forceForOneFrame(impl.simulation, checkedBlock(block, count, "force: block"), toEngine(force_n));
     checkForce(force, count, "force");
+    requireMovable(impl.simulation.scene, static_cast<std::size_t>(force.block), "force: block");
     if (impl.simulation.scene.plane) checkForceInPlane(force, "force");
     impl.passing.push_back(force);
   });
@@ -91,6 +92,7 @@ void kick(World& world, int block, const Vec3& velocity_m_s) {
   springtower::Simulation& simulation = WorldAccess::running(world).simulation;
   const std::size_t b = checkedBlock(block, simulation.model.blockCount(), "kick: block");
   withPublicErrors([&] {
+    requireMovable(simulation.scene, b, "kick: block");
     requireVector(velocity_m_s, kVelocityRange, "kick: velocity");
     requireInPlane(simulation, velocity_m_s.y, "kick");
   });
@@ -100,7 +102,10 @@ void kick(World& world, int block, const Vec3& velocity_m_s) {
 void grab(World& world, int block, double limit_n) {
   WorldImpl& impl = WorldAccess::running(world);
   const std::size_t b = checkedBlock(block, impl.simulation.model.blockCount(), "grab: block");
-  withPublicErrors([&] { requireInRange(limit_n, kHandForceRange, "grab: limit"); });
+  withPublicErrors([&] {
+    requireMovable(impl.simulation.scene, b, "grab: block");
+    requireInRange(limit_n, kHandForceRange, "grab: limit");
+  });
   impl.lead = {};
   impl.lead.draw.hand = handOn(impl.simulation, blockId(b), limit_n);
   impl.lead.target = impl.lead.draw.hand.place;
@@ -136,6 +141,7 @@ void pull(World& world, int block, const Vec3& direction, double speed_m_s, doub
   WorldImpl& impl = WorldAccess::running(world);
   const std::size_t b = checkedBlock(block, impl.simulation.model.blockCount(), "pull: block");
   const springtower::Vec3 along = withPublicErrors([&] {
+    requireMovable(impl.simulation.scene, b, "pull: block");
     requireInPlane(impl.simulation, direction.y, "pull");
     requireInRange(speed_m_s, kMoveSpeedRange, "pull: speed");
     requireInRange(limit_n, kHandForceRange, "pull: limit");

@@ -42,7 +42,8 @@ Energy energy(const World& world) {
 Penetration deepestPenetration(const World& world) {
   const springtower::Simulation& simulation = simulationOf(world);
   PenetrationWorkspace workspace;
-  const springtower::Penetration deepest = maxPenetration(simulation.state.position, simulation.scene.floor, workspace);
+  const springtower::Penetration deepest =
+      maxPenetration(simulation.state.position, simulation.scene.floor, workspace, simulation.model.fixed);
   return {deepest.depth, static_cast<int>(deepest.first), static_cast<int>(deepest.second)};
 }
 

@@ -33,6 +33,7 @@ std::uint64_t hashOf(const springtower::Scene& scene) {
     for (const springtower::Vec3& vector : {block.centre, block.dimensions, block.velocity, block.spin}) mix(hash, vector);
     for (Eigen::Index a = 0; a < 4; ++a) mix(hash, block.orientation.coeffs()[a]);
     mix(hash, block.mass);
+    hash.word(block.fixed ? 1 : 0);
   }
   for (const springtower::UserForce& force : scene.forces) {
     hash.word(static_cast<std::uint64_t>(force.block));
@@ -40,6 +41,11 @@ std::uint64_t hashOf(const springtower::Scene& scene) {
     mix(hash, force.force);
     mix(hash, force.start_s);
     mix(hash, force.end_s);
+  }
+  for (const springtower::Drive& drive : scene.drives) {
+    hash.word(static_cast<std::uint64_t>(drive.block));
+    for (const springtower::Vec3& vector : {drive.velocity, drive.spin, drive.amplitude}) mix(hash, vector);
+    for (const double value : {drive.frequency_hz, drive.start_s, drive.end_s}) mix(hash, value);
   }
   const springtower::Gravity& gravity = scene.gravity;
   for (const double value : {gravity.magnitude, gravity.tilt_deg, gravity.direction_deg, gravity.sway_deg, gravity.sway_hz,

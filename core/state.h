@@ -53,11 +53,13 @@ struct MotionState {
 struct BlockModel {
   std::vector<Vec3> dimensions;                                      ///< length along x, y, z when unrotated, m, [blocks]
   AlignedVector<double> mass;                                        ///< kg, [blocks]
+  std::vector<std::uint8_t> fixed;                                   ///< 1 where a block is fixed, [blocks]; empty if none is
   std::array<AlignedVector<double>, kSpringGroups> restLength;       ///< m
   std::array<AlignedVector<double>, kSpringGroups> springStiffness;  ///< N/m
   std::array<AlignedVector<double>, kSpringGroups> springDamping;    ///< N s/m
 
   [[nodiscard]] std::size_t blockCount() const { return mass.size(); }
+  [[nodiscard]] bool isFixed(std::size_t block) const { return !fixed.empty() && fixed[block] != 0; }
 };
 
 /// Mean of a block's eight corners: its centre of mass in either inertia (m, or m/s for velocities).

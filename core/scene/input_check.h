@@ -19,6 +19,10 @@ void checkGravity(const Gravity& gravity, std::string_view source);
 /// what is allowed.
 void checkForce(const UserForce& force, std::size_t blocks, std::string_view source);
 
+/// Checks that a block is not fixed, so that it may be pushed, kicked or held. Precondition: it is one of the scene's. Throws
+/// InputError naming `source`, the block, and what is allowed.
+void requireMovable(const Scene& scene, std::size_t block, std::string_view source);
+
 /// Checks both coefficients of friction: within the limits, and the kinetic one no larger than the static one. Throws InputError
 /// naming `source`, the coefficient, what was found and what is allowed.
 void checkFriction(double staticFriction, double kineticFriction, std::string_view source);

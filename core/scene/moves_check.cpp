@@ -26,8 +26,11 @@ void checkNumbers(const Move& move, const std::string& where) {
 
 void checkMoves(const Scene& scene, std::string_view source) {
   std::set<std::pair<int, int>> taken;  // places with a block
+  std::set<std::pair<int, int>> fixed;
   for (const BlockSpec& block : scene.blocks) {
-    if (block.row >= 0) taken.emplace(block.row, block.position);
+    if (block.row < 0) continue;
+    taken.emplace(block.row, block.position);
+    if (block.fixed) fixed.emplace(block.row, block.position);
   }
   bool held = false;
   for (std::size_t i = 0; i < scene.moves.size(); ++i) {
@@ -37,6 +40,8 @@ void checkMoves(const Scene& scene, std::string_view source) {
     checkNumbers(move, where);
     if (move.kind == MoveKind::take) {
       if (held) throw InputError(where + ": found a block to take with another in the hand, allowed after put or put-aside");
+      if (fixed.contains({move.row, move.position}))
+        throw InputError(fmt::format("{}: found {}, whose block is fixed, allowed one that moves", where, place));
       if (taken.erase({move.row, move.position}) == 0) {
         throw InputError(fmt::format("{}: found {} without a block, allowed a place of the tower that has one", where, place));
       }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/scene/drive.h"
 #include "core/settings.h"
 #include "core/vector.h"
 
@@ -30,6 +31,7 @@ struct BlockSpec {
   double mass = kBlockMass_kg;                                      ///< kg
   int row = -1;                                                     ///< row of the tower from 0, or -1
   int position = 0;                                                 ///< 1, 2, 3 in its row, or 0
+  bool fixed = false;  ///< never moves, whatever touches it: a shelf, a ramp, a wall; its mass counts for nothing
 };
 
 /// A force on one block over a time, applied at the centre (spread over its corners) or at one corner.
@@ -81,7 +83,8 @@ struct Scene {
   std::string name;
   std::vector<BlockSpec> blocks;
   std::vector<UserForce> forces;
-  std::vector<Move> moves;  ///< one after the other; empty: no moves
+  std::vector<Drive> drives;  ///< of fixed blocks
+  std::vector<Move> moves;    ///< one after the other; empty: no moves
   Gravity gravity;
   bool floor = true;             ///< the plane z = 0
   bool plane = false;            ///< all that moves stays in the plane y = 0: a scene of rectangles (see checkScene)
@@ -152,11 +155,12 @@ double toleranceOf(const Scene& scene);
 void checkMoves(const Scene& scene, std::string_view source);
 
 /// Checks what every scene must obey: values within the limits of core/limits.h and `settingTable`, unit orientations,
-/// forces on blocks that exist, moves that can be made (checkMoves), no block inside another or in the floor by more than a
-/// millionth of the least dimension of the blocks concerned (touching is fine); in a plane: blocks whose centres and gravity lie
-/// in y = 0, with an axis along y, that neither move nor are pushed out of it. The scenes above have been checked; check again
-/// after changing one. Throws InputError naming `source`, the block (or both blocks and how deep they overlap), what was found
-/// and what is allowed.
+/// forces on blocks that exist and are not fixed, moves that can be made (checkMoves), at least one block that is not fixed, no
+/// block inside another or in the floor by more than a millionth of the least dimension of the blocks concerned (touching is
+/// fine, and so is a fixed block inside another fixed one or in the floor); fixed blocks have no velocity and no spin, and drives
+/// are of fixed blocks; in a plane: blocks whose centres and gravity lie in y = 0, with an axis along y, that neither move nor
+/// are pushed out of it. The scenes above have been checked; check again after changing one. Throws InputError naming `source`,
+/// the block (or both blocks and how deep they overlap), what was found and what is allowed.
 void checkScene(const Scene& scene, std::string_view source);
 
 }  // namespace springtower

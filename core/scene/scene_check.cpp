@@ -76,8 +76,41 @@ void checkBlock(const Scene& scene, std::size_t b, std::string_view source) {
   requireInRange(length, kUnit, where + ": length of the orientation's quaternion");
 }
 
+void checkFixed(const Scene& scene, std::string_view source) {
+  for (std::size_t b = 0; b < scene.blocks.size(); ++b) {
+    const BlockSpec& block = scene.blocks[b];
+    if (!block.fixed || (block.velocity.isZero(0.0) && block.spin.isZero(0.0))) continue;
+    throw InputError(
+        fmt::format("{}: {}: found a velocity or a spin, allowed none for a fixed block", source, nameOfBlock(scene, b)));
+  }
+  if (std::all_of(scene.blocks.begin(), scene.blocks.end(), [](const BlockSpec& block) { return block.fixed; }))
+    throw InputError(fmt::format("{}: found fixed blocks only, allowed at least one that is not", source));
+}
+
+// A drive that moves something, of a block that nothing else moves.
+void checkDrive(const Scene& scene, const Drive& drive, const std::string& where) {
+  requireInRange(drive.block, {0.0, static_cast<double>(scene.blocks.size()) - 1.0, ""}, where + ": block");
+  const auto block = static_cast<std::size_t>(drive.block);
+  if (!scene.blocks[block].fixed)
+    throw InputError(
+        fmt::format("{}: block: found {}, which is not fixed, allowed is a fixed block", where, nameOfBlock(scene, block)));
+  checkVector(drive.velocity, kVelocityRange, where + ": velocity");
+  checkVector(drive.spin, kSpinRange, where + ": spin");
+  checkVector(drive.amplitude, kAmplitudeRange, where + ": amplitude");
+  requireInRange(drive.frequency_hz, kFrequencyRange, where + ": frequency");
+  requireInRange(drive.start_s, kTimeRange, where + ": start");
+  requireInRange(drive.end_s, {drive.start_s, kTimeRange.most, kTimeRange.unit}, where + ": end");
+  if (drive.amplitude.isZero(0.0) != (drive.frequency_hz == 0.0))
+    throw InputError(where + ": found an amplitude or a frequency without the other, allowed both or neither");
+  if (drive.mostSpeed_m_s(0.0) == 0.0 && drive.spin.isZero(0.0))
+    throw InputError(where + ": found neither a velocity, a spin nor an amplitude, allowed at least one of them");
+  requireInRange(drive.mostSpeed_m_s(0.5 * scene.blocks[block].dimensions.norm()),
+                 {0.0, kVelocityRange.most, kVelocityRange.unit}, where + ": fastest corner");
+}
+
 void checkFloor(const Scene& scene, const std::vector<OrientedBox>& boxes, std::string_view source) {
   for (std::size_t b = 0; b < boxes.size(); ++b) {
+    if (scene.blocks[b].fixed) continue;
     const double depth = boxes[b].reach().z() - boxes[b].centre.z();
     if (depth <= kAllowedOverlap * scene.blocks[b].dimensions.minCoeff()) continue;
     throw InputError(fmt::format("{}: {} starts {:.4g} mm inside the floor z = 0, allowed is touching it", source,
@@ -103,6 +136,13 @@ void checkPlane(const Scene& scene, std::string_view source) {
     require(block.spin.x(), where + ": spin x");
     require(block.spin.z(), where + ": spin z");
   }
+  for (std::size_t d = 0; d < scene.drives.size(); ++d) {
+    const std::string where = fmt::format("drive {}", d);
+    require(scene.drives[d].velocity.y(), where + ": velocity y");
+    require(scene.drives[d].amplitude.y(), where + ": amplitude y");
+    require(scene.drives[d].spin.x(), where + ": spin x");
+    require(scene.drives[d].spin.z(), where + ": spin z");
+  }
   for (std::size_t f = 0; f < scene.forces.size(); ++f) {
     checkForceInPlane(scene.forces[f], fmt::format("{}: force {}", source, f));
   }
@@ -112,6 +152,7 @@ void checkPlane(const Scene& scene, std::string_view source) {
 void checkPair(const Scene& scene, const std::vector<OrientedBox>& boxes, std::size_t one, std::size_t other,
                std::string_view source) {
   const auto [first, second] = std::minmax(one, other);
+  if (scene.blocks[first].fixed && scene.blocks[second].fixed) return;
   const OrientedBox& a = boxes[first];
   const OrientedBox& b = boxes[second];
   if (((a.centre - b.centre).cwiseAbs().array() >= (a.reach() + b.reach()).array()).any()) return;
@@ -153,6 +194,11 @@ void checkForce(const UserForce& force, std::size_t blocks, std::string_view sou
   requireInRange(force.end_s, {force.start_s, kTimeRange.most, kTimeRange.unit}, where + ": end");
 }
 
+void requireMovable(const Scene& scene, std::size_t block, std::string_view source) {
+  if (!scene.blocks[block].fixed) return;
+  throw InputError(fmt::format("{}: found {}, which is fixed, allowed is a block that moves", source, nameOfBlock(scene, block)));
+}
+
 void checkFriction(double staticFriction, double kineticFriction, std::string_view source) {
   requireInRange(staticFriction, kFrictionRange, fmt::format("{}: static friction", source));
   requireInRange(kineticFriction, {0.0, staticFriction, "(the static one)"}, fmt::format("{}: kinetic friction", source));
@@ -185,8 +231,13 @@ void checkScene(const Scene& scene, std::string_view source) {
     boxes.push_back(orientedBox(scene.blocks[b].centre, scene.blocks[b].orientation, scene.blocks[b].dimensions));
   }
   for (std::size_t f = 0; f < scene.forces.size(); ++f) {
-    checkForce(scene.forces[f], scene.blocks.size(), fmt::format("{}: force {}", source, f));
+    const std::string where = fmt::format("{}: force {}", source, f);
+    checkForce(scene.forces[f], scene.blocks.size(), where);
+    requireMovable(scene, static_cast<std::size_t>(scene.forces[f].block), where + ": block");
   }
+  checkFixed(scene, source);
+  for (std::size_t d = 0; d < scene.drives.size(); ++d)
+    checkDrive(scene, scene.drives[d], fmt::format("{}: drive {}", source, d));
   if (scene.plane) checkPlane(scene, source);
   checkMoves(scene, source);
   if (scene.floor) checkFloor(scene, boxes, source);

@@ -30,41 +30,61 @@ BlockSpec readBlock(const Table& table) {
   table.read("mass_kg", block.mass, kMassRange);
   table.read("velocity_m_s", block.velocity, kVelocityRange);
   table.read("spin_rad_s", block.spin, kSpinRange);
+  table.read("fixed", block.fixed);
   Vec3 rotation_deg = Vec3::Zero();
   table.read("rotation_deg", rotation_deg, kDirectionRange);
   block.orientation = orientationOfRotation(rotation_deg);
   return block;
 }
 
-UserForce readForce(const Table& table, const Scene& scene) {
-  UserForce force;
+// The block that a table names by number, or by its place in the tower.
+int namedBlock(const Table& table, const Scene& scene) {
   if (table.has("block") == (table.has("row") || table.has("position"))) {
     throw InputError(table.where() + ": found both or neither of block and row with position, allowed either");
   }
-  const auto blocks = static_cast<std::int64_t>(scene.blocks.size());
+  int number = 0;
   if (table.has("block")) {
-    table.readWhole("block", force.block, 0, blocks - 1);
-  } else {
-    int row = 0;
-    int position = 0;
-    table.require("row");
-    table.require("position");
-    table.readWhole("row", row, 0, kMaxRows - 1);
-    table.readWhole("position", position, 1, 3);
-    const auto block = std::find_if(scene.blocks.begin(), scene.blocks.end(), [&](const BlockSpec& candidate) {
-      return candidate.row == row && candidate.position == position;
-    });
-    if (block == scene.blocks.end()) {
-      throw InputError(fmt::format("{}: found row {}, position {}, allowed a block of the tower", table.where(), row, position));
-    }
-    force.block = static_cast<int>(block - scene.blocks.begin());
+    table.readWhole("block", number, 0, static_cast<std::int64_t>(scene.blocks.size()) - 1);
+    return number;
   }
+  int row = 0;
+  int position = 0;
+  table.require("row");
+  table.require("position");
+  table.readWhole("row", row, 0, kMaxRows - 1);
+  table.readWhole("position", position, 1, 3);
+  const auto block = std::find_if(scene.blocks.begin(), scene.blocks.end(), [&](const BlockSpec& candidate) {
+    return candidate.row == row && candidate.position == position;
+  });
+  if (block == scene.blocks.end()) {
+    throw InputError(fmt::format("{}: found row {}, position {}, allowed a block of the tower", table.where(), row, position));
+  }
+  return static_cast<int>(block - scene.blocks.begin());
+}
+
+UserForce readForce(const Table& table, const Scene& scene) {
+  UserForce force;
+  force.block = namedBlock(table, scene);
   table.readWhole("corner", force.corner, 0, 7);
   for (const std::string_view key : {"force_n", "end_s"}) table.require(key);
   table.read("force_n", force.force, kForceRange);
   table.read("start_s", force.start_s, kTimeRange);
   table.read("end_s", force.end_s, {force.start_s, kTimeRange.most, kTimeRange.unit});
   return force;
+}
+
+// A block that is driven is fixed to all else.
+Drive readDrive(const Table& table, Scene& scene) {
+  Drive drive;
+  drive.block = namedBlock(table, scene);
+  table.read("velocity_m_s", drive.velocity, kVelocityRange);
+  table.read("spin_rad_s", drive.spin, kSpinRange);
+  table.read("amplitude_m", drive.amplitude, kAmplitudeRange);
+  table.read("frequency_hz", drive.frequency_hz, kFrequencyRange);
+  table.read("start_s", drive.start_s, kTimeRange);
+  table.read("end_s", drive.end_s, {drive.start_s, kTimeRange.most, kTimeRange.unit});
+  scene.blocks[static_cast<std::size_t>(drive.block)].fixed = true;
+  return drive;
 }
 
 void readFriction(const Table& table, Scene& scene) {
@@ -196,11 +216,14 @@ Scene readScene(const Table& top, const TowerOptions& given, const std::string& 
   if (!top.has("tower")) refuseTowerOptions(given, file);
   top.readTable("tower", {"rows", "code", "heights_sigma_m", "mass_sigma_kg", "seed", "start_gap_m", "offset", "loose"},
                 [&](const Table& table) { scene.blocks = readTower(table, given); });
-  top.readTables("block", {"centre_m", "dimensions_m", "mass_kg", "rotation_deg", "velocity_m_s", "spin_rad_s"},
+  top.readTables("block", {"centre_m", "dimensions_m", "mass_kg", "rotation_deg", "velocity_m_s", "spin_rad_s", "fixed"},
                  [&](const Table& table) { scene.blocks.push_back(readBlock(table)); });
   if (scene.blocks.empty()) throw InputError(file + ": found no blocks, allowed a [tower], [[block]]s or both");
   top.readTables("force", {"block", "row", "position", "corner", "force_n", "start_s", "end_s"},
                  [&](const Table& table) { scene.forces.push_back(readForce(table, scene)); });
+  top.readTables("drive",
+                 {"block", "row", "position", "velocity_m_s", "spin_rad_s", "amplitude_m", "frequency_hz", "start_s", "end_s"},
+                 [&](const Table& table) { scene.drives.push_back(readDrive(table, scene)); });
   top.readTables("moves", kMoveKeys, [&](const Table& table) { scene.moves.push_back(readMove(table)); });
   top.readTable("floor", {"present"}, [&](const Table& table) { table.read("present", scene.floor); });
   top.readTable("friction", {"coefficient", "static", "kinetic"}, [&](const Table& table) { readFriction(table, scene); });
@@ -244,10 +267,10 @@ Scene sceneFromToml(const std::string& path, const TowerOptions& options) {
     const toml::source_position& place = error.source().begin;
     throw InputError(fmt::format("{}:{}:{}: {}", file, place.line, place.column, onOneLine(error.description())));
   }
-  Scene scene = readScene(
-      Table(parsed, "", file,
-            {"name", "seconds", "plane", "tower", "block", "force", "moves", "floor", "friction", "gravity", "settings"}),
-      options, file);
+  Scene scene = readScene(Table(parsed, "", file,
+                                {"name", "seconds", "plane", "tower", "block", "force", "drive", "moves", "floor", "friction",
+                                 "gravity", "settings"}),
+                          options, file);
   checkScene(scene, file);
   return scene;
 }

@@ -4,8 +4,8 @@
 
 // What acts on a world from outside. Call these between steps; all of it is part of snapshots. Every function but `gravity`
 // throws InputError, and changes nothing, for numbers that are not finite or outside the ranges that scene.h names, for a number
-// that is no block's, for a y component or a turn out of the plane in a scene that moves in the plane y = 0, and for a world that
-// has failed.
+// that is no block's, for a fixed block, for a y component or a turn out of the plane in a scene that moves in the plane y = 0,
+// and for a world that has failed.
 
 namespace springtower::api {
 

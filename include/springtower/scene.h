@@ -43,6 +43,7 @@ struct Block {
   double mass_kg = 0.0196;                 ///< 1e-9 to 1e6
   int row = -1;                            ///< row of the tower from 0, or -1
   int position = 0;                        ///< 1, 2, 3 in its row, or 0
+  bool fixed = false;  ///< never moves, whatever touches it (a shelf, a ramp, a wall); velocity and spin are 0
 };
 
 /// A constant force on one block over a time, in the world's axes, at the centre (spread over its corners) or at one corner.
@@ -52,6 +53,18 @@ struct Force {
   Vec3 force_n;          ///< N; within 1e6
   double start_s = 0.0;  ///< s, from here on
   double end_s = 0.0;    ///< s, up to here, not less than start_s
+};
+
+/// A prescribed motion of a block over a time, which is fixed otherwise: a velocity, a spin about its centre, an oscillation.
+/// Several of one block add up. From its end on the block stays where it has come to.
+struct Drive {
+  int block = 0;
+  Vec3 velocity_m_s;          ///< within 1000
+  Vec3 spin_rad_s;            ///< world axes; within 1000
+  Vec3 amplitude_m;           ///< displaces by amplitude (1 - cos(2 pi f t)): from rest, to twice this and back; within 100
+  double frequency_hz = 0.0;  ///< 0 to 1000; above 0 where there is an amplitude
+  double start_s = 0.0;       ///< s, from here on
+  double end_s = 1e7;         ///< s, up to here, not less than start_s
 };
 
 /// Gravity: a magnitude, tilted from straight down by an angle towards a direction, and perhaps swaying. Who tilts a scene turns
@@ -68,8 +81,10 @@ struct Gravity {
 /// A whole scene: what there is, how it starts, what acts on it, and how it is simulated.
 struct Scene {
   std::string name;           ///< in messages
-  std::vector<Block> blocks;  ///< 1 to 200000; none inside another or in the floor (touching is fine)
+  std::vector<Block> blocks;  ///< 1 to 200000, not all fixed; none inside another or in the floor (touching is fine, and fixed
+                              ///< blocks may be inside one another and in the floor)
   std::vector<Force> forces;  ///< that are known beforehand; see inputs.h for others
+  std::vector<Drive> drives;  ///< of blocks that are fixed, marked so or not
   Gravity gravity;
   bool floor = true;             ///< whether there is the plane z = 0
   bool plane = false;            ///< all moves in the plane y = 0: centres, velocities and forces have no y component

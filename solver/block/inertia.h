@@ -4,6 +4,9 @@
 #include "core/state.h"
 #include "narrowphase/manifold.h"
 
+#include <cstddef>
+#include <cstdint>
+
 namespace springtower {
 
 /// How forces on the eight corners of a block accelerate them: a_i = (own f_i - shared F) / m with F the sum of the f_i.
@@ -24,12 +27,20 @@ constexpr double affineCornerInverseMass(Inertia inertia) {
   return 0.5 * inverseMass(inertia).own - inverseMass(inertia).shared;
 }
 
-/// Reduced mass of the two blocks, kg; the mass of the upper one on the floor.
+/// Reduced mass of two blocks, kg; of one on the floor, numbered -1, or on a fixed block its own. Precondition: `upper` is not
+/// the floor, and not both are fixed.
+inline double reducedMass(const BlockModel& model, std::int32_t upper, std::int32_t lower) {
+  const auto a = static_cast<std::size_t>(upper);
+  const auto b = static_cast<std::size_t>(lower);
+  if (lower < 0) return model.mass[a];
+  if (!model.fixed.empty()) {
+    if (model.fixed[b] != 0) return model.mass[a];
+    if (model.fixed[a] != 0) return model.mass[b];
+  }
+  return model.mass[a] * model.mass[b] / (model.mass[a] + model.mass[b]);
+}
 inline double reducedMass(const BlockModel& model, const ManifoldShape& manifold) {
-  const double upper = model.mass[static_cast<std::size_t>(manifold.upper)];
-  if (manifold.lower < 0) return upper;
-  const double lower = model.mass[static_cast<std::size_t>(manifold.lower)];
-  return upper * lower / (upper + lower);
+  return reducedMass(model, manifold.upper, manifold.lower);
 }
 
 /// Inner product p^T M q of two fields on a block's corners, in units of its mass: the mean's part has full weight, the deviation

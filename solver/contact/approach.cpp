@@ -4,6 +4,7 @@
 #include "solver/block/inertia.h"
 #include "solver/contact/create.h"
 #include "solver/world/checkpoint.h"
+#include "solver/world/driven_blocks.h"
 #include "solver/world/over_island.h"
 
 #include <algorithm>
@@ -82,7 +83,7 @@ Closing closingOfShapes(const Simulation& simulation, const BlockPair& pair) {
 
 // Upper bound of the displacement of a block's corners in the step just computed, m; 0 for the floor and sleeping blocks.
 double displacementOf(const IslandStep& step, std::int32_t block) {
-  if (sleeps(step.simulation, block)) return 0.0;
+  if (sleeps(step.simulation, block) && !isDriven(step, block)) return 0.0;
   const auto b = static_cast<std::size_t>(block);
   double largest = 0.0;
   for (std::size_t a = 0; a < 3; ++a) {
@@ -96,10 +97,7 @@ double displacementOf(const IslandStep& step, std::int32_t block) {
 // Largest closing of a pair in the step of its first contact, m: at a quarter of the speed that contacts of resting stiffness
 // stop within the target depth of an impact.
 double maxFirstClosing(const IslandStep& step, const BlockPair& pair) {
-  const auto& mass = step.simulation.model.mass;
-  const double massA = mass[static_cast<std::size_t>(pair.a)];
-  const double massB = pair.b < 0 ? 0.0 : mass[static_cast<std::size_t>(pair.b)];
-  const double reduced = pair.b < 0 ? massA : massA * massB / (massA + massB);
+  const double reduced = reducedMass(step.simulation.model, pair.a, pair.b);
   const double stiffness = step.law.stiffnessOf(pair.a, pair.b);
   return tuning::kMaxFirstClosingShare * step.law.impactPenetration_m * std::sqrt(stiffness / reduced) * step.drift_s;
 }
@@ -206,7 +204,7 @@ double slowestRate(const IslandStep& step, const ContactView& manifold) {
 }
 
 double speedOf(const IslandStep& step, std::int32_t block) {
-  if (sleeps(step.simulation, block)) return 0.0;
+  if (sleeps(step.simulation, block) && !isDriven(step, block)) return 0.0;
   return fastestCorner(step.simulation.state.velocity, static_cast<std::size_t>(block), Vec3::Zero());
 }
 
@@ -218,12 +216,41 @@ double fastestCorner(const ParticleArray& velocity, std::size_t block, const Vec
   return std::sqrt(squared);
 }
 
+namespace {
+
+// What an estimate of approach takes of the blocks of a pair.
+struct PairMotion {
+  double speed;    // m/s, upper bound of that at which they approach
+  double reduced;  // kg, mass
+  double inverse;  // 1/kg, of a point on which a contact acts
+  bool resting;    // whether both have been at rest and so are supported: any other may be in free fall
+};
+
+PairMotion pairMotion(const Simulation& simulation, const BlockPair& pair) {
+  const ParticleArray& velocity = simulation.state.velocity;
+  const double corner = affineCornerInverseMass(simulation.scene.settings.inertia);
+  const double reduced = reducedMass(simulation.model, pair.a, pair.b);
+  if (isFixed(simulation, pair.b) || isFixed(simulation, pair.a)) {
+    const auto moving = static_cast<std::size_t>(isFixed(simulation, pair.b) ? pair.a : pair.b);
+    const std::int32_t other = isFixed(simulation, pair.b) ? pair.b : pair.a;
+    const double driven = other < 0 ? 0.0 : fastestCorner(velocity, static_cast<std::size_t>(other), Vec3::Zero());
+    return {fastestCorner(velocity, moving, Vec3::Zero()) + driven, reduced, corner / reduced,
+            simulation.restTime_s[moving] > 0.0};
+  }
+  const auto a = static_cast<std::size_t>(pair.a);
+  const auto b = static_cast<std::size_t>(pair.b);
+  const Vec3 common = 0.5 * (centre(velocity, a) + centre(velocity, b));
+  return {fastestCorner(velocity, a, common) + fastestCorner(velocity, b, common), reduced,
+          corner / simulation.model.mass[a] + corner / simulation.model.mass[b],
+          simulation.restTime_s[a] > 0.0 && simulation.restTime_s[b] > 0.0};
+}
+
+}  // namespace
+
 ApproachEstimate estimateApproach(const IslandStep& step) {
   const Simulation& simulation = step.simulation;
   std::vector<std::int32_t>& newContacts = step.engine.scratch.newContactCount;
   for (const std::int32_t block : step.blocks) newContacts[static_cast<std::size_t>(block)] = 0;
-  const ParticleArray& velocity = simulation.state.velocity;
-  const double corner = affineCornerInverseMass(simulation.scene.settings.inertia);
   const double frame_s = simulation.scene.settings.frame_s;
   const double fall = simulation.scene.gravity.magnitude * frame_s;
   ApproachEstimate approach;
@@ -231,29 +258,11 @@ ApproachEstimate estimateApproach(const IslandStep& step) {
   for (const std::int32_t position : step.pairs) {
     const auto at = static_cast<std::size_t>(position);
     const BlockPair& pair = pairs.key[at];
-    const auto a = static_cast<std::size_t>(pair.a);
-    const double massA = simulation.model.mass[a];
-    // A block that has been at rest is supported; any other may be in free fall.
-    bool resting = simulation.restTime_s[a] > 0.0;
-    double speed = 0.0;
-    double reduced = massA;
-    double inverse = corner / massA;
-    double travel = step.engine.memo.blockHistory[a].travel;
-    if (pair.b < 0) {
-      speed = fastestCorner(velocity, a, Vec3::Zero());
-    } else {
-      const auto b = static_cast<std::size_t>(pair.b);
-      const Vec3 common = 0.5 * (centre(velocity, a) + centre(velocity, b));
-      speed = fastestCorner(velocity, a, common) + fastestCorner(velocity, b, common);
-      const double massB = simulation.model.mass[b];
-      reduced = massA * massB / (massA + massB);
-      inverse += corner / massB;
-      travel += step.engine.memo.blockHistory[b].travel;
-      resting = resting && simulation.restTime_s[b] > 0.0;
-    }
-    if (!resting) speed += fall;
+    const PairMotion motion = pairMotion(simulation, pair);
+    double speed = motion.speed;
+    if (!motion.resting) speed += fall;
     const bool apart = !pairs.touches(at);
-    const bool mayMeet = apart && pairs.clearance[at] - (travel - pairs.travelAtCheck[at]) < speed * frame_s;
+    const bool mayMeet = apart && pairs.clearance[at] - (travelOf(step.engine, at) - pairs.travelAtCheck[at]) < speed * frame_s;
     if (apart && !mayMeet) continue;
     if (apart || !anyPointTouches(contactOf(step.engine, at))) {
       for (const std::int32_t block : {pair.a, pair.b}) {  // sleeping blocks may belong to other islands as well, and do not move
@@ -264,8 +273,8 @@ ApproachEstimate estimateApproach(const IslandStep& step) {
     approach.meeting = approach.meeting || mayMeet;
     const double stiffness = step.law.stiffnessOf(pair.a, pair.b);
     const double depth = step.law.impactPenetration_m;
-    approach.stiffening = std::max(approach.stiffening, reduced * speed * speed / (depth * depth * stiffness));
-    approach.pointRate = std::max(approach.pointRate, 2.0 * stiffness * (1.0 + step.law.maxwellRatio) * inverse);
+    approach.stiffening = std::max(approach.stiffening, motion.reduced * speed * speed / (depth * depth * stiffness));
+    approach.pointRate = std::max(approach.pointRate, 2.0 * stiffness * (1.0 + step.law.maxwellRatio) * motion.inverse);
   }
   return approach;
 }

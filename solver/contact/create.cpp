@@ -79,11 +79,16 @@ bool sharesOutline(const Separation& separation, double face, const CornerView& 
 // The touching faces or edges, from the best separating directions. The reference face changes only if the other is clearly
 // better. Faces are preferred to edges that separate better, if they touch as well. If the outlines do not overlap, the next best
 // direction is taken.
-void chooseManifold(const Separation& separation, const CornerView& a, const CornerView& b, const ManifoldLimits& limits,
-                    double slack, double edgeSlack, const BlockPair& pair, const ContactView& old, Manifold& fresh) {
+void chooseManifold(const Simulation& simulation, const Separation& separation, const CornerView& a, const CornerView& b,
+                    double slack, const BlockPair& pair, const ContactView& old, Manifold& fresh) {
+  const ManifoldLimits limits = limitsOf(simulation);
+  const double edgeSlack = edgeSlackOf(simulation);
   const bool wasA = old.phase == PairPhase::face && old.lower == pair.a;
   const bool wasB = old.phase == PairPhase::face && old.lower == pair.b;
-  const bool referenceIsB = separation.faceB + (wasB ? slack : 0.0) >= separation.faceA + (wasA ? slack : 0.0);
+  // Of two faces that separate as well it is that of a fixed block: like the floor, it is the lower one.
+  const double ofA = simulation.model.isFixed(static_cast<std::size_t>(pair.a)) ? edgeSlack : 0.0;
+  const double ofB = simulation.model.isFixed(static_cast<std::size_t>(pair.b)) ? edgeSlack : 0.0;
+  const bool referenceIsB = separation.faceB + ofB + (wasB ? slack : 0.0) >= separation.faceA + ofA + (wasA ? slack : 0.0);
   const double face = referenceIsB ? separation.faceB : separation.faceA;
   const bool crossed = separation.edge > face + slack;
   faceManifold(separation, a, b, limits, pair, referenceIsB, fresh);
@@ -185,7 +190,7 @@ bool storeManifoldNow(IslandStep& step, std::size_t at) {
     buildFloorManifold(a, limitsOf(step.simulation), fresh);
   } else {
     const CornerView b = cornersOf(position, static_cast<std::size_t>(pair.b));
-    chooseManifold(findSeparation(a, b), a, b, limitsOf(step.simulation), 0.0, edgeSlackOf(step.simulation), pair, {}, fresh);
+    chooseManifold(step.simulation, findSeparation(a, b), a, b, 0.0, pair, {}, fresh);
   }
   if (fresh.count > 0) storeContact(step.engine, at, fresh);
   return fresh.count > 0;
@@ -254,7 +259,7 @@ void updateSeparated(IslandStep& step, std::size_t at, Counters& counters, Stage
   if (step.simulation.frame > 0 && before.best() < -overlapError) ++counters.contactsCreatedPenetrating;
   Manifold fresh;
   fresh.kind = step.pointKind;
-  chooseManifold(before, movingA.end, movingB.end, limitsOf(step.simulation), 0.0, edgeSlackOf(step.simulation), pair, {}, fresh);
+  chooseManifold(step.simulation, before, movingA.end, movingB.end, 0.0, pair, {}, fresh);
   pairs.clearance[at] = 0.0;
   if (fresh.count == 0) return;
   ++counters.contactsCreated;
@@ -315,8 +320,8 @@ void refreshManifold(IslandStep& step, std::size_t at, Counters& counters) {
       markSeparated(pairs, at, separation.bestNormal(), separation.best());
       return;
     }
-    chooseManifold(separation, a, b, limits, tuning::kReferenceFaceSlack * simulation.lengths.blockHeight_m,
-                   edgeSlackOf(simulation), pair, old, fresh);
+    chooseManifold(simulation, separation, a, b, tuning::kReferenceFaceSlack * simulation.lengths.blockHeight_m, pair, old,
+                   fresh);
     if (fresh.count == 0) {
       markSeparated(pairs, at, separation.bestNormal(), std::max(0.0, separation.best()));
       return;

@@ -164,6 +164,11 @@ Energy energy(const Simulation& simulation) {
   ParticleArray change;
   change.resize(model.blockCount());
   for (std::size_t b = 0; b < model.blockCount(); ++b) {
+    if (model.isFixed(b)) {
+      energy.step_s.push_back(0.0);
+      energy.stepShare_j_s2.push_back(0.0);
+      continue;
+    }
     energy.springs += springEnergy(model, state.position, b);
     energy.gravity -= model.mass[b] * gravity.dot(centre(state.position, b));
     const double kick = traitsOf(settings.method).leapfrog && simulation.asleep[b] == 0

@@ -1,5 +1,7 @@
 #include "solver/contact/rigid_contacts.h"
 
+#include "solver/world/driven_blocks.h"
+
 #include <algorithm>
 
 namespace springtower {
@@ -15,7 +17,7 @@ void chooseTangents(std::array<Vec3, 3>& direction) {
 }
 
 std::int32_t bodyOf(const IslandStep& step, std::int32_t block) {
-  if (block < 0 || step.simulation.asleep[static_cast<std::size_t>(block)] != 0) return -1;
+  if (sleeps(step.simulation, block) && !isDriven(step, block)) return -1;
   return step.engine.scratch.nodeOf[static_cast<std::size_t>(block)];
 }
 

@@ -5,6 +5,7 @@
 #include "core/tuning.h"
 #include "solver/contact/create.h"
 #include "solver/world/checkpoint.h"
+#include "solver/world/driven_blocks.h"
 #include "solver/world/over_island.h"
 #include "solver/world/stage_clock.h"
 
@@ -246,7 +247,8 @@ void listActivePairs(IslandStep& step) {
     engine.scratch.assumedPath[b] = tuning::kActiveListSpeedGrowth * (engine.scratch.path[b] + falling_m);
   }
   const auto pathOf = [&](std::int32_t block) {
-    return block < 0 || sleeps(step.simulation, block) ? 0.0 : engine.scratch.assumedPath[static_cast<std::size_t>(block)];
+    const bool moves = !sleeps(step.simulation, block) || isDriven(step, block);
+    return moves ? engine.scratch.assumedPath[static_cast<std::size_t>(block)] : 0.0;
   };
   const std::size_t first = static_cast<std::size_t>(step.pairs.data() - engine.memo.islandPairs.data());
   std::size_t count = 0;

@@ -13,6 +13,7 @@
 #include "solver/reference/report_step.h"
 #include "solver/reference/runge_kutta4.h"
 #include "solver/world/checkpoint.h"
+#include "solver/world/driven_blocks.h"
 #include "solver/world/stiffness.h"
 
 #include <algorithm>
@@ -118,6 +119,8 @@ IslandOutcome runExplicitSteps(IslandStep& step, double begin_s) {
   double last = step.engine.memo.blockHistory[static_cast<std::size_t>(step.blocks.front())].lastExplicitStep_s;
   step.usesActiveList = true;
   step.activeListSteps = 0;
+  const DrivenVelocity which = traitsOf(settings.method).multiStage ? DrivenVelocity::atEnd : DrivenVelocity::mean;
+  placeDriven(step, simulation.time_s + begin_s - last, simulation.time_s + begin_s, which);
   for (int substep = 0; substep < outcome.substeps; ++substep) {
     step.time_s = simulation.time_s + begin_s + substep * step.drift_s;
     step.gravity = simulation.scene.gravity.at(step.time_s);
@@ -125,6 +128,7 @@ IslandOutcome runExplicitSteps(IslandStep& step, double begin_s) {
     step.advance_s = last;
     takeStep(step);
     last = step.drift_s;
+    placeDriven(step, step.time_s, step.time_s + step.drift_s, which);
     outcome.inside = isReport ? acceptReportStep(step) : updateContacts(step, refreshTravelOfExplicitSteps(simulation));
     if (!outcome.inside) break;
   }

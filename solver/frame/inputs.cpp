@@ -12,6 +12,7 @@ namespace {
 
 void checkForceOn(const Simulation& simulation, const UserForce& force) {
   checkForce(force, simulation.model.blockCount(), "force");
+  requireMovable(simulation.scene, static_cast<std::size_t>(force.block), "force: block");
   if (simulation.scene.plane) checkForceInPlane(force, "force");
 }
 

@@ -5,6 +5,7 @@
 #include "core/tuning.h"
 #include "solver/contact/query.h"
 #include "solver/world/checkpoint.h"
+#include "solver/world/driven_blocks.h"
 #include "solver/world/stage_clock.h"
 
 #include <algorithm>
@@ -21,6 +22,9 @@ void runIsland(Simulation& simulation, const ContactLaw& law, std::size_t i, Isl
   IslandStep step = islandStep(simulation, law, i);
   step.monitor = monitor;
   saveFrameStart(step);
+  // The search for the equilibrium, which has a monitor, is for what stands still.
+  const double begin_s = simulation.time_s + step.part.begin_s;
+  if (monitor == nullptr) placeDriven(step, begin_s, begin_s);
   const IslandOutcome outcome = advance(step);
   step.engine.scratch.islandOutcome[i] = outcome.inside ? outcome.substeps : -1;
 }
@@ -51,14 +55,20 @@ IslandStep islandStep(Simulation& simulation, const ContactLaw& law, std::size_t
   Engine& engine = *simulation.engine;
   const auto first = static_cast<std::size_t>(engine.memo.pairStart[island]);
   const auto count = static_cast<std::size_t>(engine.memo.pairStart[island + 1]) - first;
-  return {simulation,
-          engine,
-          engine.memo.islands.island(island),
-          std::span<const std::int32_t>(engine.memo.islandPairs).subspan(first, count),
-          engine.scratch.islandCounters[island],
-          engine.scratch.islandTimes[island],
-          law,
-          engine.scratch.part};
+  IslandStep step{simulation,
+                  engine,
+                  engine.memo.islands.island(island),
+                  std::span<const std::int32_t>(engine.memo.islandPairs).subspan(first, count),
+                  engine.scratch.islandCounters[island],
+                  engine.scratch.islandTimes[island],
+                  law,
+                  engine.scratch.part};
+  const std::vector<BlockPair>& driven = engine.scratch.drivenOfIslands;
+  if (driven.empty()) return step;
+  const auto number = static_cast<std::int32_t>(island);
+  const auto begin = std::lower_bound(driven.begin(), driven.end(), BlockPair{number, -1});
+  step.driven = {begin, std::lower_bound(begin, driven.end(), BlockPair{number + 1, -1})};
+  return step;
 }
 
 bool overIslands(Simulation& simulation, IslandOutcome (*advance)(IslandStep&), SearchMonitor* monitor) {

@@ -1,6 +1,7 @@
 #include "solver/frame/pairs.h"
 
 #include "core/tuning.h"
+#include "solver/world/driven_blocks.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -20,8 +21,8 @@ void dropPair(Simulation& simulation, std::size_t at) {
   Engine& engine = *simulation.engine;
   const BlockPair pair = engine.pairs.key[at];
   if (pair.b >= 0 && !sleepLoadOf(engine, at).force.isZero(0.0)) {
-    if (sleeps(simulation, pair.a)) engine.scratch.lostNeighbours.push_back(pair.a);
-    if (sleeps(simulation, pair.b)) engine.scratch.lostNeighbours.push_back(pair.b);
+    if (isSleeper(simulation, pair.a)) engine.scratch.lostNeighbours.push_back(pair.a);
+    if (isSleeper(simulation, pair.b)) engine.scratch.lostNeighbours.push_back(pair.b);
   }
   if (engine.pairs.contact[at] >= 0) engine.contacts.giveBack(engine.pairs.contact[at]);
 }
@@ -47,7 +48,7 @@ void releaseContacts(Simulation& simulation) {
     std::int32_t& contact = engine.pairs.contact[at];
     if (contact < 0 || engine.pairs.touches(at)) continue;
     const BlockPair& pair = engine.pairs.key[at];
-    const bool sleeper = sleeps(simulation, pair.a) || (pair.b >= 0 && sleeps(simulation, pair.b));
+    const bool sleeper = isSleeper(simulation, pair.a) || isSleeper(simulation, pair.b);
     if (sleeper && !engine.contacts.sleepLoad(contact).force.isZero(0.0)) continue;
     engine.contacts.giveBack(contact);
     contact = -1;
@@ -187,14 +188,24 @@ void sweepBoxes(Simulation& simulation) {
   sweep(all.subspan(count), simulation.scene.settings.frame_s, Way::anySide);
 }
 
-// Blocks that are at different times of the frame are not in one island.
-std::span<const BlockPair> edgesOfIslands(Engine& engine) {
-  if (!anyInParts(engine)) return engine.memo.sweptPairs;
+// Blocks that are at different times of the frame are not in one island. Those near a driven block are, as it moves with their
+// steps.
+std::span<const BlockPair> edgesOfIslands(Simulation& simulation) {
+  Engine& engine = *simulation.engine;
+  const std::vector<NearDriven>& near = engine.scratch.nearDriven;
+  if (!anyInParts(engine) && near.empty()) return engine.memo.sweptPairs;
   const std::vector<std::uint8_t>& inParts = engine.scratch.inParts;
   std::vector<BlockPair>& edges = engine.scratch.islandEdges;
   edges.clear();
   for (const BlockPair& pair : engine.memo.sweptPairs) {
     if (inParts[static_cast<std::size_t>(pair.a)] == inParts[static_cast<std::size_t>(pair.b)]) edges.push_back(pair);
+  }
+  const NearDriven* last = nullptr;
+  for (const NearDriven& next : near) {
+    if (simulation.asleep[static_cast<std::size_t>(next.block)] != 0) continue;
+    if (last != nullptr && last->driven == next.driven && last->inParts == next.inParts)
+      edges.push_back({last->block, next.block});
+    last = &next;
   }
   return edges;
 }
@@ -216,14 +227,16 @@ void findNearPairs(Simulation& simulation) {
     }
     if (simulation.frame == 0 || !engine.memo.swept) reset(engine.memo.sweep, engine.memo.boxes);
     engine.memo.swept = true;
-    findPairs(engine.memo.sweep, engine.memo.boxes, simulation.asleep, engine.memo.sweptPairs);
+    findPairs(engine.memo.sweep, engine.memo.boxes, sweepDriven(simulation), engine.memo.sweptPairs);
+    listNearDriven(simulation);
     simulation.counters.blockPairs += engine.memo.sweptPairs.size();
     releaseContacts(simulation);
     engine.memo.topologyChanged = mergePairs(simulation);
   }
   const StageTimer timer(simulation.stageTimes, Stage::islandsAndSleep);
   engine.memo.topologyChanged =
-      updateIslands(engine.memo.islands, edgesOfIslands(engine), simulation.asleep) || engine.memo.topologyChanged;
+      updateIslands(engine.memo.islands, edgesOfIslands(simulation), simulation.asleep) || engine.memo.topologyChanged;
+  listDrivenOfIslands(simulation);
   if (engine.memo.topologyChanged) listIslandPairs(simulation);
   // A snapshot restores islands, and the places of their factors, but no scratch.
   if (!engine.memo.newtonSystems.isUsed()) {

@@ -22,6 +22,10 @@ namespace {
 void placeBlock(const BlockSpec& spec, std::size_t b, Simulation& simulation) {
   simulation.model.dimensions[b] = spec.dimensions;
   simulation.model.mass[b] = spec.mass;
+  if (spec.fixed) {
+    simulation.model.fixed.resize(simulation.model.blockCount(), 0);
+    simulation.model.fixed[b] = 1;
+  }
   for (std::size_t c = 0; c < kCorners; ++c) {
     Vec3 arm;
     for (std::size_t a = 0; a < 3; ++a) {
@@ -42,6 +46,7 @@ double foreseenSpectralRadius(const Simulation& simulation, const BlockStiffness
   double springs = 0.0;
   double lightest = 1e300;
   for (std::size_t b = 0; b < model.blockCount(); ++b) {
+    if (model.isFixed(b)) continue;
     const bool asBefore = b > 0 && model.dimensions[b] == model.dimensions[b - 1] && model.mass[b] == model.mass[b - 1] &&
                           stiffness.edge_n_m[b] == stiffness.edge_n_m[b - 1];
     lightest = std::min(lightest, model.mass[b]);
@@ -100,6 +105,22 @@ double roundingFactor(const Simulation& simulation, std::size_t b) {
   return std::clamp(error_n / (tuning::kNewtonResidual * weight_n), 1.0, tuning::kMaxRoundingFactor);
 }
 
+// Fixed blocks sleep from the start, with the boxes and frames of blocks that have fallen asleep.
+void placeFixedBlocks(Simulation& simulation) {
+  Engine& e = *simulation.engine;
+  const std::size_t count = simulation.model.blockCount();
+  std::vector<std::int32_t> fixed;
+  for (std::size_t b = 0; b < count; ++b) {
+    if (simulation.model.isFixed(b)) fixed.push_back(static_cast<std::int32_t>(b));
+  }
+  if (!simulation.scene.drives.empty()) e.scratch.drivenMean.resize(count);
+  e.sleep.movableCount = count - fixed.size();
+  e.sleep.awakeCount = e.sleep.movableCount;
+  for (const std::int32_t block : fixed) simulation.asleep[static_cast<std::size_t>(block)] = 1;
+  computeFrames(simulation.state.position, fixed, e.memo.frames);
+  computeSweptBoxes(simulation.state, fixed, 0.0, 0.0, Way::anySide, e.memo.sweepMargin, e.memo.boxes, e.scratch.reach);
+}
+
 // Sizes the data that every method uses.
 void sizeEngine(Simulation& simulation) {
   const Scene& scene = simulation.scene;
@@ -123,7 +144,7 @@ void sizeEngine(Simulation& simulation) {
   e.memo.islandHistory.assign(count, IslandHistory{});
   e.sleep.windows.resize(count);
   e.scratch.newContactCount.assign(count, 0);
-  e.sleep.awakeCount = count;
+  placeFixedBlocks(simulation);
   for (std::size_t b = 0; b < count; ++b) {
     const bool asBefore = b > 0 && scene.blocks[b].dimensions == scene.blocks[b - 1].dimensions &&
                           model.mass[b] == model.mass[b - 1] &&

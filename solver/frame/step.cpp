@@ -4,6 +4,7 @@
 #include "solver/frame/plane.h"
 #include "solver/frame/prepare.h"
 #include "solver/sleep/rest.h"
+#include "solver/world/driven_blocks.h"
 #include "solver/world/poison.h"
 
 #include <algorithm>
@@ -43,13 +44,15 @@ void stepFrame(Simulation& simulation) {
   wakeForInputs(simulation);
   engine.scratch.lostNeighbours.clear();
   simulation.substeps = 0;
-  if (engine.sleep.awakeCount > 0) {
+  const double end_s = simulation.time_s + simulation.scene.settings.frame_s;
+  if (engine.sleep.awakeCount > 0 || anyDriveActs(simulation, simulation.time_s, end_s)) {
     advanceThroughParts(simulation);
     simulation.counters.steps += static_cast<std::uint64_t>(simulation.substeps);
   }
   ++simulation.frame;
   ++simulation.counters.frames;
   simulation.time_s = static_cast<double>(simulation.frame) * simulation.scene.settings.frame_s;
+  finishDriven(simulation);
   if (engine.sleep.awakeCount > 0) {
     checkShapes(simulation, engine.scratch.awakeBlocks);
     if (simulation.scene.plane) keepInPlane(simulation);

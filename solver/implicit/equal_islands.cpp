@@ -48,6 +48,14 @@ bool isPlacedAlike(const Simulation& simulation, std::size_t a, std::size_t b, c
   return true;
 }
 
+// Whether an island has a fixed block near: then its place counts, which is not compared.
+bool isNearFixed(const Simulation& simulation, const PlacedIsland& island) {
+  return std::any_of(island.pairs.begin(), island.pairs.end(), [&](std::int32_t pair) {
+    const BlockPair& key = simulation.engine->pairs.key[static_cast<std::size_t>(pair)];
+    return isFixed(simulation, key.a) || (key.b >= 0 && isFixed(simulation, key.b));
+  });
+}
+
 // The place of a block among those of its island; -1 for the floor.
 std::ptrdiff_t placeOf(const PlacedIsland& island, std::int32_t block) {
   if (block < 0) return -1;
@@ -83,7 +91,7 @@ std::vector<std::int32_t> firstEqualIslands(const Simulation& simulation) {
   for (std::size_t i = 0; i < memo.islands.count(); ++i) {
     const PlacedIsland island = placedIsland(memo, i);
     first.push_back(static_cast<std::int32_t>(i));
-    if (island.blocks.size() == 1) continue;
+    if (island.blocks.size() == 1 || isNearFixed(simulation, island)) continue;
     std::vector<std::int32_t>& known = firstOfSize[{island.blocks.size(), island.pairs.size()}];
     const auto equal = std::find_if(known.begin(), known.end(), [&](std::int32_t j) {
       return areEqual(simulation, placedIsland(memo, static_cast<std::size_t>(j)), island);

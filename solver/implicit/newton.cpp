@@ -13,6 +13,7 @@
 #include "solver/implicit/step_count.h"
 #include "solver/implicit/system.h"
 #include "solver/world/checkpoint.h"
+#include "solver/world/driven_blocks.h"
 #include "solver/world/over_island.h"
 #include "solver/world/stage_clock.h"
 
@@ -395,6 +396,7 @@ bool finishStep(IslandStep& step, bool taken) {
     accept(step, island);
   } else {
     reject(step);
+    placeDriven(step, step.time_s, step.time_s);
   }
   clock.lap(Stage::integration);
   return taken;
@@ -404,6 +406,12 @@ bool finishStep(IslandStep& step, bool taken) {
 
 bool stepImplicit(IslandStep& step, bool canRetryFiner) {
   const double effective_s = endShare(step.simulation.scene.settings.method) * step.drift_s;
+  // With a driven block the step begins with the extrapolated state: forces at its start are not those that the block's motion
+  // makes by its end.
+  const bool drives = !step.driven.empty();
+  const double end_s = step.time_s + step.drift_s;
+  placeDriven(step, step.time_s, step.time_s);
+  if (drives) islandOf(step).forcesKnown = false;
   synchronise(step);
   const bool carried = !islandOf(step).forcesKnown && isCarried(step, effective_s);
   if (!islandOf(step).forcesKnown && !carried)
@@ -414,7 +422,8 @@ bool stepImplicit(IslandStep& step, bool canRetryFiner) {
     predictBdf2(step, effective_s);
   }
   const NewtonOptions& how = canRetryFiner ? kBeforeFiner : kInMotion;
-  bool converged = solveStep(step, effective_s, carried, how);
+  placeDriven(step, step.time_s, end_s);
+  bool converged = solveStep(step, effective_s, carried || drives, how);
   for (int trial = 0; converged && trial < tuning::kMaxNewContactSolves; ++trial) {
     StageClock clock(step.times);
     const FirstContact met = findFirstContacts(step);
@@ -422,8 +431,10 @@ bool stepImplicit(IslandStep& step, bool canRetryFiner) {
     if (met == FirstContact::impact) return finishStep(step, false);
     if (met == FirstContact::none) break;
     restoreStep(step);
+    placeDriven(step, step.time_s, step.time_s);
     evaluateForces(step, step.simulation.state, step.simulation.state.velocity, 0.0, PointUpdate::trial);
-    converged = solveStep(step, effective_s, false, how);
+    placeDriven(step, step.time_s, end_s);
+    converged = solveStep(step, effective_s, drives, how);
   }
   // At the start of a frame a force or the hand may jump; that is no vibration.
   const bool jumps = step.engine.memo.islandHistory[static_cast<std::size_t>(step.blocks.front())].forced &&

@@ -51,7 +51,7 @@ bool isQuiescent(const IslandStep& step) {
 bool touchesSleeping(const IslandStep& step) {
   return anyPair(step, [&](std::size_t at) {
     const BlockPair& key = step.engine.pairs.key[at];
-    return key.b >= 0 && step.engine.pairs.touches(at) && (sleeps(step.simulation, key.a) || sleeps(step.simulation, key.b));
+    return step.engine.pairs.touches(at) && (isSleeper(step.simulation, key.a) || isSleeper(step.simulation, key.b));
   });
 }
 
@@ -69,7 +69,7 @@ int implicitSteps(const IslandStep& step, bool forced, bool known, bool mostlyFa
   int least = forced ? tuning::kMinForcedSteps : 1;
   if (!calm && touchesSleeping(step)) least = tuning::kStandardImplicitSteps;
   if (!calm && !known) least = std::max(least, mostlyFallen ? tuning::kMinStepsAfterRigid : tuning::kMaxFrequencySteps);
-  if (!calm && !forced) least = std::max(least, stepsForDisplacement(step));
+  if (!calm && (!forced || !step.driven.empty())) least = std::max(least, stepsForDisplacement(step));
   const int steps = std::max(least, stepsForFrequency(step, present));
   for (const std::int32_t block : step.blocks) histories[static_cast<std::size_t>(block)].implicitSteps = steps;
   return steps;
@@ -193,7 +193,7 @@ IslandOutcome runImplicitSteps(IslandStep& step, bool mostlyFallen, double& reac
   reached_s = step.part.begin_s;
   const double end_s = step.part.end_s;
   NewtonSystem& island = engine.memo.newtonSystems.of(step.blocks.front());
-  const bool forced = holdsTether(step) || isPushed(step);
+  const bool forced = holdsTether(step) || isPushed(step) || !step.driven.empty();
   const bool wasForced = engine.memo.islandHistory[static_cast<std::size_t>(step.blocks.front())].forced;
   if (wasForced && !forced) resetHistory(step);
   int steps = implicitSteps(step, forced, forced == wasForced, mostlyFallen);

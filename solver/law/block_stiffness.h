@@ -10,18 +10,21 @@ namespace springtower {
 /// Stiffness of the contacts and springs of every block, N/m, all [blocks]. Part of the model: set once, from the loads that are
 /// expected (solver/world/stiffness).
 struct BlockStiffness {
-  std::vector<double> stack_n_m;  ///< of one between blocks of the stack in which this block stands
+  std::vector<double> stack_n_m;  ///< of one between blocks of the stack in which this block stands; 0 for a fixed block
   std::vector<double> floor_n_m;  ///< of one on the floor, which has fewer points: a tower's block rests on three others
   std::vector<double> edge_n_m;   ///< of an upright edge as long as the scene's least block is high
 };
 
 /// Stiffness of a contact point of two blocks, N/m, normal; `lower` is negative for the floor. Between two stacks the stiffer of
-/// theirs: one may come to lie on the other.
+/// theirs: one may come to lie on the other. On a fixed block that on the floor.
 inline double pairStiffness(const BlockStiffness& of, std::int32_t upper, std::int32_t lower) {
   const auto a = static_cast<std::size_t>(upper);
   if (lower < 0) return of.floor_n_m[a];
   const auto b = static_cast<std::size_t>(lower);
-  return std::max(of.stack_n_m[a], of.stack_n_m[b]);
+  const double ofA = of.stack_n_m[a];
+  const double ofB = of.stack_n_m[b];
+  if (std::min(ofA, ofB) > 0.0) return std::max(ofA, ofB);
+  return ofA > 0.0 ? of.floor_n_m[a] : of.floor_n_m[b];
 }
 
 /// Largest of the stiffnesses of blocks, N/m; 0 where there are none.

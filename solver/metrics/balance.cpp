@@ -36,6 +36,7 @@ std::vector<Imbalance> imbalances(const Simulation& simulation, std::span<const 
     if (contact.lower != kFloor) push(index(contact.lower), -by, contact.lowerPoint);
   }
   for (std::size_t b = 0; b < left.size(); ++b) {
+    if (model.isFixed(b)) continue;
     const double weight = model.mass[b] * gravity.norm();
     left[b] = {force[b].norm() / weight, torque[b].norm() / (weight * model.dimensions[b].minCoeff())};
   }

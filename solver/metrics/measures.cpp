@@ -59,7 +59,7 @@ Standing standing(const BlockModel& model, std::span<const FittedBox> start, con
                   std::span<const std::uint8_t> leftOut) {
   static const double leastTrace = 1.0 + 2.0 * std::cos(kFallTurn_deg / kDegreesPerRadian);
   for (std::size_t b = 0; b < position.blockCount(); ++b) {
-    if (!leftOut.empty() && leftOut[b] != 0) continue;
+    if (model.isFixed(b) || (!leftOut.empty() && leftOut[b] != 0)) continue;
     const FittedBox box = fittedBox(position, b);
     const Vec3 move = box.centre - start[b].centre;
     // Written so that a value that is not finite counts as fallen.
@@ -130,9 +130,11 @@ std::vector<BlockId> bottomRow(const BlockModel& model, const ParticleArray& sta
   }
   if (!blocks.empty()) return blocks;
   double lowest = std::numeric_limits<double>::infinity();
-  for (std::size_t b = 0; b < start.blockCount(); ++b) lowest = std::min(lowest, centre(start, b).z());
   for (std::size_t b = 0; b < start.blockCount(); ++b) {
-    if (centre(start, b).z() - lowest <= 0.25 * model.dimensions[b].z()) blocks.push_back(blockId(b));
+    if (!model.isFixed(b)) lowest = std::min(lowest, centre(start, b).z());
+  }
+  for (std::size_t b = 0; b < start.blockCount(); ++b) {
+    if (!model.isFixed(b) && centre(start, b).z() - lowest <= 0.25 * model.dimensions[b].z()) blocks.push_back(blockId(b));
   }
   return blocks;
 }

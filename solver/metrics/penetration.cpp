@@ -74,7 +74,7 @@ void sortBlocks(PenetrationWorkspace& workspace) {
   }
 }
 
-void findPairs(PenetrationWorkspace& workspace) {
+void findPairs(PenetrationWorkspace& workspace, std::span<const std::uint8_t> fixed) {
   const auto& bounds = workspace.bounds;
   const auto& order = workspace.order;
   workspace.pairs.clear();
@@ -82,6 +82,7 @@ void findPairs(PenetrationWorkspace& workspace) {
     const Bounds& box = bounds[order[i]];
     const double end = box.high[workspace.axis];
     for (std::size_t k = i + 1; k < order.size() && bounds[order[k]].low[workspace.axis] < end; ++k) {
+      if (!fixed.empty() && fixed[order[i]] != 0 && fixed[order[k]] != 0) continue;
       const double bound = boxOverlap(box, bounds[order[k]]);
       if (bound > 0.0) workspace.pairs.push_back({bound, std::min(order[i], order[k]), std::max(order[i], order[k])});
     }
@@ -115,17 +116,19 @@ double overlapDepth(const ParticleArray& position, std::size_t first, std::size_
   return std::max(depth, 0.0);
 }
 
-Penetration maxPenetration(const ParticleArray& position, bool floor, PenetrationWorkspace& workspace) {
+Penetration maxPenetration(const ParticleArray& position, bool floor, PenetrationWorkspace& workspace,
+                           std::span<const std::uint8_t> fixed) {
   Penetration deepest;
   if (position.blockCount() == 0) return deepest;
   findBounds(position, workspace.bounds);
   if (floor) {
     for (std::size_t b = 0; b < workspace.bounds.size(); ++b) {
+      if (!fixed.empty() && fixed[b] != 0) continue;
       if (-workspace.bounds[b].low.z() > deepest.depth) deepest = {-workspace.bounds[b].low.z(), blockId(b), kFloor};
     }
   }
   sortBlocks(workspace);
-  findPairs(workspace);
+  findPairs(workspace, fixed);
 
   // The pair with the largest bound first, block numbers as a tie breaker; ends when no pair can be deeper than the deepest.
   auto& pairs = workspace.pairs;

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace springtower {
@@ -43,7 +44,9 @@ double overlapDepth(const ParticleArray& position, std::size_t first, std::size_
 
 /// The deepest penetration among all pairs of blocks and, with a floor, of blocks below z = 0; from geometry only, without any
 /// slop. Near pairs come from one sort and sweep; pairs are tested in full only if their bounding boxes overlap by more than the
-/// deepest pair found so far.
-Penetration maxPenetration(const ParticleArray& position, bool floor, PenetrationWorkspace& workspace);
+/// deepest pair found so far. `fixed` is [blocks], 1 where a block is fixed, or empty: fixed blocks may lie in one another and in
+/// the floor.
+Penetration maxPenetration(const ParticleArray& position, bool floor, PenetrationWorkspace& workspace,
+                           std::span<const std::uint8_t> fixed = {});
 
 }  // namespace springtower

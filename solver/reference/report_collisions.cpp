@@ -5,6 +5,7 @@
 #include "narrowphase/exact/time_of_impact.h"
 #include "narrowphase/separation.h"
 #include "solver/reference/report_response.h"
+#include "solver/world/driven_blocks.h"
 
 #include <algorithm>
 #include <array>
@@ -22,7 +23,8 @@ struct Path {
   CornerView low;  // the box that each corner sweeps
   CornerView high;
 
-  Path(const IslandStep& step, std::int32_t b) : block(b), moves(step.simulation.asleep[static_cast<std::size_t>(b)] == 0) {
+  Path(const IslandStep& step, std::int32_t b)
+      : block(b), moves(step.simulation.asleep[static_cast<std::size_t>(b)] == 0 || isDriven(step, b)) {
     const auto at = static_cast<std::size_t>(b);
     const ReportState& report = step.engine.report;
     const ParticleArray& lies = step.simulation.state.position;
@@ -238,6 +240,7 @@ bool collideBlocks(IslandStep& step, std::size_t pairAt) {
 void resolveCollisions(IslandStep& step) {
   const Engine& engine = step.engine;
   for (const std::int32_t block : step.blocks) layPath(step, static_cast<std::size_t>(block));
+  for (const BlockPair& driven : step.driven) layPath(step, static_cast<std::size_t>(driven.b));
   bool any = true;
   for (int pass = 0; any && pass < step.simulation.scene.settings.reportIterations; ++pass) {
     ++step.counters.responseIterations;

@@ -2,6 +2,7 @@
 
 #include "core/tuning.h"
 #include "solver/block/inertia.h"
+#include "solver/world/driven_blocks.h"
 
 #include <algorithm>
 #include <array>
@@ -53,8 +54,8 @@ void note(IslandStep& step, const ReportContact& contact) {
   } else {
     same->impulse += contact.impulse;
   }
-  if (!firstSleeps && !sleeps(contact.second)) return;
   const std::int32_t sleeper = firstSleeps ? contact.first : contact.second;
+  if (!isSleeper(simulation, sleeper)) return;
   const double particle = simulation.model.mass[static_cast<std::size_t>(sleeper)] / static_cast<double>(kCorners);
   const double speed =
       tuning::kReportEnablingSpeed * std::sqrt(simulation.scene.gravity.magnitude * simulation.lengths.blockHeight_m);
@@ -80,7 +81,7 @@ bool moves(const IslandStep& step, const ReportSide& side) {
 
 Vec3 velocityOf(const IslandStep& step, const ReportSide& side) {
   Vec3 sum = Vec3::Zero();
-  if (!moves(step, side)) return sum;
+  if (!moves(step, side) && !isDriven(step, side.block)) return sum;
   for (std::size_t i = 0; i < side.corner.size(); ++i) {
     sum += side.weight[i] *
            step.simulation.state.velocity.at(static_cast<std::size_t>(side.block), static_cast<std::size_t>(side.corner[i]));

@@ -3,9 +3,11 @@
 #include "solver/contact/evaluate_forces.h"
 #include "solver/reference/report_collisions.h"
 #include "solver/reference/report_response.h"
+#include "solver/world/driven_blocks.h"
 #include "solver/world/stage_clock.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace springtower {
 
@@ -18,8 +20,11 @@ void addToCorners(ParticleArray& force, const ReportSide& side, const Vec3& tota
 }
 
 double particleMass(const BlockModel& model, const ReportContact& contact) {
-  double mass = model.mass[static_cast<std::size_t>(contact.first)];
-  if (contact.second >= 0) mass = std::min(mass, model.mass[static_cast<std::size_t>(contact.second)]);
+  double mass = std::numeric_limits<double>::infinity();
+  for (const std::int32_t block : {contact.first, contact.second}) {
+    if (block >= 0 && !model.isFixed(static_cast<std::size_t>(block)))
+      mass = std::min(mass, model.mass[static_cast<std::size_t>(block)]);
+  }
   return mass / static_cast<double>(kCorners);
 }
 
@@ -52,6 +57,17 @@ void addFriction(IslandStep& step) {
   }
 }
 
+// The mean velocities of driven blocks in the step that comes, from where they are.
+void startDrivenPaths(IslandStep& step) {
+  if (step.driven.empty()) return;
+  placeDriven(step, step.time_s, step.time_s + step.drift_s, DrivenVelocity::mean);
+  for (const BlockPair& driven : step.driven) {
+    const auto b = static_cast<std::size_t>(driven.b);
+    for (std::size_t a = 0; a < 3; ++a)
+      std::copy_n(step.engine.memo.previous.values(a, b), kCorners, step.simulation.state.position.values(a, b));
+  }
+}
+
 }  // namespace
 
 // The 2003 report's step (its Figure 5.2): springs, gravity and friction give the next velocities (Eq. 4.4), the collision loop
@@ -73,6 +89,7 @@ void stepReport(IslandStep& step) {
     }
   }
   clock.lap(Stage::integration);
+  startDrivenPaths(step);
   resolveCollisions(step);
   clock.lap(Stage::cubicTests);
   moveByVelocities(step);

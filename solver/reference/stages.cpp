@@ -1,6 +1,7 @@
 #include "solver/reference/stages.h"
 
 #include "solver/contact/evaluate_forces.h"
+#include "solver/world/driven_blocks.h"
 #include "solver/world/stage_clock.h"
 
 #include <algorithm>
@@ -9,6 +10,7 @@ namespace springtower {
 
 void stageAcceleration(IslandStep& step, const MotionState& source, const ParticleArray& carried, double advance_s, bool commit,
                        ParticleArray& acceleration) {
+  if (!commit) placeDriven(step, step.time_s, step.time_s + advance_s);
   evaluateForces(step, source, carried, advance_s, commit ? PointUpdate::store : PointUpdate::discard);
   StageClock clock(step.times);
   for (const std::int32_t block : step.blocks) {

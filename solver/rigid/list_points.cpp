@@ -6,6 +6,7 @@
 #include "solver/rigid/constraints.h"
 #include "solver/rigid/warm_start.h"
 #include "solver/world/checkpoint.h"
+#include "solver/world/driven_blocks.h"
 
 #include <algorithm>
 #include <array>
@@ -27,7 +28,7 @@ PairBodies bodiesOf(const IslandStep& step, const RigidIsland& island, std::int3
   PairBodies of{pair, {key.a, key.b}, {}};
   for (std::size_t s = 0; s < 2; ++s) {
     const std::int32_t block = of.block[s];
-    const bool moves = block >= 0 && !sleeps(step.simulation, block);
+    const bool moves = !sleeps(step.simulation, block) || isDriven(step, block);
     of.body[s] = moves ? step.engine.scratch.nodeOf[static_cast<std::size_t>(block)] : unmovedBody(island);
   }
   return of;
@@ -188,7 +189,8 @@ void removeFastFromSteady(RigidIsland& island) {
 double pathOf(const IslandStep& step, const PairBodies& of) {
   double path = 0.0;
   for (const std::int32_t block : of.block) {
-    if (block >= 0 && !sleeps(step.simulation, block)) path += step.engine.scratch.path[static_cast<std::size_t>(block)];
+    if (!sleeps(step.simulation, block) || isDriven(step, block))
+      path += step.engine.scratch.path[static_cast<std::size_t>(block)];
   }
   return path;
 }

@@ -138,6 +138,7 @@ bool isDeep(const IslandStep& step, const RigidIsland& island) {
 double kineticEnergy(const std::vector<RigidBody>& bodies) {
   double energy = 0.0;
   for (const RigidBody& body : bodies) {
+    if (body.inverseMass == 0.0) continue;  // driven
     const Vec3 spin = body.axes.transpose() * body.spin;
     energy += 0.5 * (body.velocity.squaredNorm() / body.inverseMass + spin.dot(body.moment * spin));
   }
@@ -184,7 +185,7 @@ void runPasses(IslandStep& step, RigidIsland& island, int passes, bool push) {
 int rigidModePasses(const IslandStep& step, const RigidIsland& island) {
   if (isDeep(step, island)) return tuning::kDeepOverlapPasses;
   double mass = 0.0;
-  for (const RigidBody& body : island.bodies) mass += 1.0 / body.inverseMass;
+  for (const RigidBody& body : island.bodies) mass += body.inverseMass > 0.0 ? 1.0 / body.inverseMass : 0.0;
   const Lengths& lengths = step.simulation.lengths;
   const double slow = tuning::kRigidEntrySpeed * lengths.blockHeight_m / lengths.fallTime_s;
   return 2.0 * island.energyBefore_j < mass * slow * slow ? tuning::kSlowIslandPasses : 1;
@@ -199,6 +200,7 @@ void chooseFriction(const Scene& scene, PointList& list) {
 void moveBodies(IslandStep& step, RigidIsland& island) {
   for (RigidBody& body : island.bodies) {
     moveFreely(body, step.drift_s);
+    if (body.inverseMass == 0.0) continue;  // driven
     if (!isRigid(step.simulation.scene.settings.method) && !body.pushed) {
       // In free flight: moves by its mean velocity, not by that of the step's end.
       const Vec3 lag = 0.5 * step.drift_s * step.drift_s * step.gravity;
@@ -237,7 +239,9 @@ void stepImpulses(IslandStep& step, RigidIsland& island) {
   readMovers(island);
   runPasses(step, island, scene.settings.iterations, false);
   // Not in the rigid methods: there, blocks of a stack move by such slow pushes only, and the clamp would suppress them.
-  if (rigidMode && island.touches) removeAddedEnergy(island.bodies, kineticEnergy(island.bodies) - island.energyBefore_j);
+  // Nor with a driven block, which does work.
+  if (rigidMode && island.touches && step.driven.empty())
+    removeAddedEnergy(island.bodies, kineticEnergy(island.bodies) - island.energyBefore_j);
 }
 
 }  // namespace springtower

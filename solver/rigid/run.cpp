@@ -11,6 +11,7 @@
 #include "solver/rigid/methods.h"
 #include "solver/rigid/warm_start.h"
 #include "solver/world/checkpoint.h"
+#include "solver/world/driven_blocks.h"
 #include "solver/world/stage_clock.h"
 
 #include <Eigen/LU>
@@ -29,6 +30,34 @@ Eigen::Matrix3d momentOf(const Simulation& simulation, std::size_t block, const 
     moment += arm.squaredNorm() * Eigen::Matrix3d::Identity() - arm * arm.transpose();
   }
   return simulation.model.mass[block] / inverseMass(simulation.scene.settings.inertia).own * moment;
+}
+
+// Driven blocks are bodies behind those of the island, of no inverse mass and inertia.
+void readDriven(IslandStep& step, RigidIsland& island) {
+  for (const BlockPair& driven : step.driven) {
+    const auto b = static_cast<std::size_t>(driven.b);
+    step.engine.scratch.nodeOf[b] = static_cast<std::int32_t>(island.bodies.size());
+    island.bodies.emplace_back().radius_m = 0.5 * step.simulation.model.dimensions[b].norm();
+  }
+}
+
+// Gives them the poses at a time (s), and the velocities that move them to those at the end of a step (s).
+void driveBodies(IslandStep& step, double at_s, double step_s) {
+  if (step.driven.empty()) return;
+  RigidIsland& island = rigidIslandOf(step);
+  const Scene& scene = step.simulation.scene;
+  for (const BlockPair& driven : step.driven) {
+    const auto b = static_cast<std::size_t>(driven.b);
+    RigidBody& body = island.bodies[static_cast<std::size_t>(step.engine.scratch.nodeOf[b])];
+    const BlockSpec& spec = scene.blocks[b];
+    const DrivenPose now = drivenPose(scene.drives, driven.b, spec.centre, body.radius_m, at_s);
+    const DrivenPose next = drivenPose(scene.drives, driven.b, spec.centre, body.radius_m, at_s + step_s);
+    const Eigen::AngleAxisd turn(next.turn * now.turn.conjugate());
+    body.place = now.centre;
+    body.axes = (now.turn * spec.orientation).toRotationMatrix();
+    body.velocity = (next.centre - now.centre) / step_s;
+    body.spin = turn.angle() / step_s * turn.axis();
+  }
 }
 
 void readPoses(IslandStep& step) {
@@ -58,6 +87,7 @@ void readPoses(IslandStep& step) {
     body.radius_m = Vec3(body.corner[0][0], body.corner[1][0], body.corner[2][0]).norm();
     step.engine.scratch.nodeOf[b] = static_cast<std::int32_t>(i);
   }
+  readDriven(step, island);
 }
 
 SPRINGTOWER_KERNEL
@@ -119,6 +149,8 @@ void stepThroughSubsteps(IslandStep& step, double begin_s, int substeps, bool ag
   for (int i = 0; i < substeps; ++i) {
     step.time_s = begin_s + i * substep_s;
     step.gravity = step.simulation.scene.gravity.at(step.time_s);
+    driveBodies(step, step.time_s, substep_s);
+    if (i > 0) placeDriven(step, begin_s, step.time_s);
     if (i > 0) addOutrun(step, island, step_s);
     // Both what is listed now and the hand's force follow the positions of the substep.
     if (i > 0 && (!island.fastPairs.empty() || holdsTether(step)))
@@ -202,7 +234,9 @@ void applyForces(IslandStep& step) {
   RigidIsland& island = rigidIslandOf(step);
   // First, as its dashpots would otherwise act against the velocity that gravity adds in this step.
   if (holdsTether(step)) applyTether(step);
-  for (RigidBody& body : island.bodies) body.velocity += step.drift_s * step.gravity;
+  for (RigidBody& body : island.bodies) {
+    if (body.inverseMass > 0.0) body.velocity += step.drift_s * step.gravity;
+  }
   const std::int32_t own = step.engine.memo.islands.islandOf[static_cast<std::size_t>(step.blocks.front())];
   for (const UserForce& user : step.simulation.scene.forces) {
     if (!user.actsAt(step.time_s)) continue;
@@ -219,6 +253,12 @@ void applyForces(IslandStep& step) {
 
 void moveFreely(RigidBody& body, double step_s) {
   body.place += step_s * body.velocity;
+  if (body.inverseMass == 0.0) {  // driven
+    turnAxes(step_s * body.spin, body.axes);
+    body.moved += step_s * body.velocity;
+    body.turned += step_s * body.spin;
+    return;
+  }
   const auto spinOf = [&](const Vec3& momentum) {
     return Vec3(body.axes * (body.inverseMoment * (body.axes.transpose() * momentum)));
   };
@@ -251,14 +291,17 @@ bool runSteps(IslandStep& step, int steps, int substeps, double begin_s) {
     const double at_s = simulation.time_s + begin_s + i * step.drift_s;
     step.time_s = at_s;
     step.gravity = simulation.scene.gravity.at(at_s);
+    driveBodies(step, at_s, sequential ? step.drift_s / substeps : step.drift_s);
     saveStep(step);
     for (int repeat = 0;; ++repeat) {
       const std::uint64_t born = step.counters.contactsCreated;
+      placeDriven(step, at_s, at_s);
       if (sequential) {
         stepThroughSubsteps(step, at_s, substeps, repeat > 0);
       } else {
         stepOnce(step);
       }
+      placeDriven(step, at_s, at_s + step.drift_s);
       inside = findContacts(step);
       const bool met = sequential ? hasUncoveredContact(step, island) : born != step.counters.contactsCreated;
       if (!inside || !met || repeat == tuning::kMaxRigidStepRepeats) break;

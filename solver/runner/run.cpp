@@ -84,8 +84,10 @@ class Recorder {
     const std::vector<ContactForce> contacts = contactForces(simulation);
     result_.imbalance = largestImbalance(imbalances(simulation, contacts));
     result_.outsideCone_n = farthestOutsideCone(simulation, contacts);
-    result_.asleepBlocks = static_cast<std::size_t>(std::count(simulation.asleep.begin(), simulation.asleep.end(), 1));
-    result_.awakeBlocks = simulation.asleep.size() - result_.asleepBlocks;
+    const auto sleeping = std::count(simulation.asleep.begin(), simulation.asleep.end(), 1);
+    const auto fixed = std::count(simulation.model.fixed.begin(), simulation.model.fixed.end(), 1);
+    result_.asleepBlocks = static_cast<std::size_t>(sleeping - fixed);
+    result_.awakeBlocks = simulation.asleep.size() - static_cast<std::size_t>(sleeping);
     result_.stateHash = stateHash(simulation);
     return std::move(result_);
   }
@@ -104,7 +106,7 @@ class Recorder {
 
   void measure(const Simulation& simulation) {
     const MotionState& state = simulation.state;
-    now_.penetration = maxPenetration(state.position, simulation.scene.floor, workspace_);
+    now_.penetration = maxPenetration(state.position, simulation.scene.floor, workspace_, simulation.model.fixed);
     if (now_.penetration.depth > result_.deepest.depth) {
       result_.deepest = now_.penetration;
       result_.deepestTime_s = simulation.time_s;

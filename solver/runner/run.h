@@ -69,7 +69,7 @@ struct RunResult {
   std::optional<double> maxEnergyRise;  ///< largest rise of the total energy in a frame, over the magnitude of the initial total
   Imbalance imbalance;                  ///< largest at the end
   double outsideCone_n = 0.0;           ///< N, of the worst contact point at the end
-  std::size_t asleepBlocks = 0;         ///< at the end
+  std::size_t asleepBlocks = 0;         ///< at the end, without fixed ones
   std::size_t awakeBlocks = 0;          ///< at the end
   std::uint64_t stateHash = 0;          ///< at the end
   std::vector<MoveResult> moves;        ///< of the scene's moves that have ended

@@ -95,8 +95,7 @@ void recordSleepLoads(Simulation& simulation, std::span<const std::uint8_t> stay
     if (!falls(pair.a) && !falls(pair.b)) continue;
     const ContactWrench now = pushOnA(simulation, at);
     const SleepLoad before = sleepLoadOf(engine, at);
-    const std::int32_t sleeper =
-        pair.b < 0 ? -1 : (sleeps(simulation, pair.a) ? pair.a : (sleeps(simulation, pair.b) ? pair.b : -1));
+    const std::int32_t sleeper = isSleeper(simulation, pair.a) ? pair.a : (isSleeper(simulation, pair.b) ? pair.b : -1);
     if (sleeper >= 0) {
       const auto s = static_cast<std::size_t>(sleeper);
       const double most = tuning::kSleepImbalance * weightOf(simulation, sleeper);
@@ -120,7 +119,8 @@ bool findWakeCandidates(Simulation& simulation) {
   for (const std::int32_t position : engine.memo.islandPairs) {
     const auto at = static_cast<std::size_t>(position);
     const BlockPair& pair = engine.pairs.key[at];
-    if (pair.b < 0 || sleeps(simulation, pair.a) == sleeps(simulation, pair.b)) continue;
+    if (isFixed(simulation, pair.a) || isFixed(simulation, pair.b) || sleeps(simulation, pair.a) == sleeps(simulation, pair.b))
+      continue;
     const std::int32_t sleeper = sleeps(simulation, pair.a) ? pair.a : pair.b;
     LoadChange& change = engine.scratch.loadChange[static_cast<std::size_t>(sleeper)];
     if (engine.scratch.joined[static_cast<std::size_t>(sleeper)] == 0) {

@@ -131,7 +131,8 @@ void wakeUnbalancedCluster(Simulation& simulation) {
   engine.scratch.touchingEdges.clear();
   for (std::size_t at = 0; at < engine.pairs.size(); ++at) {
     const BlockPair& pair = engine.pairs.key[at];
-    if (pair.b >= 0 && engine.pairs.touches(at)) engine.scratch.touchingEdges.push_back({pair.a, pair.b});
+    const bool fixed = isFixed(simulation, pair.a) || isFixed(simulation, pair.b);
+    if (!fixed && engine.pairs.touches(at)) engine.scratch.touchingEdges.push_back({pair.a, pair.b});
   }
   engine.scratch.touched.resize(simulation.asleep.size());
   findRoots(engine);
@@ -157,6 +158,8 @@ void putToSleep(Simulation& simulation) {
       return false;
     }
     const double frame_s = simulation.scene.settings.frame_s;
+    const auto isHere = [&](const NearDriven& near) { return near.block == block; };
+    if (std::any_of(engine.scratch.nearDriven.begin(), engine.scratch.nearDriven.end(), isHere)) return false;
     return std::none_of(simulation.scene.forces.begin(), simulation.scene.forces.end(), [&](const UserForce& user) {
       return user.block == block && user.actsWithin(simulation.time_s - frame_s, simulation.time_s - frame_s + frame_s);
     });
@@ -198,7 +201,7 @@ void putToSleep(Simulation& simulation) {
 }  // namespace
 
 void wake(Simulation& simulation, std::size_t block, WakeReason reason) {
-  if (simulation.asleep[block] == 0) return;
+  if (simulation.asleep[block] == 0 || simulation.model.isFixed(block)) return;
   ++simulation.wakes[static_cast<std::size_t>(reason)];
   simulation.asleep[block] = 0;
   simulation.engine->scratch.inParts[block] = simulation.engine->scratch.part.begin_s > 0.0 ? 1 : 0;  // at rest at any time
@@ -211,7 +214,7 @@ void wake(Simulation& simulation, std::size_t block, WakeReason reason) {
 
 void wakeForInputs(Simulation& simulation) {
   Engine& engine = *simulation.engine;
-  if (engine.sleep.awakeCount == simulation.asleep.size()) return;
+  if (engine.sleep.awakeCount == engine.sleep.movableCount) return;
   const double frame_s = simulation.scene.settings.frame_s;
   const Vec3 gravity = simulation.scene.gravity.at(simulation.time_s + frame_s);
   if ((gravity - engine.sleep.gravity).norm() > tuning::kWakeGravityChange * simulation.scene.gravity.magnitude) {
@@ -225,11 +228,11 @@ void wakeForInputs(Simulation& simulation) {
   if (simulation.tether.block != kFloor) wake(simulation, index(simulation.tether.block), WakeReason::hand);
 }
 
-bool wakeOnImpact(Simulation& simulation) {
+namespace {
+
+// Adds the sleeping blocks to engine.scratch.toWake that awake ones may hit in this frame, or slide on.
+void findStruck(Simulation& simulation) {
   Engine& engine = *simulation.engine;
-  if (simulation.scene.settings.sleep != Sleep::on || engine.sleep.awakeCount == simulation.asleep.size()) return false;
-  const StageTimer timer(simulation.stageTimes, Stage::islandsAndSleep);
-  engine.scratch.toWake.clear();
   engine.scratch.touched.assign(simulation.asleep.size(), 0);
   for (const std::int32_t position : engine.memo.islandPairs) {
     const auto at = static_cast<std::size_t>(position);
@@ -241,17 +244,32 @@ bool wakeOnImpact(Simulation& simulation) {
   for (const std::int32_t position : engine.memo.islandPairs) {
     const auto at = static_cast<std::size_t>(position);
     const BlockPair& pair = engine.pairs.key[at];
-    if (pair.b < 0 || sleeps(simulation, pair.a) == sleeps(simulation, pair.b)) continue;
-    const bool sleepsA = sleeps(simulation, pair.a);
+    if (isSleeper(simulation, pair.a) == isSleeper(simulation, pair.b)) continue;
+    const bool sleepsA = isSleeper(simulation, pair.a);
     const std::int32_t awake = sleepsA ? pair.b : pair.a;
+    if (isFixed(simulation, awake)) continue;
     if (mayBeHit(simulation, at, awake, engine.scratch.touched[static_cast<std::size_t>(awake)] != 0))
       engine.scratch.toWake.push_back({sleepsA ? pair.a : pair.b, WakeReason::impact});
   }
+}
+
+}  // namespace
+
+bool wakeOnImpact(Simulation& simulation) {
+  Engine& engine = *simulation.engine;
+  const bool anyMayBeHit = simulation.scene.settings.sleep == Sleep::on && engine.sleep.awakeCount != engine.sleep.movableCount;
+  if (!anyMayBeHit && engine.scratch.nearDriven.empty()) return false;
+  const StageTimer timer(simulation.stageTimes, Stage::islandsAndSleep);
+  engine.scratch.toWake.clear();
+  for (const NearDriven& near : engine.scratch.nearDriven) {
+    if (isSleeper(simulation, near.block)) engine.scratch.toWake.push_back({near.block, WakeReason::impact});
+  }
+  if (anyMayBeHit) findStruck(simulation);
   if (engine.scratch.toWake.empty()) return false;
   engine.scratch.touchingEdges.clear();
   for (std::size_t at = 0; at < engine.pairs.size(); ++at) {
     const BlockPair& pair = engine.pairs.key[at];
-    if (pair.b >= 0 && engine.pairs.touches(at) && sleeps(simulation, pair.a) && sleeps(simulation, pair.b))
+    if (engine.pairs.touches(at) && isSleeper(simulation, pair.a) && isSleeper(simulation, pair.b))
       engine.scratch.touchingEdges.push_back({pair.a, pair.b});
   }
   engine.scratch.touched.resize(simulation.asleep.size());
@@ -266,7 +284,7 @@ bool wakeOnImpact(Simulation& simulation) {
 bool wakeFailedSupports(Simulation& simulation) {
   Engine& engine = *simulation.engine;
   engine.scratch.toWake.clear();
-  if (engine.sleep.awakeCount == simulation.asleep.size()) return false;
+  if (engine.sleep.awakeCount == engine.sleep.movableCount) return false;
   const StageTimer timer(simulation.stageTimes, Stage::islandsAndSleep);
   if (!findWakeCandidates(simulation)) return false;
   wakeRequested(simulation);
@@ -295,7 +313,10 @@ bool allAsleep(const Simulation& simulation) {
 
 bool atRest(const Simulation& simulation) {
   const double needed = restNeeded(simulation);
-  return std::all_of(simulation.restTime_s.begin(), simulation.restTime_s.end(), [&](double time) { return time >= needed; });
+  for (std::size_t b = 0; b < simulation.restTime_s.size(); ++b) {
+    if (!(simulation.restTime_s[b] >= needed) && !simulation.model.isFixed(b)) return false;
+  }
+  return true;
 }
 
 }  // namespace springtower

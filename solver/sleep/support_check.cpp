@@ -23,8 +23,8 @@ void listPairsOfSleepers(Simulation& simulation) {
     for (std::size_t p = 0; p < engine.pairs.size(); ++p) {
       if (!engine.pairs.touches(p)) continue;
       const BlockPair& pair = engine.pairs.key[p];
-      if (sleeps(simulation, pair.a)) visit(static_cast<std::size_t>(pair.a), p);
-      if (pair.b >= 0 && sleeps(simulation, pair.b)) visit(static_cast<std::size_t>(pair.b), p);
+      if (isSleeper(simulation, pair.a)) visit(static_cast<std::size_t>(pair.a), p);
+      if (isSleeper(simulation, pair.b)) visit(static_cast<std::size_t>(pair.b), p);
     }
   };
   check.start.assign(simulation.asleep.size() + 1, 0);
@@ -62,7 +62,7 @@ void listSleepers(Simulation& simulation, const Vec3& up) {
     const std::int32_t block = check.blocks[i];
     forEachPair(engine, block, [&](std::int32_t, const BlockPair& pair) {
       const std::int32_t other = pair.a == block ? pair.b : pair.a;
-      if (other < 0 || !sleeps(simulation, other) || engine.scratch.joined[static_cast<std::size_t>(other)] != 0) return;
+      if (!isSleeper(simulation, other) || engine.scratch.joined[static_cast<std::size_t>(other)] != 0) return;
       engine.scratch.joined[static_cast<std::size_t>(other)] = 1;
       engine.scratch.loadChange[static_cast<std::size_t>(other)] = {};
       check.blocks.push_back(other);
@@ -218,7 +218,9 @@ bool findFailedSupports(Simulation& simulation) {
     for (; above < check.blocks.size() && heightOf(simulation, check.blocks[above], up) > level; ++above) {
       addToGroups(simulation, check.blocks[above], up);
     }
-    const auto isOver = [&](std::int32_t block) { return block >= 0 && heightOf(simulation, block, up) > level; };
+    const auto isOver = [&](std::int32_t block) {
+      return !isFixed(simulation, block) && heightOf(simulation, block, up) > level;
+    };
     std::erase_if(check.open, [&](std::int32_t at) {
       const BlockPair& pair = engine.pairs.key[static_cast<std::size_t>(at)];
       return isOver(pair.a) && isOver(pair.b);

@@ -117,12 +117,15 @@ void addPoint(FacePair& facing, const Vec3& place, double gap, double size, doub
   if (!known) facing.points.push_back({place, gap > touch ? gap : 0.0});
 }
 
-std::optional<FacePair> facingOf(const std::vector<OrientedBox>& boxes, std::size_t first, std::size_t second, double reach) {
+std::optional<FacePair> facingOf(const Scene& scene, const std::vector<OrientedBox>& boxes, std::size_t first, std::size_t second,
+                                 double reach) {
+  if (scene.blocks[first].fixed && scene.blocks[second].fixed) return {};
   const double size = 2.0 * std::min(boxes[first].half.minCoeff(), boxes[second].half.minCoeff());
   Axis axis = bestAxis(boxes[first], boxes[second], tuning::kStaticFaceSlack * size);
   if (axis.gap > std::max(reach, tuning::kStaticTouchGap * size)) return {};
-  // The block that lies higher along the axis is the upper one.
-  if (axis.direction.z() < -tuning::kStaticParallelSine) {
+  // The block that lies higher along the axis is the upper one; on a fixed block, which is ground, any.
+  const bool onFixed = scene.blocks[first].fixed || scene.blocks[second].fixed;
+  if (onFixed ? scene.blocks[first].fixed : axis.direction.z() < -tuning::kStaticParallelSine) {
     std::swap(first, second);
     axis = {-axis.direction, axis.gap, axis.ofB, axis.ofA};
   }
@@ -175,10 +178,11 @@ std::vector<FacePair> facingBlocks(const Scene& scene, double reach_m) {
   std::vector<FacePair> result;
   const double margin = std::max(reach_m, tuning::kStaticTouchGap * thickest);
   for (std::size_t b = 0; scene.floor && b < boxes.size(); ++b) {
+    if (scene.blocks[b].fixed) continue;
     if (const auto facing = facingFloor(boxes[b], b, reach_m)) result.push_back(*facing);
   }
   forEachOverlap(low, high, margin, [&](std::size_t a, std::size_t b) {
-    if (const auto facing = facingOf(boxes, a, b, reach_m)) result.push_back(*facing);
+    if (const auto facing = facingOf(scene, boxes, a, b, reach_m)) result.push_back(*facing);
   });
   std::sort(result.begin(), result.end(),
             [](const FacePair& a, const FacePair& b) { return std::pair(a.upper, a.lower) < std::pair(b.upper, b.lower); });

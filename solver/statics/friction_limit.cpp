@@ -36,7 +36,7 @@ double frictionLimit_n(const Simulation& simulation, std::span<const ContactForc
       const double angle = 2.0 * std::numbers::pi * side / tuning::kFrictionLimitSides;
       const std::array<double, 2> friction = {most * std::cos(angle), most * std::sin(angle)};
       const auto push = [&](BlockId on, double sign, const Vec3& place) {
-        if (on == kFloor) return;
+        if (on == kFloor || simulation.model.isFixed(index(on))) return;
         const int first = kRows * static_cast<int>(index(on));
         const Vec3 arm = (place - centre(simulation.state.position, index(on))) / length_m;
         columns.add(first, sign * friction[0]);

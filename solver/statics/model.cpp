@@ -41,23 +41,30 @@ StaticsModel staticsModel(const Scene& scene, std::span<const FacePair> facings)
   StaticsModel model;
   double mass = 0.0;
   double height = 0.0;
+  double count = 0.0;  // of blocks that are not fixed
   for (const BlockSpec& block : scene.blocks) {
+    if (block.fixed) continue;
     mass += block.mass;
     height += block.dimensions.minCoeff();
+    count += 1.0;
   }
-  const auto count = static_cast<double>(scene.blocks.size());
+  if (count == 0.0) throw InputError("statics: found fixed blocks only, allowed is at least one that is not");
   model.forceUnit_n = mass / count * scene.gravity.magnitude;
   model.lengthUnit_m = height / count;
   model.friction = scene.staticFriction;
   for (const BlockSpec& block : scene.blocks) {
     model.centre.push_back(block.centre);
-    model.weight.push_back(block.mass * count / mass);
+    model.weight.push_back(block.fixed ? 0.0 : block.mass * count / mass);
   }
   for (std::size_t f = 0; f < facings.size(); ++f) {
-    const Eigen::Matrix3d frame = frameOf(facings[f].normal);
+    const auto isGround = [&](BlockId block) { return block == kFloor || scene.blocks[index(block)].fixed; };
+    const bool upsideDown = isGround(facings[f].upper);
+    if (upsideDown && isGround(facings[f].lower)) continue;
+    const auto upper = static_cast<std::int32_t>(upsideDown ? facings[f].lower : facings[f].upper);
+    const auto lower = upsideDown || isGround(facings[f].lower) ? -1 : static_cast<std::int32_t>(facings[f].lower);
+    const Eigen::Matrix3d frame = frameOf(upsideDown ? Vec3(-facings[f].normal) : facings[f].normal);
     for (const FacingPoint& point : facings[f].points) {
-      model.points.push_back({static_cast<std::int32_t>(facings[f].upper), static_cast<std::int32_t>(facings[f].lower),
-                              point.place, frame, point.gap_m, f});
+      model.points.push_back({upper, lower, point.place, frame, point.gap_m, f});
     }
   }
   return model;

@@ -15,7 +15,7 @@ using Vec6 = Eigen::Matrix<double, 6, 1>;
 /// A point at which one block may push another, or the floor a block.
 struct ForcePoint {
   std::int32_t upper = -1;
-  std::int32_t lower = -1;  ///< -1: the floor
+  std::int32_t lower = -1;  ///< -1: the floor, or a fixed block
   Vec3 place = Vec3::Zero();
   Eigen::Matrix3d frame = Eigen::Matrix3d::Identity();  ///< columns: the normal (from lower to upper) and two tangents
   double gap_m = 0.0;
@@ -29,7 +29,7 @@ struct ForcePoint {
 /// block), A maps it to force and torque about its centre of every block, and w are the loads; all with six rows for each block.
 struct StaticsModel {
   std::vector<Vec3> centre;    ///< m
-  std::vector<double> weight;  ///< in mean block weights
+  std::vector<double> weight;  ///< in mean block weights; 0 for fixed blocks, on which no forces are counted
   std::vector<ForcePoint> points;
   double friction = 0.0;
   double forceUnit_n = 1.0;   ///< mean block weight

@@ -71,6 +71,7 @@ bool hasGaps(const StaticsModel& model) {
 Scene without(const Scene& scene, BlockId block) {
   Scene rest = scene;
   rest.forces.clear();
+  rest.drives.clear();
   rest.blocks.erase(rest.blocks.begin() + static_cast<std::ptrdiff_t>(index(block)));
   return rest;
 }
@@ -210,8 +211,9 @@ std::vector<BlockLoad> blockLoads(const StaticScene& scene, const ContactLoads& 
 
 Removal removalOf(const Scene& scene, BlockId block, double tolerance_deg) {
   const Scene rest = without(scene, block);
-  // Without blocks nothing falls.
-  if (rest.blocks.empty()) return {Rest::stands, {}};
+  // Without blocks that could, nothing falls.
+  if (std::all_of(rest.blocks.begin(), rest.blocks.end(), [](const BlockSpec& other) { return other.fixed; }))
+    return {Rest::stands, {}};
   const StaticScene statics = staticScene(rest);
   return {statics.rest, tiltMargin(statics, tolerance_deg)};
 }
@@ -225,6 +227,7 @@ std::vector<Removal> removals(const Scene& scene, double tolerance_deg) {
 std::optional<double> pullLimit(const StaticScene& scene, BlockId block, const Vec3& direction) {
   const StaticsModel& model = scene.model;
   if (scene.rest == Rest::falls) return {};
+  if (model.weight[index(block)] == 0.0) return std::numeric_limits<double>::infinity();  // fixed
   EquilibriumProgram program(model, scene.usable, model.gravityLoad(scene.gravity));
   Eigen::VectorXd pull = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(6 * model.blockCount()));
   pull.segment<3>(static_cast<Eigen::Index>(6 * index(block))) = direction;

@@ -36,6 +36,7 @@ struct IslandStep {
   bool sticks = false;                       ///< points that push stick, where there is friction at all
   double smoothing_j = 0.0;                  ///< of ContactStep
   SearchMonitor* monitor = nullptr;          ///< of the search for the equilibrium, or null
+  std::span<const BlockPair> driven{};       ///< fixed blocks near it that drives move in this frame, as the second of each
   bool unforced = false;                     ///< neither user forces nor the hand act: the equilibrium before the first frame
 };
 

@@ -65,8 +65,9 @@ struct Support {
 using Supports = std::vector<std::vector<Support>>;
 
 // Adds the lower one of two blocks to the supports of the upper one, if their outlines overlap and they do not stand beside one
-// another.
-void addSupport(const std::vector<Footprint>& footprints, std::size_t p, std::size_t q, Supports& below) {
+// another. A fixed block needs none.
+void addSupport(const Scene& scene, const std::vector<Footprint>& footprints, std::size_t p, std::size_t q, Supports& below) {
+  if (scene.blocks[p].fixed && scene.blocks[q].fixed) return;
   const AreaMoments overlap = areaMoments(overlapOf(footprints[p].outline, footprints[q].outline));
   if (overlap.area_m2 <= tuning::kMinOverlap * std::min(footprints[p].area_m2, footprints[q].area_m2)) return;
   const HeightSpan ofP = spanThrough(footprints[p].box, overlap.centroid);
@@ -75,6 +76,7 @@ void addSupport(const std::vector<Footprint>& footprints, std::size_t p, std::si
   const HeightSpan& lower = pIsLower ? ofP : ofQ;
   const HeightSpan& upper = pIsLower ? ofQ : ofP;
   if (lower.upper - upper.lower > 0.5 * std::min(lower.upper - lower.lower, upper.upper - upper.lower)) return;
+  if (scene.blocks[pIsLower ? q : p].fixed) return;
   below[pIsLower ? q : p].push_back({pIsLower ? p : q, overlap, lower.upper});
 }
 
@@ -121,7 +123,7 @@ void forEachBelow(const std::vector<Footprint>& footprints, const Supports& belo
 
 // The supports of each block: the highest blocks below it within its outline, with tops within half a block of the highest such
 // top.
-Supports supportsOf(const std::vector<Footprint>& footprints) {
+Supports supportsOf(const Scene& scene, const std::vector<Footprint>& footprints) {
   Supports below(footprints.size());
   const auto placeOf = [&](std::size_t b) { return footprints[b].box.centre; };
   const auto levelPlaceOf = [&](std::size_t b) { return Vec3(placeOf(b).x(), placeOf(b).y(), 0.0); };
@@ -132,7 +134,7 @@ Supports supportsOf(const std::vector<Footprint>& footprints) {
     return extents.lower[p] < extents.upper[q] && extents.lower[q] < extents.upper[p];
   };
   const auto visit = [&](std::size_t p, std::size_t q) {
-    if (meet(across, p, q)) addSupport(footprints, p, q, below);
+    if (meet(across, p, q)) addSupport(scene, footprints, p, q, below);
   };
   if (widestAxis(footprints.size(), placeOf) == 2) {
     forEachBelow(footprints, below, [&](std::size_t p, std::size_t q) {
@@ -167,7 +169,7 @@ bool isLevel(const BlockSpec& block) {
 
 // Height of a block above the highest of its supports, or the floor, if none of its sides is level; otherwise 0.
 double askewFall(const Scene& scene, const Footprint& footprint, const BlockSpec& block, const std::vector<Support>& supports) {
-  if (isLevel(block)) return 0.0;
+  if (block.fixed || isLevel(block)) return 0.0;
   if (supports.empty() && !scene.floor) return 0.0;
   double top = supports.empty() ? 0.0 : -1e300;
   for (const Support& support : supports) top = std::max(top, support.top_m);
@@ -248,7 +250,6 @@ void weigh(const Scene& scene, const std::vector<Footprint>& footprints, const S
     const double own = scene.blocks[b].mass * weighing;
     load[b] += own;
     if (isLevel(scene.blocks[b])) sums[stack].level_n += own;
-    estimate.askewFall_m = std::max(estimate.askewFall_m, askewFall(scene, footprints[b], scene.blocks[b], below[b]));
     const bool uneven = unevenness(below[b]) > tuning::kUnevenHeight * (footprints[b].upper_m - footprints[b].lower_m);
     sums[stack].anyUneven = sums[stack].anyUneven || uneven;
     double area_m2 = 0.0;
@@ -355,7 +356,12 @@ LoadEstimate estimateLoads(const Scene& scene) {
   std::vector<Footprint> footprints;
   footprints.reserve(count);
   for (const BlockSpec& block : scene.blocks) footprints.push_back(footprintOf(block));
-  const Supports below = supportsOf(footprints);
+  Supports below = supportsOf(scene, footprints);
+  for (std::size_t b = 0; b < count; ++b) {
+    estimate.askewFall_m = std::max(estimate.askewFall_m, askewFall(scene, footprints[b], scene.blocks[b], below[b]));
+    // What lies on fixed blocks lies on ground, and they join no stacks.
+    std::erase_if(below[b], [&](const Support& support) { return scene.blocks[support.block].fixed; });
+  }
   findStacks(below, estimate);
   std::vector<StackSums> sums(estimate.stacks.size());
   const std::vector<std::size_t> level = levelsOf(scene, below);
@@ -367,8 +373,9 @@ LoadEstimate estimateLoads(const Scene& scene) {
   weigh(scene, footprints, below, orderFromTop(scene, level), estimate, sums);
   const auto joints = findJoints(scene, footprints, below, level, estimate, sums);
   double heaviest_n = 0.0;
-  for (const BlockSpec& block : scene.blocks)
-    heaviest_n = std::max(heaviest_n, block.mass * scene.gravity.magnitude / tuning::kLoadedPoints);
+  for (const BlockSpec& block : scene.blocks) {
+    if (!block.fixed) heaviest_n = std::max(heaviest_n, block.mass * scene.gravity.magnitude / tuning::kLoadedPoints);
+  }
   for (std::size_t s = 0; s < sums.size(); ++s) {
     StackLoad& of = estimate.stacks[s];
     of.sway_n_m = swayStiffness(joints[s], sums[s]);
@@ -376,6 +383,9 @@ LoadEstimate estimateLoads(const Scene& scene) {
     of.contact_n *= concentration;
     of.floor_n = std::max(of.floor_n, heaviest_n) * concentration;
     of.edge_n = std::max(of.edge_n, heaviest_n) * concentration;
+  }
+  for (std::size_t b = 0; b < count; ++b) {
+    if (scene.blocks[b].fixed) estimate.stacks[static_cast<std::size_t>(estimate.stackOf[b])] = {};
   }
   return estimate;
 }

@@ -40,7 +40,7 @@ std::size_t ofReport(const ReportState& report) {
 }
 
 std::size_t ofModel(const BlockModel& model) {
-  std::size_t sum = sumOf(model.dimensions, model.mass);
+  std::size_t sum = sumOf(model.dimensions, model.mass, model.fixed);
   for (std::size_t g = 0; g < kSpringGroups; ++g)
     sum += sumOf(model.restLength[g], model.springStiffness[g], model.springDamping[g]);
   return sum;
@@ -96,7 +96,8 @@ std::size_t ofScratch(const Scratch& s) {
             s.freePosition, s.lostNeighbours, s.toWake, s.wakeRoots, s.pushed, s.loadChange, s.support.start, s.support.pairs,
             s.support.blocks, s.support.parent, s.support.open, s.support.groups, s.support.beneath, s.support.supports,
             s.touchingEdges, s.restless, s.parent, s.touched, s.joined, s.chunkCounters, s.chunkTimes, s.islandCounters,
-            s.islandTimes, s.islandOutcome, s.inParts, s.takesPart, s.byDuration, s.islandEdges, s.covered);
+            s.islandTimes, s.islandOutcome, s.inParts, s.takesPart, s.byDuration, s.islandEdges, s.covered, s.drivenNow,
+            s.sweepAsleep, s.nearDriven, s.drivenOfIslands, s.drivenMean);
   for (const MotionState& stage : s.stage) sum += bytesOf(stage);
   for (const ParticleArray& acceleration : s.stageAcceleration) sum += bytesOf(acceleration);
   sum += s.rigidIslands.indexBytes();

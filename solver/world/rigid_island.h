@@ -128,7 +128,7 @@ struct LcpWorkspace {
 
 /// Working data of an island of rigid blocks. Nothing in it outlives a step; its storage is reused.
 struct RigidIsland {
-  std::vector<RigidBody> bodies;  ///< [blocks of the island]
+  std::vector<RigidBody> bodies;  ///< [blocks of the island], then the driven blocks near it, whose inverse mass is 0
   std::vector<RigidContact> contacts;
   std::vector<SolverBody> movers;  ///< those of `bodies`, and one for what does not move
   // Of sequential impulses, in place of `contacts` (solver/rigid/list_points.h).

@@ -48,6 +48,13 @@ struct SupportCheckScratch {
   std::vector<SupportPoint> supports;
 };
 
+/// A block near one that drives move, and whether it moves through the frame in parts.
+struct NearDriven {
+  std::int32_t driven = -1;
+  std::uint8_t inParts = 0;
+  std::int32_t block = -1;
+};
+
 /// Working space of a frame: nothing in it is read before it is written in the same frame. Not in snapshots. Builds with
 /// assertions fill it with NaN when a frame begins (solver/world/poison); a test does so in every build.
 struct Scratch {
@@ -63,6 +70,11 @@ struct Scratch {
   std::vector<std::uint8_t> takesPart;        ///< 1 for the islands that are run now, [islands]
   std::vector<std::int32_t> byDuration;       ///< awake blocks, those in parts first
   std::vector<BlockPair> islandEdges;         ///< swept pairs of blocks that are at the same time of the frame
+  std::vector<std::int32_t> drivenNow;        ///< fixed blocks that drives move in this frame, ascending
+  std::vector<std::uint8_t> sweepAsleep;      ///< flags of sleep for the sweep, in which these count as awake, [blocks]
+  std::vector<NearDriven> nearDriven;         ///< blocks near them, by driven block
+  std::vector<BlockPair> drivenOfIslands;     ///< islands and driven blocks near them, ascending
+  ParticleArray drivenMean;                   ///< m/s, mean velocities of driven blocks in the last step, [blocks]
   std::vector<std::int32_t> watchedPairs;     ///< active pairs of each island, by position in islandPairs
   std::vector<double> path;                   ///< m, path of each block's fastest corner in the last step, [blocks]
   std::vector<double> assumedPath;            ///< m, upper bound of that path for which a list of active pairs is valid, [blocks]

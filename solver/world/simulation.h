@@ -36,7 +36,7 @@ struct Simulation {
   BlockStiffness stiffness;          ///< of contacts and springs, by block; part of the model
   int fixedSubsteps = 0;             ///< steps of every frame if the user gave them, otherwise 0
   int substeps = 0;                  ///< steps of the last frame (the most over its islands)
-  std::vector<std::uint8_t> asleep;  ///< 1 where a block sleeps, [blocks]
+  std::vector<std::uint8_t> asleep;  ///< 1 where a block sleeps, [blocks]; a fixed block always does
   std::vector<double> restTime_s;    ///< how long a block has been at rest, s, [blocks]; kept with sleep off as well
   Counters counters;
   StageTimes stageTimes;
@@ -56,6 +56,16 @@ void kick(Simulation& simulation, std::size_t block, const Vec3& velocity);
 /// Whether a block sleeps; the floor, numbered -1, always does.
 inline bool sleeps(const Simulation& simulation, std::int32_t block) {
   return block < 0 || simulation.asleep[static_cast<std::size_t>(block)] != 0;
+}
+
+/// Whether a block is fixed, so that nothing wakes it; the floor, numbered -1, is.
+inline bool isFixed(const Simulation& simulation, std::int32_t block) {
+  return block < 0 || simulation.model.isFixed(static_cast<std::size_t>(block));
+}
+
+/// Whether a block sleeps and may wake: neither the floor nor a fixed block.
+inline bool isSleeper(const Simulation& simulation, std::int32_t block) {
+  return sleeps(simulation, block) && !isFixed(simulation, block);
 }
 
 /// Whether every block sleeps.

@@ -4,7 +4,9 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <springtower/inputs.h>
 #include <springtower/scene.h>
+#include <springtower/world.h>
 #include <variant>
 
 namespace springtower::api {
@@ -85,6 +87,7 @@ void expectTheSame(const Scene& shown, const springtower::Scene& engine) {
     EXPECT_EQ(back.blocks[b].orientation.coeffs(), engine.blocks[b].orientation.coeffs());
     EXPECT_EQ(back.blocks[b].velocity, engine.blocks[b].velocity);
     EXPECT_EQ(back.blocks[b].spin, engine.blocks[b].spin);
+    EXPECT_EQ(back.blocks[b].fixed, engine.blocks[b].fixed);
     EXPECT_EQ(back.blocks[b].mass, engine.blocks[b].mass);
     EXPECT_EQ(back.blocks[b].row, engine.blocks[b].row);
     EXPECT_EQ(back.blocks[b].position, engine.blocks[b].position);
@@ -118,6 +121,37 @@ TEST(ApiScene, NamesAndFilesAreThoseOfTheEngine) {
   }
   ASSERT_EQ(scenarioList().size(), springtower::scenarios().size());
   EXPECT_THAT(scenarioList().front().usage, HasSubstr("tower:"));
+}
+
+TEST(ApiScene, FixesAndDrivesBlocks) {
+  Scene scene;
+  scene.blocks.resize(3);
+  scene.blocks[0].fixed = true;
+  scene.blocks[1].centre = {0.0, 0.0, 0.3};
+  scene.blocks[2].centre = {0.0, 0.0, 0.5};
+  scene.drives = {{.block = 1,
+                   .velocity_m_s = {1.0, 2.0, 3.0},
+                   .spin_rad_s = {4.0, 5.0, 6.0},
+                   .amplitude_m = {0.1, 0.2, 0.3},
+                   .frequency_hz = 7.0,
+                   .start_s = 8.0,
+                   .end_s = 9.0}};
+  EXPECT_NO_THROW(checkScene(scene));
+  const Scene back = toPublic(toEngine(scene));
+  EXPECT_TRUE(back.blocks[0].fixed);
+  EXPECT_TRUE(back.blocks[1].fixed) << "it is driven";
+  EXPECT_FALSE(back.blocks[2].fixed);
+  ASSERT_EQ(back.drives.size(), 1U);
+  EXPECT_EQ(back.drives[0].velocity_m_s, scene.drives[0].velocity_m_s);
+  EXPECT_EQ(back.drives[0].spin_rad_s, scene.drives[0].spin_rad_s);
+  EXPECT_EQ(back.drives[0].amplitude_m, scene.drives[0].amplitude_m);
+  EXPECT_EQ(back.drives[0].frequency_hz, 7.0);
+  EXPECT_EQ(back.drives[0].end_s, 9.0);
+  World world(scene);
+  EXPECT_THAT([&] { grab(world, 0, 5.0); }, ThrowsMessage<InputError>(HasSubstr("grab: block: found block 0, which is fixed")));
+  EXPECT_THAT([&] { kick(world, 1, {}); }, ThrowsMessage<InputError>(HasSubstr("kick: block: found block 1, which is fixed")));
+  EXPECT_THAT([&] { pushThroughFrame(world, 0, {}); },
+              ThrowsMessage<InputError>(HasSubstr("force: block: found block 0, which is")));
 }
 
 TEST(ApiScene, RefusesWhatIsNotAllowed) {

@@ -202,7 +202,7 @@ Course playAndMeasure(const Scene& scene, double limit_s, Record& record) {
   watch.afterFrame = [&](const Simulation& simulation) {
     energies.afterFrame(simulation);
     momenta.afterFrame(simulation);
-    const double depth_m = maxPenetration(simulation.state.position, scene.floor, workspace).depth;
+    const double depth_m = maxPenetration(simulation.state.position, scene.floor, workspace, simulation.model.fixed).depth;
     record.deepest_m = largerOrNan(record.deepest_m, depth_m);
   };
   Course course = playScene(scene, 1, limit_s, watch);

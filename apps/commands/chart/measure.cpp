@@ -267,7 +267,8 @@ class ChartRun {
     const bool wholeRun = scene == ChartScene::drop || scene == ChartScene::collapse;
     if (wholeRun || settled) {
       strain_ = std::max(strain_, maxStrain(simulation_.model, position));
-      penetration_m_ = std::max(penetration_m_, maxPenetration(position, simulation_.scene.floor, workspace_).depth);
+      penetration_m_ =
+          std::max(penetration_m_, maxPenetration(position, simulation_.scene.floor, workspace_, simulation_.model.fixed).depth);
     }
     if (!settled) return;
     if (settledPosition_.blockCount() == 0) {

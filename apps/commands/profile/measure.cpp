@@ -133,7 +133,8 @@ void warmUp(Measured& measured, const ProfileLimits& limits) {
   for (int frame = 0; frame < limits.frames && (frame < 2 || secondsBetween(begin, Clock::now()) < limits.sample_s); ++frame) {
     endIfInterrupted();
     scene.step();
-    const Penetration deepest = maxPenetration(simulation.state.position, simulation.scene.floor, workspace);
+    const Penetration deepest =
+        maxPenetration(simulation.state.position, simulation.scene.floor, workspace, simulation.model.fixed);
     result.penetration_mm = std::max(result.penetration_mm, 1e3 * deepest.depth);
   }
   constexpr double kMinute_s = 60.0;

@@ -12,7 +12,7 @@ bool holds(const Controls& controls) {
 void take(Controls& controls, const Session& session) {
   const std::optional<Pick> pick =
       pickBlock(session.simulation.state.position, rayThrough(controls.camera, controls.viewport, controls.x, controls.y));
-  if (!pick || !mayTake(session.game, pick->block)) return;
+  if (!pick || session.simulation.model.isFixed(index(pick->block)) || !mayTake(session.game, pick->block)) return;
   controls.hand.block = pick->block;
   controls.hand.place = centre(session.simulation.state.position, index(pick->block));
   controls.hand.turn = orientationOf(session.simulation.state.position, index(pick->block));

@@ -173,6 +173,7 @@ std::optional<WithoutBlock> withoutBlock(const Simulation& simulation, std::span
     spec.dimensions = simulation.model.dimensions[b];
     spec.orientation = orientationOf(simulation.state.position, b);
     spec.mass = simulation.model.mass[b];
+    spec.fixed = simulation.model.isFixed(b);
   }
   const auto renumbered = [&](BlockId b) { return b == kFloor || index(b) < index(block) ? b : blockId(index(b) - 1); };
   std::vector<FacePair> facings;

@@ -30,7 +30,7 @@ void measure(Viewer& viewer) {
   const ParticleArray& position = session.simulation.state.position;
   if (!viewer.watch.measures || session.frame % kMeasureEvery != 0) return;
   viewer.watch.mostMove_m = std::max(viewer.watch.mostMove_m, largestCornerMove(viewer.start, position));
-  const Penetration found = maxPenetration(position, session.scene.floor, viewer.workspace);
+  const Penetration found = maxPenetration(position, session.scene.floor, viewer.workspace, session.simulation.model.fixed);
   if (found.depth <= viewer.watch.deepest.depth) return;
   viewer.watch.deepest = found;
   viewer.watch.deepestTime_s = session.simulation.time_s;

@@ -179,7 +179,7 @@ TEST(BadSceneFile, IsNamedInOneLine) {
   const std::pair<const char*, const char*> cases[] = {
       {"unknown_key",
        ":3:1: unknown key 'colour' in block[0], allowed centre_m, dimensions_m, mass_kg, rotation_deg, velocity_m_s, "
-       "spin_rad_s"},
+       "spin_rad_s, fixed"},
       {"wrong_type", ":1:11: seconds: found the text 'ten', allowed a number from 0.001 to 10000000 s"},
       {"wrong_whole_number", ":2:8: tower.rows: found 3.5, allowed a whole number from 1 to 2000"},
       {"wrong_array", ":2:12: block[0].centre_m: found an array of 2, allowed an array of three numbers from -10000 to 10000 m"},
@@ -214,6 +214,33 @@ TEST(BadSceneFile, IsNamedInOneLine) {
     const std::string path = kData + name + ".toml";
     EXPECT_THAT([&] { sceneFromToml(path); }, ThrowsMessage<InputError>(path + message));
   }
+}
+
+TEST(SceneFile, FixesAndDrivesBlocks) {
+  const std::string blocks =
+      "[[block]]\ncentre_m = [0, 0, -0.1]\nfixed = true\n"  // in the floor
+      "[[block]]\ncentre_m = [0, 0, 0.3]\n[[block]]\ncentre_m = [0, 0, 0.5]\n";
+  const Scene scene = fromText(blocks +
+                               "[[drive]]\nblock = 1\nvelocity_m_s = [1, 2, 3]\nspin_rad_s = [4, 5, 6]\nend_s = 2\n"
+                               "[[drive]]\nblock = 0\namplitude_m = [0.1, 0.2, 0.3]\nfrequency_hz = 7\nstart_s = 1\n");
+  EXPECT_TRUE(scene.blocks[0].fixed);
+  EXPECT_TRUE(scene.blocks[1].fixed) << "it is driven";
+  EXPECT_FALSE(scene.blocks[2].fixed);
+  ASSERT_EQ(scene.drives.size(), 2U);
+  EXPECT_EQ(scene.drives[0].velocity, Vec3(1.0, 2.0, 3.0));
+  EXPECT_EQ(scene.drives[0].spin, Vec3(4.0, 5.0, 6.0));
+  EXPECT_EQ(scene.drives[0].end_s, 2.0);
+  EXPECT_EQ(scene.drives[1].block, 0);
+  EXPECT_EQ(scene.drives[1].amplitude, Vec3(0.1, 0.2, 0.3));
+  EXPECT_EQ(scene.drives[1].frequency_hz, 7.0);
+  EXPECT_EQ(scene.drives[1].start_s, 1.0);
+  EXPECT_EQ(scene.drives[1].end_s, kTimeRange.most);
+  EXPECT_THAT(
+      [&] { fromText(blocks + "[[drive]]\nblock = 3\n"); },
+      testing::ThrowsMessage<InputError>(testing::HasSubstr("drive[0].block: found 3, allowed a whole number from 0 to 2")));
+  EXPECT_THAT([&] { fromText(blocks + "[[force]]\nblock = 0\nforce_n = [1, 0, 0]\nend_s = 1\n"); },
+              testing::ThrowsMessage<InputError>(
+                  testing::HasSubstr("force 0: block: found block 0, which is fixed, allowed is a block that moves")));
 }
 
 TEST(BadSceneFile, UnknownSettingListsTheKnownOnes) {
