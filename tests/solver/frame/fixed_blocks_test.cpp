@@ -49,6 +49,7 @@ Scene fixedScene(Method method, std::vector<BlockSpec> blocks, Sleep sleep = Sle
   scene.name = "fixed";
   scene.blocks = std::move(blocks);
   scene.settings.method = method;
+  scene.settings.reportFrictionDrag = 0.0;  // theory has none
   scene.settings.sleep = sleep;
   return scene;
 }
@@ -68,6 +69,7 @@ double alongRamp(const Simulation& simulation, double slope_deg) {
 }
 
 struct FixedBlocks : ::testing::TestWithParam<Method> {};
+struct FixedBlocksThatHold : FixedBlocks {};  // by methods with static friction
 
 std::string methodName(const ::testing::TestParamInfo<Method>& info) {
   std::string name(nameOf(info.param));
@@ -79,21 +81,33 @@ INSTANTIATE_TEST_SUITE_P(Methods, FixedBlocks,
                          ::testing::Values(Method::implicit, Method::implicitEuler, Method::semiImplicitEuler, Method::midpoint,
                                            Method::rungeKutta4, Method::report, Method::rigidPgs, Method::rigidLcp, Method::xpbd),
                          methodName);
+INSTANTIATE_TEST_SUITE_P(Methods, FixedBlocksThatHold,
+                         ::testing::Values(Method::implicit, Method::implicitEuler, Method::semiImplicitEuler, Method::midpoint,
+                                           Method::rungeKutta4, Method::rigidPgs, Method::rigidLcp, Method::xpbd),
+                         methodName);
 
-// Creep below a micrometre in half a second, after half a second in which the block sinks to its resting depth.
-TEST_P(FixedBlocks, HoldABlockOnARampBelowTheFrictionAngle) {
-  if (GetParam() == Method::report) GTEST_SKIP() << "the report has no static friction";
+// The way of a block down a ramp at 0.98 of the friction angle in half a second, after half a second in which it sinks to its
+// resting depth, m.
+double creepOnRamp(Method method) {
   const double slope_deg = 0.98 * degrees(std::atan(kFixedFriction));
-  Simulation simulation(rampScene(GetParam(), slope_deg));
+  Simulation simulation(rampScene(method, slope_deg));
   stepFor(simulation, 0.5);
   const double before_m = alongRamp(simulation, slope_deg);
   stepFor(simulation, 0.5);
-  EXPECT_NEAR(alongRamp(simulation, slope_deg), before_m, 1e-6);
+  return alongRamp(simulation, slope_deg) - before_m;
+}
+
+TEST_P(FixedBlocksThatHold, HoldABlockOnARampBelowTheFrictionAngle) {
+  EXPECT_NEAR(creepOnRamp(GetParam()), 0.0, 1e-6);
+}
+
+// The report has kinetic friction alone, which acts against a motion that there is: a failure of its, not of fixed blocks.
+TEST(FixedBlocksOfTheReport, LetABlockCreepDownARampBelowTheFrictionAngle) {
+  EXPECT_GT(creepOnRamp(Method::report), 1e-2);
 }
 
 // Distances over two equal times differ by a t^2.
 TEST_P(FixedBlocks, LetABlockSlideDownARampAsTheoryHasIt) {
-  if (GetParam() == Method::report) GTEST_SKIP() << "the report adds a drag";
   constexpr double kSlope_deg = 25.0;
   constexpr double kAngle = kSlope_deg * std::numbers::pi / 180.0;
   Simulation simulation(rampScene(GetParam(), kSlope_deg));
@@ -106,7 +120,9 @@ TEST_P(FixedBlocks, LetABlockSlideDownARampAsTheoryHasIt) {
   }
   const double acceleration = (along[2] - 2.0 * along[1] + along[0]) / (kTime_s * kTime_s);
   const double theory = kStandardGravity_m_s2 * (std::sin(kAngle) - kFixedFriction * std::cos(kAngle));
-  EXPECT_NEAR(acceleration, theory, 0.01 * theory);
+  // The report's friction is that of the collisions of the step before: on the floor under tilted gravity it is 2.4 % off as
+  // well.
+  EXPECT_NEAR(acceleration, theory, (GetParam() == Method::report ? 0.04 : 0.01) * theory);
 }
 
 double sagOf(const Scene& scene, std::size_t block, double ground_m, double seconds = 0.5) {
