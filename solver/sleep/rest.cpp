@@ -158,8 +158,6 @@ void putToSleep(Simulation& simulation) {
       return false;
     }
     const double frame_s = simulation.scene.settings.frame_s;
-    const auto isHere = [&](const NearDriven& near) { return near.block == block; };
-    if (std::any_of(engine.scratch.nearDriven.begin(), engine.scratch.nearDriven.end(), isHere)) return false;
     return std::none_of(simulation.scene.forces.begin(), simulation.scene.forces.end(), [&](const UserForce& user) {
       return user.block == block && user.actsWithin(simulation.time_s - frame_s, simulation.time_s - frame_s + frame_s);
     });
@@ -302,6 +300,8 @@ void updateRest(Simulation& simulation) {
     }
   });
   if (sleep == Sleep::off) return;
+  // What a moving block is near to is not at rest, however still it lies.
+  for (const NearDriven& near : engine.scratch.nearDriven) simulation.restTime_s[static_cast<std::size_t>(near.block)] = 0.0;
   wakeRequested(simulation);
   putToSleep(simulation);
 }
