@@ -45,16 +45,14 @@ void readDriven(IslandStep& step, RigidIsland& island) {
 void driveBodies(IslandStep& step, double at_s, double step_s) {
   if (step.driven.empty()) return;
   RigidIsland& island = rigidIslandOf(step);
-  const Scene& scene = step.simulation.scene;
   for (const BlockPair& driven : step.driven) {
     const auto b = static_cast<std::size_t>(driven.b);
     RigidBody& body = island.bodies[static_cast<std::size_t>(step.engine.scratch.nodeOf[b])];
-    const BlockSpec& spec = scene.blocks[b];
-    const DrivenPose now = drivenPose(scene.drives, driven.b, spec.centre, body.radius_m, at_s);
-    const DrivenPose next = drivenPose(scene.drives, driven.b, spec.centre, body.radius_m, at_s + step_s);
+    const DrivenPose now = poseAt(step.simulation, driven.b, at_s);
+    const DrivenPose next = poseAt(step.simulation, driven.b, at_s + step_s);
     const Eigen::AngleAxisd turn(next.turn * now.turn.conjugate());
     body.place = now.centre;
-    body.axes = (now.turn * spec.orientation).toRotationMatrix();
+    body.axes = (now.turn * step.simulation.scene.blocks[b].orientation).toRotationMatrix();
     body.velocity = (next.centre - now.centre) / step_s;
     body.spin = turn.angle() / step_s * turn.axis();
   }

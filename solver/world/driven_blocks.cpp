@@ -12,11 +12,6 @@ double radiusOf(const Simulation& simulation, std::size_t b) {
   return 0.5 * simulation.model.dimensions[b].norm();
 }
 
-DrivenPose poseAt(const Simulation& simulation, std::int32_t block, double time_s) {
-  const auto b = static_cast<std::size_t>(block);
-  return drivenPose(simulation.scene.drives, block, simulation.scene.blocks[b].centre, radiusOf(simulation, b), time_s);
-}
-
 void writeCorners(const BlockSpec& spec, const DrivenPose& pose, std::size_t b, ParticleArray& position) {
   for (std::size_t c = 0; c < kCorners; ++c) {
     const Vec3 arm = 0.5 * Vec3(cornerSide(c, 0), cornerSide(c, 1), cornerSide(c, 2)).cwiseProduct(spec.dimensions);
@@ -67,6 +62,11 @@ void moveByDrives(Simulation& simulation, std::int32_t block, double before_s, d
 }
 
 }  // namespace
+
+DrivenPose poseAt(const Simulation& simulation, std::int32_t block, double time_s) {
+  const auto b = static_cast<std::size_t>(block);
+  return drivenPose(simulation.scene.drives, block, simulation.scene.blocks[b].centre, radiusOf(simulation, b), time_s);
+}
 
 bool anyDriveActs(const Simulation& simulation, double begin_s, double end_s) {
   const std::vector<Drive>& drives = simulation.scene.drives;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/scene/drive.h"
 #include "solver/world/island_step.h"
 
 #include <cstdint>
@@ -13,6 +14,9 @@ namespace springtower {
 
 /// What the velocities of driven blocks are after a step: those at its end, or its means, as explicit steps have them.
 enum class DrivenVelocity : std::uint8_t { atEnd, mean };
+
+/// The pose of a driven block at a time, s.
+DrivenPose poseAt(const Simulation& simulation, std::int32_t block, double time_s);
 
 /// Whether any drive moves a block in some part of this time, s.
 bool anyDriveActs(const Simulation& simulation, double begin_s, double end_s);
