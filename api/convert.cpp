@@ -4,6 +4,7 @@
 
 #include <array>
 #include <fmt/format.h>
+#include <memory>
 
 namespace springtower::api {
 namespace {
@@ -113,8 +114,67 @@ Gravity toPublic(const springtower::Gravity& gravity) {
   return {gravity.magnitude, gravity.tilt_deg, gravity.direction_deg, gravity.sway_deg, gravity.sway_hz};
 }
 
+springtower::BlockSpec toEngine(const Block& block) {
+  springtower::BlockSpec result{toEngine(block.centre),
+                                toEngine(block.dimensions),
+                                toEngine(block.orientation),
+                                toEngine(block.velocity),
+                                toEngine(block.spin),
+                                block.mass_kg,
+                                block.row,
+                                block.position,
+                                block.fixed,
+                                {}};
+  if (!block.strain_m) return result;
+  CornerPlaces strain;
+  for (std::size_t c = 0; c < strain.size(); ++c) strain[c] = toEngine((*block.strain_m)[c]);
+  result.strain = std::make_shared<const CornerPlaces>(strain);
+  return result;
+}
+
+Block toPublic(const springtower::BlockSpec& block) {
+  Block result{toPublic(block.centre),
+               toPublic(block.dimensions),
+               toPublic(block.orientation),
+               toPublic(block.velocity),
+               toPublic(block.spin),
+               block.mass,
+               block.row,
+               block.position,
+               block.fixed,
+               {}};
+  if (!block.strain) return result;
+  result.strain_m.emplace();
+  for (std::size_t c = 0; c < block.strain->size(); ++c) (*result.strain_m)[c] = toPublic((*block.strain)[c]);
+  return result;
+}
+
 springtower::UserForce toEngine(const Force& force) {
-  return {force.block, force.corner, toEngine(force.force_n), force.start_s, force.end_s};
+  springtower::UserForce result;
+  result.block = force.block;
+  result.corner = force.corner;
+  result.force = toEngine(force.force_n);
+  result.start_s = force.start_s;
+  result.end_s = force.end_s;
+  result.torque = toEngine(force.torque_n_m);
+  if (force.point_m) result.point = toEngine(*force.point_m);
+  if (force.forceAtEnd_n) result.forceAtEnd = toEngine(*force.forceAtEnd_n);
+  if (force.torqueAtEnd_n_m) result.torqueAtEnd = toEngine(*force.torqueAtEnd_n_m);
+  return result;
+}
+
+Force toPublic(const springtower::UserForce& force) {
+  Force result;
+  result.block = force.block;
+  result.corner = force.corner;
+  result.force_n = toPublic(force.force);
+  result.start_s = force.start_s;
+  result.end_s = force.end_s;
+  result.torque_n_m = toPublic(force.torque);
+  if (force.point) result.point_m = toPublic(*force.point);
+  if (force.forceAtEnd) result.forceAtEnd_n = toPublic(*force.forceAtEnd);
+  if (force.torqueAtEnd) result.torqueAtEnd_n_m = toPublic(*force.torqueAtEnd);
+  return result;
 }
 
 springtower::TowerOptions toEngine(const TowerOptions& options) {
@@ -133,11 +193,7 @@ springtower::Scene toEngine(const Scene& scene) {
   springtower::Scene result;
   result.name = scene.name;
   result.blocks.reserve(scene.blocks.size());
-  for (const Block& block : scene.blocks) {
-    result.blocks.push_back({toEngine(block.centre), toEngine(block.dimensions), toEngine(block.orientation),
-                             toEngine(block.velocity), toEngine(block.spin), block.mass_kg, block.row, block.position,
-                             block.fixed});
-  }
+  for (const Block& block : scene.blocks) result.blocks.push_back(toEngine(block));
   for (const Force& force : scene.forces) result.forces.push_back(toEngine(force));
   for (const Drive& drive : scene.drives) {
     result.drives.push_back({drive.block, toEngine(drive.velocity_m_s), toEngine(drive.spin_rad_s), toEngine(drive.amplitude_m),
@@ -159,12 +215,8 @@ Scene toPublic(const springtower::Scene& scene) {
   Scene result;
   result.name = scene.name;
   result.blocks.reserve(scene.blocks.size());
-  for (const springtower::BlockSpec& block : scene.blocks) {
-    result.blocks.push_back({toPublic(block.centre), toPublic(block.dimensions), toPublic(block.orientation),
-                             toPublic(block.velocity), toPublic(block.spin), block.mass, block.row, block.position, block.fixed});
-  }
-  for (const springtower::UserForce& force : scene.forces)
-    result.forces.push_back({force.block, force.corner, toPublic(force.force), force.start_s, force.end_s});
+  for (const springtower::BlockSpec& block : scene.blocks) result.blocks.push_back(toPublic(block));
+  for (const springtower::UserForce& force : scene.forces) result.forces.push_back(toPublic(force));
   for (const springtower::Drive& drive : scene.drives) {
     result.drives.push_back({drive.block, toPublic(drive.velocity), toPublic(drive.spin), toPublic(drive.amplitude),
                              drive.frequency_hz, drive.start_s, drive.end_s});

@@ -34,7 +34,10 @@ Settings toPublic(const springtower::Settings& settings);
 
 springtower::Gravity toEngine(const Gravity& gravity);
 Gravity toPublic(const springtower::Gravity& gravity);
+springtower::BlockSpec toEngine(const Block& block);
+Block toPublic(const springtower::BlockSpec& block);
 springtower::UserForce toEngine(const Force& force);
+Force toPublic(const springtower::UserForce& force);
 springtower::TowerOptions toEngine(const TowerOptions& options);
 
 /// Numbers are copied as they are, for checkScene to look at. Throws InputError for an enumeration's value that is none.

@@ -57,7 +57,7 @@ void pushThroughFrame(World& world, int block, const Vec3& force_n) {
   withPublicErrors([&] {
     const springtower::UserForce force =
         forceForOneFrame(impl.simulation, checkedBlock(block, count, "force: block"), toEngine(force_n));
-    checkForce(force, count, "force");
+    checkForce(force, impl.simulation.model.dimensions, "force");
     requireMovable(impl.simulation.scene, static_cast<std::size_t>(force.block), "force: block");
     if (impl.simulation.scene.plane) checkForceInPlane(force, "force");
     impl.passing.push_back(force);

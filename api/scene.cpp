@@ -1,5 +1,6 @@
 #include "api/convert.h"
 #include "core/limits.h"
+#include "core/scene/corners.h"
 #include "scenarios/registry.h"
 
 #include <fmt/format.h>
@@ -33,6 +34,18 @@ Scene sceneFromToml(const std::string& path, const TowerOptions& options) {
 
 Scene namedScene(const std::string& name, const TowerOptions& options) {
   return withPublicErrors([&] { return withoutMoves(springtower::sceneNamed(name, toEngine(options)), name); });
+}
+
+void placeByCorners(Block& block, const std::array<Vec3, 8>& corners) {
+  springtower::BlockSpec placed;
+  placed.dimensions = toEngine(block.dimensions);
+  CornerPlaces places;
+  for (std::size_t c = 0; c < places.size(); ++c) places[c] = toEngine(corners[c]);
+  springtower::placeByCorners(places, placed);
+  const Block of = toPublic(placed);
+  block.centre = of.centre;
+  block.orientation = of.orientation;
+  block.strain_m = of.strain_m;
 }
 
 std::vector<ScenarioInfo> scenarioList() {

@@ -34,6 +34,7 @@ std::uint64_t hashOf(const springtower::Scene& scene) {
     for (Eigen::Index a = 0; a < 4; ++a) mix(hash, block.orientation.coeffs()[a]);
     mix(hash, block.mass);
     hash.word(block.fixed ? 1 : 0);
+    for (std::size_t c = 0; block.strain && c < block.strain->size(); ++c) mix(hash, (*block.strain)[c]);
   }
   for (const springtower::UserForce& force : scene.forces) {
     hash.word(static_cast<std::uint64_t>(force.block));
@@ -41,6 +42,11 @@ std::uint64_t hashOf(const springtower::Scene& scene) {
     mix(hash, force.force);
     mix(hash, force.start_s);
     mix(hash, force.end_s);
+    mix(hash, force.torque);
+    for (const std::optional<springtower::Vec3>& given : {force.point, force.forceAtEnd, force.torqueAtEnd}) {
+      hash.word(given ? 1 : 0);
+      if (given) mix(hash, *given);
+    }
   }
   for (const springtower::Drive& drive : scene.drives) {
     hash.word(static_cast<std::uint64_t>(drive.block));

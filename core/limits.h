@@ -22,6 +22,7 @@ inline constexpr Range kVelocityRange{-1e3, 1e3, "m/s"};
 inline constexpr Range kSpinRange{-1e3, 1e3, "rad/s"};
 inline constexpr Range kAmplitudeRange{-100.0, 100.0, "m"};
 inline constexpr Range kForceRange{-1e6, 1e6, "N"};
+inline constexpr Range kTorqueRange{-1e6, 1e6, "N m"};
 inline constexpr Range kTimeRange{0.0, 1e7, "s"};
 inline constexpr Range kSecondsRange{1e-3, 1e7, "s"};
 inline constexpr Range kFrictionRange{0.0, 10.0, ""};

@@ -3,7 +3,7 @@
 #include "core/scene/scene.h"
 
 #include <Eigen/Geometry>
-#include <cstddef>
+#include <span>
 #include <string_view>
 
 namespace springtower {
@@ -14,10 +14,10 @@ namespace springtower {
 /// what was found and what is allowed.
 void checkGravity(const Gravity& gravity, std::string_view source);
 
-/// Checks that a force acts on one of so many blocks, at its centre (-1) or at one of its corners (0 to 7), that its numbers are
-/// within the limits and that it does not end before it starts. Throws InputError naming `source`, the number, what was found and
-/// what is allowed.
-void checkForce(const UserForce& force, std::size_t blocks, std::string_view source);
+/// Checks that a force acts on one of these blocks (dimensions in m), at its centre (-1), at one of its corners (0 to 7) or at a
+/// point that lies within it, that its numbers are within the limits and that it does not end before it starts. Throws InputError
+/// naming `source`, the number, what was found and what is allowed.
+void checkForce(const UserForce& force, std::span<const Vec3> dimensions, std::string_view source);
 
 /// Checks that a block is not fixed, so that it may be pushed, kicked or held. Precondition: it is one of the scene's. Throws
 /// InputError naming `source`, the block, and what is allowed.
@@ -27,8 +27,9 @@ void requireMovable(const Scene& scene, std::size_t block, std::string_view sour
 /// naming `source`, the coefficient, what was found and what is allowed.
 void checkFriction(double staticFriction, double kineticFriction, std::string_view source);
 
-/// Checks what a scene in the plane y = 0 allows: a force at the centre and without a y component; gravity without one; a block
-/// turned so that one of its axes is the plane's normal. Throws InputError naming `source`, what was found and what is allowed.
+/// Checks what a scene in the plane y = 0 allows: a force at the centre, without a y component, and a torque about y alone;
+/// gravity without a y component; a block turned so that one of its axes is the plane's normal. Throws InputError naming
+/// `source`, what was found and what is allowed.
 void checkForceInPlane(const UserForce& force, std::string_view source);
 void checkGravityInPlane(const Gravity& gravity, std::string_view source);
 void checkTurnInPlane(const Eigen::Quaterniond& turn, std::string_view source);

@@ -1,10 +1,14 @@
 #pragma once
 
+#include "core/block.h"
 #include "core/scene/drive.h"
+#include "core/scene/user_force.h"
 #include "core/settings.h"
 #include "core/vector.h"
 
+#include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -21,6 +25,9 @@ inline constexpr double kStandardGravity_m_s2 = 9.81;
 /// The default tolerance for these blocks, m; others have it in proportion to their height.
 inline constexpr double kBlockTolerance_m = 5e-5;
 
+/// Places (m) of a block's eight corners, or displacements.
+using CornerPlaces = std::array<Vec3, kCorners>;
+
 /// One block as it starts.
 struct BlockSpec {
   Vec3 centre = Vec3::Zero();                                       ///< m
@@ -32,20 +39,8 @@ struct BlockSpec {
   int row = -1;                                                     ///< row of the tower from 0, or -1
   int position = 0;                                                 ///< 1, 2, 3 in its row, or 0
   bool fixed = false;  ///< never moves, whatever touches it: a shelf, a ramp, a wall; its mass counts for nothing
-};
-
-/// A force on one block over a time, applied at the centre (spread over its corners) or at one corner.
-struct UserForce {
-  int block = 0;              ///< counted from 0
-  int corner = -1;            ///< 0..7, or -1 for the centre
-  Vec3 force = Vec3::Zero();  ///< N, world axes, constant
-  double start_s = 0.0;       ///< s
-  double end_s = 0.0;         ///< s
-
-  /// Whether it acts at a time, s: from its start on, and no more at its end.
-  [[nodiscard]] bool actsAt(double time_s) const { return start_s <= time_s && time_s < end_s; }
-  /// Whether it acts in some part of the time from `begin_s` to `end`, s.
-  [[nodiscard]] bool actsWithin(double begin_s, double end) const { return start_s < end && end_s > begin_s; }
+  /// m, displacements of its corners from those of its cuboid, along its own axes; null: none (see core/scene/corners.h)
+  std::shared_ptr<const CornerPlaces> strain = {};
 };
 
 /// What a scripted hand does in a move: draws a block of the tower out, lays down or drops the block it holds on a place of the
@@ -154,13 +149,18 @@ double toleranceOf(const Scene& scene);
 /// and all numbers are within limits. Throws InputError naming `source`, the move, what was found and what is allowed.
 void checkMoves(const Scene& scene, std::string_view source);
 
+/// How deep two blocks of which the thinner has this least side, or a block and the floor, may overlap at the start, m: as deep
+/// as blocks that rest do, also where they do at the default tolerance and a smaller one is in force, up to a tenth of that side.
+double allowedOverlap_m(const Scene& scene, double side_m);
+
 /// Checks what every scene must obey: values within the limits of core/limits.h and `settingTable`, unit orientations,
-/// forces on blocks that exist and are not fixed, moves that can be made (checkMoves), at least one block that is not fixed, no
-/// block inside another or in the floor by more than a millionth of the least dimension of the blocks concerned (touching is
-/// fine, and so is a fixed block inside another fixed one or in the floor); fixed blocks have no velocity and no spin, and drives
-/// are of fixed blocks; in a plane: blocks whose centres and gravity lie in y = 0, with an axis along y, that neither move nor
-/// are pushed out of it. The scenes above have been checked; check again after changing one. Throws InputError naming `source`,
-/// the block (or both blocks and how deep they overlap), what was found and what is allowed.
+/// forces on blocks that exist and are not fixed and at points inside them, moves that can be made (checkMoves), at least one
+/// block that is not fixed, no block inside another or in the floor by more than allowedOverlap_m (a fixed block inside another
+/// fixed one or in the floor is fine), no corner farther from its place in an undeformed block than a hundredth of the least side
+/// or the overlap allowed; fixed blocks have no velocity and no spin, and drives are of fixed blocks; in a plane: blocks whose
+/// centres and gravity lie in y = 0, with an axis along y, that neither move nor are pushed out of it. The scenes above have been
+/// checked; check again after changing one. Throws InputError naming `source`, the block (or both blocks and how deep they
+/// overlap), what was found and what is allowed.
 void checkScene(const Scene& scene, std::string_view source);
 
 }  // namespace springtower

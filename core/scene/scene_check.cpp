@@ -11,14 +11,20 @@
 #include <cstddef>
 #include <fmt/format.h>
 #include <limits>
+#include <span>
 #include <string>
 #include <vector>
 
 namespace springtower {
 namespace {
 
-// Overlap that is rounding of the numbers in a file rather than a mistake, in least dimensions of the blocks.
-constexpr double kAllowedOverlap = 1e-6;
+// Overlap that is rounding of the numbers in a file, in least dimensions of the blocks.
+constexpr double kRoundedOverlap = 1e-6;
+// Overlap of undeformed blocks at the centres that they have at rest, in tolerances: contacts of uneven rows are compressed
+// by 1.6 at most, and the blocks themselves by as much again.
+constexpr double kRestOverlap = 4.0;
+constexpr double kMaxOverlap = 0.1;  // in least dimensions
+constexpr double kMaxStrain = 0.01;  // in least dimensions
 constexpr std::array<const char*, 3> kAxisNames = {"x", "y", "z"};
 
 double overlapAlong(const Vec3& direction, const OrientedBox& a, const OrientedBox& b) {
@@ -108,13 +114,46 @@ void checkDrive(const Scene& scene, const Drive& drive, const std::string& where
                  {0.0, kVelocityRange.most, kVelocityRange.unit}, where + ": fastest corner");
 }
 
+// The tolerance that the overlaps of a rest state may come from, m.
+double restTolerance_m(const Scene& scene) {
+  return std::max(toleranceOf(scene), kBlockTolerance_m / kBlockHeight_m * blockHeightOf(scene));
+}
+
+double overlapAllowed(double tolerance_m, double side_m) {
+  return std::max(kRoundedOverlap * side_m, std::min(kRestOverlap * tolerance_m, kMaxOverlap * side_m));
+}
+
+double strainAllowed(double tolerance_m, double side_m) {
+  return std::max(kMaxStrain * side_m, std::min(kRestOverlap * tolerance_m, kMaxOverlap * side_m));
+}
+
+void checkStrains(const Scene& scene, std::string_view source) {
+  const double tolerance_m = restTolerance_m(scene);
+  for (std::size_t b = 0; b < scene.blocks.size(); ++b) {
+    const BlockSpec& block = scene.blocks[b];
+    if (!block.strain) continue;
+    const double allowed_m = strainAllowed(tolerance_m, block.dimensions.minCoeff());
+    for (std::size_t c = 0; c < kCorners; ++c) {
+      const double apart_m = (*block.strain)[c].norm();
+      if (apart_m <= allowed_m) continue;
+      throw InputError(
+          fmt::format("{}: {}: corner {}: found {:.4g} mm from that of a cuboid of {:g} x {:g} x {:g} m, allowed up to "
+                      "{:.4g} mm (corners in the order of run --poses)",
+                      source, nameOfBlock(scene, b), c, 1e3 * apart_m, block.dimensions.x(), block.dimensions.y(),
+                      block.dimensions.z(), 1e3 * allowed_m));
+    }
+  }
+}
+
 void checkFloor(const Scene& scene, const std::vector<OrientedBox>& boxes, std::string_view source) {
+  const double tolerance_m = restTolerance_m(scene);
   for (std::size_t b = 0; b < boxes.size(); ++b) {
     if (scene.blocks[b].fixed) continue;
     const double depth = boxes[b].reach().z() - boxes[b].centre.z();
-    if (depth <= kAllowedOverlap * scene.blocks[b].dimensions.minCoeff()) continue;
-    throw InputError(fmt::format("{}: {} starts {:.4g} mm inside the floor z = 0, allowed is touching it", source,
-                                 nameOfBlock(scene, b), 1e3 * depth));
+    const double allowed_m = overlapAllowed(tolerance_m, scene.blocks[b].dimensions.minCoeff());
+    if (depth <= allowed_m) continue;
+    throw InputError(fmt::format("{}: {} starts {:.4g} mm inside the floor z = 0, allowed up to {:.4g} mm, as at rest", source,
+                                 nameOfBlock(scene, b), 1e3 * depth, 1e3 * allowed_m));
   }
 }
 
@@ -149,7 +188,7 @@ void checkPlane(const Scene& scene, std::string_view source) {
   checkGravityInPlane(scene.gravity, source);
 }
 
-void checkPair(const Scene& scene, const std::vector<OrientedBox>& boxes, std::size_t one, std::size_t other,
+void checkPair(const Scene& scene, const std::vector<OrientedBox>& boxes, double tolerance_m, std::size_t one, std::size_t other,
                std::string_view source) {
   const auto [first, second] = std::minmax(one, other);
   if (scene.blocks[first].fixed && scene.blocks[second].fixed) return;
@@ -158,9 +197,10 @@ void checkPair(const Scene& scene, const std::vector<OrientedBox>& boxes, std::s
   if (((a.centre - b.centre).cwiseAbs().array() >= (a.reach() + b.reach()).array()).any()) return;
   const double depth = overlapDepth(a, b);
   const double size = std::min(scene.blocks[first].dimensions.minCoeff(), scene.blocks[second].dimensions.minCoeff());
-  if (depth <= kAllowedOverlap * size) return;
-  throw InputError(fmt::format("{}: {} and {} start {:.4g} mm inside each other, allowed is touching", source,
-                               nameOfBlock(scene, first), nameOfBlock(scene, second), 1e3 * depth));
+  const double allowed_m = overlapAllowed(tolerance_m, size);
+  if (depth <= allowed_m) return;
+  throw InputError(fmt::format("{}: {} and {} start {:.4g} mm inside each other, allowed up to {:.4g} mm, as at rest", source,
+                               nameOfBlock(scene, first), nameOfBlock(scene, second), 1e3 * depth, 1e3 * allowed_m));
 }
 
 void checkPairs(const Scene& scene, const std::vector<OrientedBox>& boxes, std::string_view source) {
@@ -172,10 +212,15 @@ void checkPairs(const Scene& scene, const std::vector<OrientedBox>& boxes, std::
     lower.push_back(box.centre[axis] - reach);
     upper.push_back(box.centre[axis] + reach);
   }
-  forEachOverlap(lower, upper, 0.0, [&](std::size_t a, std::size_t b) { checkPair(scene, boxes, a, b, source); });
+  const double tolerance_m = restTolerance_m(scene);
+  forEachOverlap(lower, upper, 0.0, [&](std::size_t a, std::size_t b) { checkPair(scene, boxes, tolerance_m, a, b, source); });
 }
 
 }  // namespace
+
+double allowedOverlap_m(const Scene& scene, double side_m) {
+  return overlapAllowed(restTolerance_m(scene), side_m);
+}
 
 void checkGravity(const Gravity& gravity, std::string_view source) {
   requireInRange(gravity.magnitude, kGravityRange, fmt::format("{}: gravity: magnitude", source));
@@ -185,11 +230,23 @@ void checkGravity(const Gravity& gravity, std::string_view source) {
   requireInRange(gravity.sway_hz, kFrequencyRange, fmt::format("{}: gravity: frequency of the sway", source));
 }
 
-void checkForce(const UserForce& force, std::size_t blocks, std::string_view source) {
+void checkForce(const UserForce& force, std::span<const Vec3> dimensions, std::string_view source) {
   const std::string where(source);
-  requireInRange(force.block, {0.0, static_cast<double>(blocks) - 1.0, ""}, where + ": block");
+  requireInRange(force.block, {0.0, static_cast<double>(dimensions.size()) - 1.0, ""}, where + ": block");
   requireInRange(force.corner, {-1.0, 7.0, "(-1 is the centre)"}, where + ": corner");
+  if (force.point) {
+    requireInRange(force.corner, {-1.0, -1.0, "(a force at a point acts at no corner)"}, where + ": corner");
+    const Vec3 half = 0.5 * dimensions[static_cast<std::size_t>(force.block)];
+    for (std::size_t a = 0; a < 3; ++a) {
+      const auto axis = static_cast<Eigen::Index>(a);
+      requireInRange((*force.point)[axis], {-half[axis], half[axis], "m (within the block)"},
+                     fmt::format("{}: point {}", where, kAxisNames[a]));
+    }
+  }
   checkVector(force.force, kForceRange, where + ": force");
+  checkVector(force.torque, kTorqueRange, where + ": torque");
+  if (force.forceAtEnd) checkVector(*force.forceAtEnd, kForceRange, where + ": force at the end");
+  if (force.torqueAtEnd) checkVector(*force.torqueAtEnd, kTorqueRange, where + ": torque at the end");
   requireInRange(force.start_s, kTimeRange, where + ": start");
   requireInRange(force.end_s, {force.start_s, kTimeRange.most, kTimeRange.unit}, where + ": end");
 }
@@ -199,6 +256,22 @@ void requireMovable(const Scene& scene, std::size_t block, std::string_view sour
   throw InputError(fmt::format("{}: found {}, which is fixed, allowed is a block that moves", source, nameOfBlock(scene, block)));
 }
 
+namespace {
+
+void checkForces(const Scene& scene, std::string_view source) {
+  if (scene.forces.empty()) return;
+  std::vector<Vec3> dimensions;
+  dimensions.reserve(scene.blocks.size());
+  for (const BlockSpec& block : scene.blocks) dimensions.push_back(block.dimensions);
+  for (std::size_t f = 0; f < scene.forces.size(); ++f) {
+    const std::string where = fmt::format("{}: force {}", source, f);
+    checkForce(scene.forces[f], dimensions, where);
+    requireMovable(scene, static_cast<std::size_t>(scene.forces[f].block), where + ": block");
+  }
+}
+
+}  // namespace
+
 void checkFriction(double staticFriction, double kineticFriction, std::string_view source) {
   requireInRange(staticFriction, kFrictionRange, fmt::format("{}: static friction", source));
   requireInRange(kineticFriction, {0.0, staticFriction, "(the static one)"}, fmt::format("{}: kinetic friction", source));
@@ -206,6 +279,12 @@ void checkFriction(double staticFriction, double kineticFriction, std::string_vi
 
 void checkForceInPlane(const UserForce& force, std::string_view source) {
   requireNone(force.force.y(), fmt::format("{}: force y", source));
+  if (force.forceAtEnd) requireNone(force.forceAtEnd->y(), fmt::format("{}: force at the end y", source));
+  if (force.point) requireNone(force.point->norm(), fmt::format("{}: point, its distance from the centre,", source));
+  for (const Vec3& torque : {force.torque, force.torqueAtEnd.value_or(force.torque)}) {
+    requireNone(torque.x(), fmt::format("{}: torque x", source));
+    requireNone(torque.z(), fmt::format("{}: torque z", source));
+  }
   requireNone(force.corner + 1.0, fmt::format("{}: corner, counted from 1,", source));
 }
 
@@ -230,11 +309,8 @@ void checkScene(const Scene& scene, std::string_view source) {
     checkBlock(scene, b, source);
     boxes.push_back(orientedBox(scene.blocks[b].centre, scene.blocks[b].orientation, scene.blocks[b].dimensions));
   }
-  for (std::size_t f = 0; f < scene.forces.size(); ++f) {
-    const std::string where = fmt::format("{}: force {}", source, f);
-    checkForce(scene.forces[f], scene.blocks.size(), where);
-    requireMovable(scene, static_cast<std::size_t>(scene.forces[f].block), where + ": block");
-  }
+  checkForces(scene, source);
+  checkStrains(scene, source);
   checkFixed(scene, source);
   for (std::size_t d = 0; d < scene.drives.size(); ++d)
     checkDrive(scene, scene.drives[d], fmt::format("{}: drive {}", source, d));

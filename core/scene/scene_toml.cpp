@@ -1,5 +1,6 @@
 #include "core/error.h"
 #include "core/limits.h"
+#include "core/scene/corners.h"
 #include "core/scene/rotation.h"
 #include "core/scene/scene.h"
 #include "core/scene/toml_keys.h"
@@ -22,19 +23,62 @@ namespace {
 constexpr std::uintmax_t kMaxBytes = 256U << 20U;
 constexpr std::int64_t kMaxWhole = std::numeric_limits<std::int64_t>::max();
 
+// Corners as `run --poses` writes them. Near which cuboid they lie is for checkScene to see.
+void readCorners(const Table& table, BlockSpec& block) {
+  for (const std::string_view key : {"centre_m", "rotation_deg"}) {
+    if (table.has(key))
+      throw InputError(fmt::format("{}: found {} beside corners_m, allowed is one of them", table.where(key), key));
+  }
+  CornerPlaces corners;
+  table.read("corners_m", corners, kPlaceRange);
+  placeByCorners(corners, block);
+}
+
 BlockSpec readBlock(const Table& table) {
   BlockSpec block;
-  table.require("centre_m");
-  table.read("centre_m", block.centre, kPlaceRange);
   table.read("dimensions_m", block.dimensions, kDimensionRange);
+  if (table.has("corners_m")) {
+    readCorners(table, block);
+  } else {
+    table.require("centre_m");
+    table.read("centre_m", block.centre, kPlaceRange);
+    Vec3 rotation_deg = Vec3::Zero();
+    table.read("rotation_deg", rotation_deg, kDirectionRange);
+    block.orientation = orientationOfRotation(rotation_deg);
+  }
   table.read("mass_kg", block.mass, kMassRange);
   table.read("velocity_m_s", block.velocity, kVelocityRange);
   table.read("spin_rad_s", block.spin, kSpinRange);
   table.read("fixed", block.fixed);
-  Vec3 rotation_deg = Vec3::Zero();
-  table.read("rotation_deg", rotation_deg, kDirectionRange);
-  block.orientation = orientationOfRotation(rotation_deg);
   return block;
+}
+
+// Where a force acts in its block.
+void readPoint(const Table& table, const Vec3& dimensions, UserForce& force) {
+  const Vec3 half = 0.5 * dimensions;
+  Vec3& point = force.point.emplace(Vec3::Zero());
+  table.read("point_m", point, {-half.maxCoeff(), half.maxCoeff(), "m"});
+  if ((point.cwiseAbs().array() > half.array()).any()) {
+    throw InputError(
+        fmt::format("{}: found [{}, {}, {}], allowed a point within the block: up to {}, {} and {} m from its centre",
+                    table.where("point_m"), point.x(), point.y(), point.z(), half.x(), half.y(), half.z()));
+  }
+}
+
+// Force and torque, and what they change to.
+void readLoad(const Table& table, UserForce& force) {
+  if (!table.has("force_n") && !table.has("torque_n_m"))
+    throw InputError(table.where() + ": found neither force_n nor torque_n_m, allowed one of them or both");
+  table.read("force_n", force.force, kForceRange);
+  table.read("torque_n_m", force.torque, kTorqueRange);
+  if (table.has("force_end_n")) {
+    table.require("force_n");
+    table.read("force_end_n", force.forceAtEnd.emplace(Vec3::Zero()), kForceRange);
+  }
+  if (table.has("torque_end_n_m")) {
+    table.require("torque_n_m");
+    table.read("torque_end_n_m", force.torqueAtEnd.emplace(Vec3::Zero()), kTorqueRange);
+  }
 }
 
 // The block that a table names by number, or by its place in the tower.
@@ -65,9 +109,12 @@ int namedBlock(const Table& table, const Scene& scene) {
 UserForce readForce(const Table& table, const Scene& scene) {
   UserForce force;
   force.block = namedBlock(table, scene);
+  if (table.has("corner") && table.has("point_m"))
+    throw InputError(table.where() + ": found both corner and point_m, allowed one of them");
   table.readWhole("corner", force.corner, 0, 7);
-  for (const std::string_view key : {"force_n", "end_s"}) table.require(key);
-  table.read("force_n", force.force, kForceRange);
+  if (table.has("point_m")) readPoint(table, scene.blocks[static_cast<std::size_t>(force.block)].dimensions, force);
+  readLoad(table, force);
+  table.require("end_s");
   table.read("start_s", force.start_s, kTimeRange);
   table.read("end_s", force.end_s, {force.start_s, kTimeRange.most, kTimeRange.unit});
   return force;
@@ -216,10 +263,13 @@ Scene readScene(const Table& top, const TowerOptions& given, const std::string& 
   if (!top.has("tower")) refuseTowerOptions(given, file);
   top.readTable("tower", {"rows", "code", "heights_sigma_m", "mass_sigma_kg", "seed", "start_gap_m", "offset", "loose"},
                 [&](const Table& table) { scene.blocks = readTower(table, given); });
-  top.readTables("block", {"centre_m", "dimensions_m", "mass_kg", "rotation_deg", "velocity_m_s", "spin_rad_s", "fixed"},
+  top.readTables("block",
+                 {"centre_m", "dimensions_m", "mass_kg", "rotation_deg", "velocity_m_s", "spin_rad_s", "fixed", "corners_m"},
                  [&](const Table& table) { scene.blocks.push_back(readBlock(table)); });
   if (scene.blocks.empty()) throw InputError(file + ": found no blocks, allowed a [tower], [[block]]s or both");
-  top.readTables("force", {"block", "row", "position", "corner", "force_n", "start_s", "end_s"},
+  top.readTables("force",
+                 {"block", "row", "position", "corner", "point_m", "force_n", "force_end_n", "torque_n_m", "torque_end_n_m",
+                  "start_s", "end_s"},
                  [&](const Table& table) { scene.forces.push_back(readForce(table, scene)); });
   top.readTables("drive",
                  {"block", "row", "position", "velocity_m_s", "spin_rad_s", "amplitude_m", "frequency_hz", "start_s", "end_s"},

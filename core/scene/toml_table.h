@@ -5,6 +5,7 @@
 #include "core/vector.h"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <fmt/format.h>
@@ -61,6 +62,24 @@ class Table {
     }
     for (std::size_t i = 0; i < 3; ++i) {
       target[static_cast<Eigen::Index>(i)] = number((*array)[i], fmt::format("{}[{}]", named(key), i), range);
+    }
+  }
+  // So many vectors, as an array of arrays or as one array of all their numbers.
+  template <std::size_t kCount>
+  void read(std::string_view key, std::array<Vec3, kCount>& target, const Range& range) const {
+    const toml::node* node = table_.get(key);
+    if (node == nullptr) return;
+    const toml::array* array = node->as_array();
+    const bool flat = array != nullptr && array->size() == 3 * kCount;
+    if (!flat && (array == nullptr || array->size() != kCount)) failVectors(*node, named(key), kCount, range);
+    for (std::size_t v = 0; v < kCount; ++v) {
+      const toml::array* one = flat ? array : (*array)[v].as_array();
+      if (one == nullptr || (!flat && one->size() != 3)) failVectors((*array)[v], named(key), kCount, range);
+      for (std::size_t i = 0; i < 3; ++i) {
+        const std::size_t place = flat ? 3 * v + i : i;
+        const std::string name = flat ? fmt::format("{}[{}]", named(key), place) : fmt::format("{}[{}][{}]", named(key), v, i);
+        target[v][static_cast<Eigen::Index>(i)] = number((*one)[place], name, range);
+      }
     }
   }
   template <class Whole>
@@ -121,6 +140,9 @@ class Table {
   }
   [[noreturn]] void fail(const toml::node& node, std::string_view name, std::string_view allowed) const {
     throw InputError(fmt::format("{}: found {}, allowed {}", placed(node.source().begin, name), found(node), allowed));
+  }
+  [[noreturn]] void failVectors(const toml::node& node, const std::string& name, std::size_t count, const Range& range) const {
+    fail(node, name, fmt::format("{} arrays of three numbers, or {} numbers, from {}", count, 3 * count, describe(range)));
   }
   [[nodiscard]] double number(const toml::node& node, const std::string& name, const Range& range) const {
     if (!node.is_number()) fail(node, name, "a number from " + describe(range));

@@ -9,8 +9,8 @@
 
 namespace springtower::api {
 
-/// Adds a force that acts in all steps that begin in [start_s, end_s); those that have ended are dropped. The block it acts on
-/// wakes. Allocates.
+/// Adds a force that acts from start_s to end_s, by its mean over each step; those that have ended are dropped. The block it acts
+/// on wakes. Allocates.
 void applyForce(World& world, const Force& force);
 
 /// A force at a block's centre through the whole of the coming frame, and no further: for those who push anew in each. Several

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <springtower/settings.h>
@@ -44,15 +45,28 @@ struct Block {
   int row = -1;                            ///< row of the tower from 0, or -1
   int position = 0;                        ///< 1, 2, 3 in its row, or 0
   bool fixed = false;  ///< never moves, whatever touches it (a shelf, a ramp, a wall); velocity and spin are 0
+  /// m, displacements of its corners (numbered as in World::corners) from those of its cuboid, along its own axes; see
+  /// placeByCorners
+  std::optional<std::array<Vec3, 8>> strain_m = {};
 };
 
-/// A constant force on one block over a time, in the world's axes, at the centre (spread over its corners) or at one corner.
+/// Gives a block the centre, the orientation and the strain that its corners have in these places, m: those of World::corners of
+/// a world at rest, of which a world is made that rests as it does. The block's dimensions are those of the undeformed block.
+void placeByCorners(Block& block, const std::array<Vec3, 8>& corners);
+
+/// A force, a torque or both on one block over a time, in the world's axes: constant, or changing linearly to what it is at the
+/// end. The force acts at the centre (spread over the corners), at one corner or at a point of the block. It acts for exactly its
+/// time, which may begin and end within a frame or a step.
 struct Force {
   int block = 0;
   int corner = -1;       ///< -1 the centre; else 0 to 7: bit 0, 1, 2 set on the positive side of the block's x, y, z axis
-  Vec3 force_n;          ///< N; within 1e6
+  Vec3 force_n;          ///< N, at the start; within 1e6
   double start_s = 0.0;  ///< s, from here on
   double end_s = 0.0;    ///< s, up to here, not less than start_s
+  std::optional<Vec3> point_m = {};          ///< m, instead of a corner: from the block's centre along its own axes, within it
+  Vec3 torque_n_m = {};                      ///< N m, at the start; within 1e6
+  std::optional<Vec3> forceAtEnd_n = {};     ///< N; without it, the force is constant
+  std::optional<Vec3> torqueAtEnd_n_m = {};  ///< N m; without it, the torque is constant
 };
 
 /// A prescribed motion of a block over a time, which is fixed otherwise: a velocity, a spin about its centre, an oscillation.
@@ -81,8 +95,8 @@ struct Gravity {
 /// A whole scene: what there is, how it starts, what acts on it, and how it is simulated.
 struct Scene {
   std::string name;           ///< in messages
-  std::vector<Block> blocks;  ///< 1 to 200000, not all fixed; none inside another or in the floor (touching is fine, and fixed
-                              ///< blocks may be inside one another and in the floor)
+  std::vector<Block> blocks;  ///< 1 to 200000, not all fixed; none inside another or in the floor, but for what blocks at rest
+                              ///< overlap (fixed blocks may be inside one another and in the floor)
   std::vector<Force> forces;  ///< that are known beforehand; see inputs.h for others
   std::vector<Drive> drives;  ///< of blocks that are fixed, marked so or not
   Gravity gravity;

@@ -4,6 +4,8 @@
 #include "core/tuning.h"
 #include "solver/block/inertia.h"
 #include "solver/block/springs.h"
+#include "solver/contact/pushes.h"
+#include "solver/law/user_force.h"
 #include "solver/world/over_island.h"
 #include "solver/world/stage_clock.h"
 
@@ -99,18 +101,18 @@ std::uint64_t contactsInParallel(IslandStep& step, const Evaluation& evaluation)
   return mergeRanges(step.activePairs.size(), tuning::kPairGrain, true, std::uint64_t{0}, pointsIn, std::plus<>());
 }
 
-void addUserForces(IslandStep& step) {
-  for (const UserForce& user : step.simulation.scene.forces) {
-    if (!user.actsAt(step.time_s)) continue;
-    const auto block = static_cast<std::size_t>(user.block);
-    const std::int32_t island = step.engine.memo.islands.islandOf[block];
-    if (island < 0 || island != step.engine.memo.islands.islandOf[static_cast<std::size_t>(step.blocks.front())]) continue;
-    if (user.corner >= 0) {
-      step.engine.memo.force.add(block, static_cast<std::size_t>(user.corner), user.force);
-    } else {
-      for (std::size_t c = 0; c < kCorners; ++c) step.engine.memo.force.add(block, c, user.force / static_cast<double>(kCorners));
-    }
-  }
+// BDF2 gives in a step a third of the mean acceleration of the step before and two thirds of what acts now. So that it gives the
+// impulse of the user forces exactly, half of their change since the step before acts beside them.
+void addUserForces(IslandStep& step, const MotionState& state) {
+  const bool carriesOn = step.pushedBefore_s > 0.0;
+  const auto add = [&](double factor) {
+    return [&step, &state, factor](const UserForce& user, const Load& mean) {
+      addUserForce(step.simulation.model, state.position, user, {factor * mean.force, factor * mean.torque},
+                   step.engine.memo.force);
+    };
+  };
+  forEachPush(step, step.pushedFrom_s, step.pushedUntil_s, add(carriesOn ? 1.5 : 1.0));
+  if (carriesOn) forEachPush(step, step.pushedFrom_s - step.pushedBefore_s, step.pushedFrom_s, add(-0.5));
 }
 
 void addTether(IslandStep& step, const MotionState& state, double time_s) {
@@ -143,7 +145,7 @@ void evaluate(IslandStep& step, const MotionState& state, const ParticleArray* c
     springForces(step.simulation.model, state, step.blocks.subspan(first, last - first), engine.scratch.contactForce,
                  engine.memo.force);
   });
-  if (!step.unforced) addUserForces(step);
+  if (!step.unforced) addUserForces(step, state);
   // Implicit steps evaluate forces at their end.
   addTether(step, state, step.time_s + (update == PointUpdate::trial ? advance_s : 0.0));
   clock.lap(Stage::springs);

@@ -111,8 +111,10 @@ IslandOutcome runExplicitSteps(IslandStep& step, double begin_s) {
   const Settings& settings = simulation.scene.settings;
   const StepFunction takeStep = explicitStepOf(settings.method);
   const bool isReport = traitsOf(settings.method).family == MethodFamily::report;
+  const bool leapfrog = traitsOf(settings.method).leapfrog;
   const double rest_s = step.part.end_s - begin_s;
   copyFrameStart(step);
+  step.pushedBefore_s = 0.0;
   IslandOutcome outcome;
   outcome.substeps = std::max(1, static_cast<int>(std::ceil(chooseSubsteps(step) * rest_s / settings.frame_s - 1e-9)));
   step.drift_s = rest_s / outcome.substeps;
@@ -126,6 +128,9 @@ IslandOutcome runExplicitSteps(IslandStep& step, double begin_s) {
     step.gravity = simulation.scene.gravity.at(step.time_s);
     step.kick_s = 0.5 * (last + step.drift_s);
     step.advance_s = last;
+    // The time over which this step changes velocities.
+    step.pushedUntil_s = step.time_s + (leapfrog ? 0.5 : 1.0) * step.drift_s;
+    step.pushedFrom_s = leapfrog ? step.pushedUntil_s - step.kick_s : step.time_s;
     takeStep(step);
     last = step.drift_s;
     placeDriven(step, step.time_s, step.time_s + step.drift_s, which);

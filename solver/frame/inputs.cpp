@@ -11,7 +11,7 @@ namespace springtower {
 namespace {
 
 void checkForceOn(const Simulation& simulation, const UserForce& force) {
-  checkForce(force, simulation.model.blockCount(), "force");
+  checkForce(force, simulation.model.dimensions, "force");
   requireMovable(simulation.scene, static_cast<std::size_t>(force.block), "force: block");
   if (simulation.scene.plane) checkForceInPlane(force, "force");
 }
@@ -23,8 +23,8 @@ void wakeAll(Simulation& simulation) {
 }  // namespace
 
 UserForce forceForOneFrame(const Simulation& simulation, std::size_t block, const Vec3& force) {
-  const double now = simulation.time_s;
-  return {static_cast<int>(block), -1, force, now, now + 1.5 * simulation.scene.settings.frame_s};
+  const double end_s = static_cast<double>(simulation.frame + 1) * simulation.scene.settings.frame_s;  // as stepFrame has it
+  return {static_cast<int>(block), -1, force, simulation.time_s, end_s};
 }
 
 void applyForce(Simulation& simulation, const UserForce& force) {

@@ -10,9 +10,8 @@ namespace springtower {
 // (solver/hand/grip.h). All of it is part of snapshots. Every function checks what it is given as checkScene does, and throws
 // InputError, with nothing changed, naming what was found and what is allowed.
 
-/// A force at a block's centre through the coming frame. It ends half a frame later, as the sum of times on the border of two
-/// frames may be rounded to either side. Who pushes again in the next frame replaces it (setOnlyForce). Precondition: there is
-/// such a block.
+/// A force at a block's centre through the coming frame. Who pushes again in the next frame replaces it (setOnlyForce).
+/// Precondition: there is such a block.
 UserForce forceForOneFrame(const Simulation& simulation, std::size_t block, const Vec3& force);
 
 /// Adds a force to those that act on the scene; forces that ended before the last frame began are dropped.

@@ -145,7 +145,8 @@ void setMode(IslandStep& step, IslandMode mode) {
   for (const std::int32_t block : step.blocks) history[static_cast<std::size_t>(block)].rigid = falling;
   if (!falling) return;
   for (const std::int32_t block : step.blocks) step.engine.memo.blockHistory[static_cast<std::size_t>(block)].hasFallen = true;
-  step.gravity = step.simulation.scene.gravity.at(step.simulation.time_s);
+  step.time_s = step.simulation.time_s;
+  step.gravity = step.simulation.scene.gravity.at(step.time_s);
   synchronise(step);
   forEachContact(PointKind::penalty, penaltyToImpulse);
 }

@@ -21,6 +21,26 @@ namespace springtower {
 
 namespace {
 
+// Where no equilibrium is known, what overlaps at the start is without force as it lies: it would be thrown apart otherwise.
+void unloadOverlaps(IslandStep& step) {
+  for (const std::int32_t pair : step.pairs) {
+    const auto at = static_cast<std::size_t>(pair);
+    if (!step.engine.pairs.touches(at)) continue;
+    const ContactView manifold = contactOf(step.engine, at);
+    const PointForces points = forcesNow(step.simulation, manifold);
+    const PointRows rows = step.engine.contacts.points(step.engine.pairs.contact[at]);
+    for (std::size_t i = 0; i < static_cast<std::size_t>(manifold.count); ++i) {
+      if (points.depth[i] <= step.simulation.lengths.contactError_m) continue;
+      PointRow& row = *rows[rowOf(i)];
+      if (manifold.kind == PointKind::impulse) row.impulse.restDepth[laneOf(i)] = points.depth[i];
+      if (manifold.kind != PointKind::penalty) continue;
+      row.penalty.restDepth[laneOf(i)] = points.depth[i];
+      row.penalty.stiffening[laneOf(i)] = 1.0;
+      row.penalty.touching[laneOf(i)] = kTouchingWithoutForce;
+    }
+  }
+}
+
 // Finds an island's contacts and its equilibrium, unless it is equal to one before it; `substeps` of the result is 1 where there
 // is an equilibrium, 0 where it starts as placed.
 IslandOutcome prepareIsland(IslandStep& step) {
@@ -31,7 +51,11 @@ IslandOutcome prepareIsland(IslandStep& step) {
   copyFrameStart(step);
   findTouching(step);
   IslandOutcome outcome;
-  if (traitsOf(settings.method).family != MethodFamily::rigid && startInEquilibrium(step)) outcome.substeps = 1;
+  if (traitsOf(settings.method).family != MethodFamily::rigid && startInEquilibrium(step)) {
+    outcome.substeps = 1;
+  } else {
+    unloadOverlaps(step);
+  }
   step.monitor->islandDone(step.blocks.size());
   return outcome;
 }

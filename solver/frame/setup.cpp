@@ -32,6 +32,7 @@ void placeBlock(const BlockSpec& spec, std::size_t b, Simulation& simulation) {
       const auto axis = static_cast<Eigen::Index>(a);
       arm[axis] = 0.5 * cornerSide(c, a) * spec.dimensions[axis];
     }
+    if (spec.strain) arm += (*spec.strain)[c];
     arm = spec.orientation * arm;
     simulation.state.position.set(b, c, spec.centre + arm);
     simulation.state.velocity.set(b, c, spec.velocity + spec.spin.cross(arm));

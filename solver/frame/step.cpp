@@ -49,6 +49,7 @@ void stepFrame(Simulation& simulation) {
     advanceThroughParts(simulation);
     simulation.counters.steps += static_cast<std::uint64_t>(simulation.substeps);
   }
+  engine.memo.forcesBefore = simulation.scene.forces;
   ++simulation.frame;
   ++simulation.counters.frames;
   simulation.time_s = static_cast<double>(simulation.frame) * simulation.scene.settings.frame_s;

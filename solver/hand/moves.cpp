@@ -230,8 +230,9 @@ void end(MoveRun& run, const Simulation& simulation, bool done, bool rested) {
   run.now.rested = rested;
   run.now.end_s = simulation.time_s;
   const Vec3 middle = centre(simulation.state.position, b);
-  const bool fellOff = move.kind == MoveKind::put &&
-                       middle.z() < run.goal.z() - move.drop_m - kFallDropInHeights * simulation.model.dimensions[b].z();
+  const bool fellOff =
+      move.kind == MoveKind::put &&
+      middle.z() < run.goal.z() - move.drop_m - kFallDropInLeastSides * simulation.model.dimensions[b].minCoeff();
   done = done && !fellOff;
   run.now.done = done;
   if (done && move.kind != MoveKind::take) {

@@ -84,6 +84,9 @@ void synchronise(IslandStep& step) {
   copyFrameStart(step);
   ParticleArray& velocity = step.simulation.state.velocity;
   step.kick_s = behind_s;
+  step.pushedFrom_s = step.time_s - 0.5 * behind_s;
+  step.pushedUntil_s = step.time_s;
+  step.pushedBefore_s = 0.0;
   evaluateForces(step, step.simulation.state, velocity, behind_s, PointUpdate::store);
   for (const std::int32_t block : step.blocks) {
     const auto b = static_cast<std::size_t>(block);

@@ -3,6 +3,7 @@
 #include "core/tuning.h"
 #include "solver/block/inertia.h"
 #include "solver/contact/create.h"
+#include "solver/contact/query.h"
 #include "solver/contact/update.h"
 #include "solver/implicit/run.h"
 #include "solver/implicit/saved_island.h"
@@ -190,6 +191,68 @@ class EquilibriumSearch {
   Gravity gravity_;
 };
 
+// Largest distance of the island's corners from where they were placed, m.
+double movedFromStart_m(const IslandStep& step) {
+  double squared = 0.0;
+  for (const std::int32_t block : step.blocks) {
+    const auto b = static_cast<std::size_t>(block);
+    for (std::size_t c = 0; c < kCorners; ++c) {
+      const Vec3 start = frameStartPosition(step.simulation, b, c);
+      squared = std::max(squared, (step.simulation.state.position.at(b, c) - start).squaredNorm());
+    }
+  }
+  return std::sqrt(squared);
+}
+
+// Puts the corners back to where they were placed; contacts keep what they store.
+void putBack(IslandStep& step) {
+  for (const std::int32_t block : step.blocks) {
+    const auto b = static_cast<std::size_t>(block);
+    for (std::size_t c = 0; c < kCorners; ++c) {
+      const Vec3 start = frameStartPosition(step.simulation, b, c);
+      step.simulation.state.position.set(b, c, start);
+      step.engine.memo.previous.set(b, c, start);
+    }
+  }
+}
+
+bool isStrained(const IslandStep& step) {
+  return std::any_of(step.blocks.begin(), step.blocks.end(), [&](std::int32_t block) {
+    return step.simulation.scene.blocks[static_cast<std::size_t>(block)].strain != nullptr;
+  });
+}
+
+// Whether blocks start inside one another or the floor by more than rounding.
+bool overlaps(const IslandStep& step) {
+  return std::any_of(step.pairs.begin(), step.pairs.end(), [&](std::int32_t pair) {
+    const auto at = static_cast<std::size_t>(pair);
+    if (!step.engine.pairs.touches(at)) return false;
+    const ContactView manifold = contactOf(step.engine, at);
+    const PointForces points = forcesNow(step.simulation, manifold);
+    return std::any_of(points.depth.begin(), points.depth.begin() + manifold.count,
+                       [&](double depth_m) { return depth_m > step.simulation.lengths.contactError_m; });
+  });
+}
+
+// Blocks that start with the strain of a rest state lie in equilibrium, but for friction, which is not saved with them: without
+// it they spread until it has come up again. From where they were placed with the friction that the last search left, the next
+// one moves them by less. Stops when they hardly move, or no longer less.
+void recoverFriction(IslandStep& step) {
+  double moved_m = movedFromStart_m(step);
+  for (int i = 0; i < tuning::kMaxEquilibriumSteps && moved_m > tuning::kEquilibriumTolerance * step.simulation.tolerance_m;
+       ++i) {
+    const SavedIsland found(step);
+    putBack(step);
+    const bool settled = settleWithFriction(step, lastStep_s(step));
+    const double now_m = movedFromStart_m(step);
+    if (!settled || now_m >= moved_m) {
+      found.restore(step);
+      return;
+    }
+    moved_m = now_m;
+  }
+}
+
 // The contact law of what does not move: without dashpots and Maxwell branches, which only delay convergence. The branches follow
 // at once, so that they are without force in the equilibrium.
 ContactLaw staticLaw(ContactLaw law) {
@@ -222,7 +285,12 @@ bool startInEquilibrium(IslandStep& step) {
   // tower would keep implicit steps from converging. A single block has no such impact, and explicit methods resolve it.
   const bool mayFall = step.simulation.scene.gravity.tilt_deg != 0.0 && step.blocks.size() > 1 &&
                        isImplicit(step.simulation.scene.settings.method);
-  const bool rests = EquilibriumSearch(step).find(mayFall);
+  EquilibriumSearch search(step);
+  const bool strained = isStrained(step);
+  // What lies as it did at rest is in equilibrium under all of the tilt.
+  const bool restsThere = (strained || overlaps(step)) && search.find(false);
+  const bool rests = restsThere || search.find(mayFall);
+  if (restsThere && strained) recoverFriction(step);
   dropOpenContacts(step);
   step.unforced = false;
   step.law = law;

@@ -387,6 +387,14 @@ bool solveStep(IslandStep& step, double effective_s, bool carried, const NewtonO
   return converged;
 }
 
+// User forces act by their means over the step; where BDF2 carries a step on, so does it their means.
+void setPushes(IslandStep& step) {
+  step.pushedFrom_s = step.time_s;
+  step.pushedUntil_s = step.time_s + step.drift_s;
+  step.pushedBefore_s =
+      step.twoStep ? step.engine.memo.blockHistory[static_cast<std::size_t>(step.blocks.front())].lastImplicitStep_s : 0.0;
+}
+
 // Accepts the state found, or restores the start of the step.
 bool finishStep(IslandStep& step, bool taken) {
   StageClock clock(step.times);
@@ -405,7 +413,7 @@ bool finishStep(IslandStep& step, bool taken) {
 }  // namespace
 
 bool stepImplicit(IslandStep& step, bool canRetryFiner) {
-  const double effective_s = endShare(step.simulation.scene.settings.method) * step.drift_s;
+  const double effective_s = endShare(step.twoStep) * step.drift_s;
   // With a driven block the step begins with the extrapolated state: forces at its start are not those that the block's motion
   // makes by its end.
   const bool drives = !step.driven.empty();
@@ -413,14 +421,11 @@ bool stepImplicit(IslandStep& step, bool canRetryFiner) {
   placeDriven(step, step.time_s, step.time_s);
   if (drives) islandOf(step).forcesKnown = false;
   synchronise(step);
+  setPushes(step);
   const bool carried = !islandOf(step).forcesKnown && isCarried(step, effective_s);
   if (!islandOf(step).forcesKnown && !carried)
     evaluateForces(step, step.simulation.state, step.simulation.state.velocity, 0.0, PointUpdate::trial);
-  if (!traitsOf(step.simulation.scene.settings.method).twoStep) {
-    predictEuler(step, effective_s);
-  } else {
-    predictBdf2(step, effective_s);
-  }
+  step.twoStep ? predictBdf2(step, effective_s) : predictEuler(step, effective_s);
   const NewtonOptions& how = canRetryFiner ? kBeforeFiner : kInMotion;
   placeDriven(step, step.time_s, end_s);
   bool converged = solveStep(step, effective_s, carried || drives, how);
@@ -439,7 +444,7 @@ bool stepImplicit(IslandStep& step, bool canRetryFiner) {
   // At the start of a frame a force or the hand may jump; that is no vibration.
   const bool jumps = step.engine.memo.islandHistory[static_cast<std::size_t>(step.blocks.front())].forced &&
                      step.time_s == step.simulation.time_s;
-  if (converged && !jumps && traitsOf(step.simulation.scene.settings.method).twoStep) updateFrequencyEstimate(step, effective_s);
+  if (converged && !jumps && step.twoStep) updateFrequencyEstimate(step, effective_s);
   return finishStep(step, converged);
 }
 

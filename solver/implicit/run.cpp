@@ -3,6 +3,7 @@
 #include "core/tuning.h"
 #include "solver/contact/approach.h"
 #include "solver/contact/evaluate_forces.h"
+#include "solver/contact/pushes.h"
 #include "solver/contact/update.h"
 #include "solver/implicit/step_count.h"
 #include "solver/world/checkpoint.h"
@@ -10,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace springtower {
 
@@ -107,6 +109,15 @@ double turningSpeed(const AffineField& place, const AffineField& motion) {
   return std::sqrt(fastest);
 }
 
+// Counts down the frames until implicit steps are tried again, and notes whether this one is forced.
+void noteFrame(IslandStep& step, bool forced) {
+  for (const std::int32_t block : step.blocks) {
+    IslandHistory& history = step.engine.memo.islandHistory[static_cast<std::size_t>(block)];
+    if (step.part.begin_s == 0.0) history.explicitFrames = std::max(0, history.explicitFrames - 1);
+    history.forced = forced;
+  }
+}
+
 // Begins with the forces at the end of the last frame, if they are known. Where its step has left what it began with in the trial
 // points, these become the points; except in an island that is not narrow, which evaluates its forces before it reads them.
 void beginWithForces(IslandStep& step, bool known) {
@@ -121,6 +132,19 @@ void beginWithForces(IslandStep& step, bool known) {
     }
   });
   island.trialLags = false;
+}
+
+// A step in which user forces jump is one of implicit Euler: it carries no acceleration of the step before on. `begins`: it is
+// the first of its length.
+void chooseFormula(IslandStep& step, NewtonSystem& island, bool begins) {
+  const BlockHistory& history = step.engine.memo.blockHistory[static_cast<std::size_t>(step.blocks.front())];
+  step.twoStep = traitsOf(step.simulation.scene.settings.method).twoStep;
+  if (step.twoStep && pushesJump(step, history.lastImplicitStep_s, step.drift_s)) {
+    step.twoStep = false;
+    island.forcesKnown = false;
+  }
+  const double effective_s = endShare(step.twoStep) * step.drift_s;
+  if (begins || effective_s != island.jacobianStep_s) setJacobians(step, effective_s);
 }
 
 // Sets the number of frames until implicit steps are tried again.
@@ -202,20 +226,17 @@ IslandOutcome runImplicitSteps(IslandStep& step, bool mostlyFallen, double& reac
     steps = tuning::kStandardImplicitSteps;
     fits = implicitStepsFit(step, step.part.duration_s() / stepsInPart(step, steps));
   }
-  for (const std::int32_t block : step.blocks) {
-    IslandHistory& history = engine.memo.islandHistory[static_cast<std::size_t>(block)];
-    if (reached_s == 0.0) history.explicitFrames = std::max(0, history.explicitFrames - 1);
-    history.forced = forced;
-  }
+  noteFrame(step, forced);
   // If pairs, islands and forces are unchanged, the forces are those at the end of the last frame.
   const bool known = island.forcesKnown && !engine.memo.topologyChanged && !wasForced && !forced;
   island.forcesKnown = false;
   if (!fits) return outcome;
+  bool begins = true;  // with steps of this length
   const auto takeSteps = [&](int count) {
     steps = count;
     if (count > 1) copyFrameStart(step);
     step.drift_s = (end_s - reached_s) / count;
-    setJacobians(step, endShare(simulation.scene.settings.method) * step.drift_s);
+    begins = true;
   };
   takeSteps(stepsInPart(step, steps));
   // An island that has mostly fallen goes back to rigid steps where implicit ones do not converge.
@@ -224,6 +245,7 @@ IslandOutcome runImplicitSteps(IslandStep& step, bool mostlyFallen, double& reac
   while (steps > 0) {
     step.time_s = simulation.time_s + reached_s;
     step.gravity = simulation.scene.gravity.at(step.time_s + step.drift_s);  // forces are those of the step's end
+    chooseFormula(step, island, std::exchange(begins, false));
     const int finer = retryStepCount((end_s - reached_s) / simulation.scene.settings.frame_s, steps);
     const bool canRetryFiner = finer > steps && simulation.scene.settings.substeps == 0 && !mostlyFallen;
     if (!stepImplicit(step, canRetryFiner || mostlyFallen)) {

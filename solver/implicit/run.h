@@ -7,9 +7,9 @@ namespace springtower {
 /// Factor of the step that multiplies the forces at the end in BDF2.
 inline constexpr double kBdf2 = 2.0 / 3.0;
 
-/// The same for either implicit method: for implicit Euler it is the whole step.
-constexpr double endShare(Method method) {
-  return traitsOf(method).twoStep ? kBdf2 : 1.0;
+/// The same for either kind of implicit steps: for implicit Euler it is the whole step.
+constexpr double endShare(bool twoStep) {
+  return twoStep ? kBdf2 : 1.0;
 }
 
 /// Sizes what method `implicit` needs: histories, factors, and each block's own matrix.
@@ -20,8 +20,8 @@ void prepareImplicit(Simulation& simulation);
 /// steps follow if these do not converge.
 IslandOutcome runImplicitSteps(IslandStep& step, bool mostlyFallen, double& reached_s);
 
-/// One implicit step of step.drift_s. Returns false if it does not converge, or if blocks collide at speed in it; the state is
-/// then restored. With `canRetryFiner` it stops after fewer iterations.
+/// One implicit step of step.drift_s, of step.twoStep. Returns false if it does not converge, or if blocks collide at speed in
+/// it; the state is then restored. With `canRetryFiner` it stops after fewer iterations.
 bool stepImplicit(IslandStep& step, bool canRetryFiner);
 
 /// Sets the velocities to zero after a step from rest; returns the displacement of the fastest corner in it, m.

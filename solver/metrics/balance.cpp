@@ -1,5 +1,7 @@
 #include "solver/metrics/balance.h"
 
+#include "solver/law/user_force.h"
+
 #include <algorithm>
 
 namespace springtower {
@@ -9,9 +11,9 @@ std::vector<UserPush> userPushes(const Simulation& simulation) {
   const ParticleArray& position = simulation.state.position;
   for (const UserForce& user : simulation.scene.forces) {
     if (user.start_s >= simulation.time_s || user.end_s < simulation.time_s) continue;
-    const auto block = static_cast<std::size_t>(user.block);
-    const Vec3 place = user.corner < 0 ? centre(position, block) : position.at(block, static_cast<std::size_t>(user.corner));
-    pushes.push_back({block, place, user.force});
+    const Load now = user.at(simulation.time_s);
+    const Vec3 place = placeOf(simulation.model, position, user);
+    pushes.push_back({static_cast<std::size_t>(user.block), place, now.force, now.torque});
   }
   return pushes;
 }
@@ -29,7 +31,10 @@ std::vector<Imbalance> imbalances(const Simulation& simulation, std::span<const 
     force[block] += by;
     torque[block] += (place - centre(simulation.state.position, block)).cross(by);
   };
-  for (const UserPush& user : userPushes(simulation)) push(user.block, user.force, user.place);
+  for (const UserPush& user : userPushes(simulation)) {
+    push(user.block, user.force, user.place);
+    torque[user.block] += user.torque;
+  }
   for (const ContactForce& contact : contacts) {
     const Vec3 by = contact.normalForce * contact.normal + contact.frictionForce;
     push(index(contact.upper), by, contact.point);

@@ -7,11 +7,12 @@
 
 namespace springtower {
 
-/// A force of the scene (UserForce) that acted in the frame that has just ended.
+/// A force of the scene (UserForce) that acts at the end of the frame that has just ended.
 struct UserPush {
   std::size_t block;
-  Vec3 place;  ///< m, present point of application
-  Vec3 force;  ///< N
+  Vec3 place;   ///< m, present point of application
+  Vec3 force;   ///< N
+  Vec3 torque;  ///< N m
 };
 std::vector<UserPush> userPushes(const Simulation& simulation);
 

@@ -17,6 +17,16 @@ double turnTrace(const FittedBox& from, const FittedBox& to) {
   return from.axis[0].dot(to.axis[0]) + from.axis[1].dot(to.axis[1]) + from.axis[2].dot(to.axis[2]);
 }
 
+// A block's shortest side, and the next.
+struct Sides {
+  double least;
+  double middle;
+};
+Sides sidesOf(const Vec3& dimensions) {
+  return {dimensions.minCoeff(),
+          std::max(std::min(dimensions.x(), dimensions.y()), std::min(std::max(dimensions.x(), dimensions.y()), dimensions.z()))};
+}
+
 // The axis of a block that is nearest to the vertical.
 std::size_t uprightAxis(const ParticleArray& position, std::size_t block) {
   std::size_t upright = 0;
@@ -63,9 +73,10 @@ Standing standing(const BlockModel& model, std::span<const FittedBox> start, con
     const FittedBox box = fittedBox(position, b);
     const Vec3 move = box.centre - start[b].centre;
     // Written so that a value that is not finite counts as fallen.
-    if (!(-move.z() <= kFallDropInHeights * model.dimensions[b].z())) return {false, blockId(b), Fall::lower, -move.z()};
+    const Sides sides = sidesOf(model.dimensions[b]);
+    if (!(-move.z() <= kFallDropInLeastSides * sides.least)) return {false, blockId(b), Fall::lower, -move.z()};
     const double shift = std::hypot(move.x(), move.y());
-    if (!(shift <= kFallShiftInWidths * model.dimensions[b].y())) return {false, blockId(b), Fall::sideways, shift};
+    if (!(shift <= kFallShiftInMiddleSides * sides.middle)) return {false, blockId(b), Fall::sideways, shift};
     const double trace = turnTrace(start[b], box);
     if (!(trace >= leastTrace)) {
       const double angle = std::acos(std::clamp(0.5 * (trace - 1.0), -1.0, 1.0));

@@ -13,11 +13,11 @@ namespace springtower {
 // Definitions of accuracy: one function for each figure in reports, charts and tests. All are pure functions of the blocks'
 // corners; energies and contact forces are in solver/world/simulation.h, penetration in solver/metrics/penetration.h.
 
-// A block has fallen when, relative to the start, its centre is lower by more than this fraction of its height, has shifted by
-// more than this fraction of its width, or its rotation exceeds this angle. So a tower that drifts apart has fallen, and a block
-// that leans on the floor as well.
-inline constexpr double kFallDropInHeights = 0.5;
-inline constexpr double kFallShiftInWidths = 0.5;
+// A block has fallen when, relative to the start, its centre is lower by more than this fraction of its least side, has shifted
+// sideways by more than this fraction of its middle side, or its rotation exceeds this angle. So a tower that drifts apart has
+// fallen, and a block that leans on the floor as well. A block's own axes, and how the scene is turned, do not matter.
+inline constexpr double kFallDropInLeastSides = 0.5;
+inline constexpr double kFallShiftInMiddleSides = 0.5;
 inline constexpr double kFallTurn_deg = 5.0;
 
 /// Why a block counts as fallen.
@@ -34,9 +34,9 @@ struct Standing {
 /// The cuboids fitted to all blocks, [blocks].
 std::vector<FittedBox> fittedBoxes(const ParticleArray& position);
 
-/// Whether every block stands as it did at the start (see the limits above); drop and shift are relative to the block's own
-/// height (its third dimension) and width (its second). `start`: cuboids at the start, [blocks]; `leftOut`: 1 for blocks that do
-/// not count because they are held or removed, [blocks] or empty. A position that is not finite counts as fallen.
+/// Whether every block stands as it did at the start (see the limits above). `start`: cuboids at the start, [blocks]; `leftOut`:
+/// 1 for blocks that do not count because they are held or removed, [blocks] or empty. A position that is not finite counts as
+/// fallen.
 Standing standing(const BlockModel& model, std::span<const FittedBox> start, const ParticleArray& position,
                   std::span<const std::uint8_t> leftOut = {});
 

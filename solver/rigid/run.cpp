@@ -5,6 +5,7 @@
 #include "solver/block/affine.h"
 #include "solver/block/inertia.h"
 #include "solver/contact/evaluate_forces.h"
+#include "solver/contact/pushes.h"
 #include "solver/contact/rigid_contacts.h"
 #include "solver/contact/update.h"
 #include "solver/rigid/list_points.h"
@@ -235,18 +236,18 @@ void applyForces(IslandStep& step) {
   for (RigidBody& body : island.bodies) {
     if (body.inverseMass > 0.0) body.velocity += step.drift_s * step.gravity;
   }
-  const std::int32_t own = step.engine.memo.islands.islandOf[static_cast<std::size_t>(step.blocks.front())];
-  for (const UserForce& user : step.simulation.scene.forces) {
-    if (!user.actsAt(step.time_s)) continue;
-    const auto b = static_cast<std::size_t>(user.block);
-    if (step.engine.memo.islands.islandOf[b] != own) continue;
-    RigidBody& body = island.bodies[static_cast<std::size_t>(step.engine.scratch.nodeOf[b])];
-    body.velocity += step.drift_s * body.inverseMass * user.force;
-    if (user.corner < 0) continue;
-    const auto c = static_cast<std::size_t>(user.corner);
-    const Vec3 arm = body.axes * Vec3(body.corner[0][c], body.corner[1][c], body.corner[2][c]);
-    body.spin += step.drift_s * (body.inverseInertia * arm.cross(user.force));
-  }
+  forEachPush(step, step.time_s, step.time_s + step.drift_s, [&](const UserForce& user, const Load& mean) {
+    RigidBody& body = island.bodies[static_cast<std::size_t>(step.engine.scratch.nodeOf[static_cast<std::size_t>(user.block)])];
+    body.velocity += step.drift_s * body.inverseMass * mean.force;
+    Vec3 moment = mean.torque;
+    if (user.corner >= 0) {
+      const auto c = static_cast<std::size_t>(user.corner);
+      moment += (body.axes * Vec3(body.corner[0][c], body.corner[1][c], body.corner[2][c])).cross(mean.force);
+    } else if (user.point) {
+      moment += (body.axes * *user.point).cross(mean.force);
+    }
+    if (!moment.isZero(0.0)) body.spin += step.drift_s * (body.inverseInertia * moment);
+  });
 }
 
 void moveFreely(RigidBody& body, double step_s) {

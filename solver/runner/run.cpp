@@ -36,8 +36,18 @@ class Recorder {
     const long framesInASecond = std::lround(1.0 / simulation.scene.settings.frame_s);
     lastSecond_.assign(static_cast<std::size_t>(std::max(1L, framesInASecond)), 0.0);
     measure(simulation);
+    startPenetration_m_ = now_.penetration.depth;
     result_.energyStart = energy(simulation);
     now_.energy = result_.energyStart;
+  }
+
+  // After the search for the equilibrium. What starts with the overlaps or the strain of a rest state has no contacts yet when it
+  // is placed, and gets the energy of its springs here: frames begin with that.
+  void prepared(const Simulation& simulation) {
+    const auto isStrained = [](const BlockSpec& block) { return block.strain != nullptr; };
+    const std::vector<BlockSpec>& blocks = simulation.scene.blocks;
+    const bool overlaps = startPenetration_m_ > simulation.lengths.contactError_m;
+    if (overlaps || std::any_of(blocks.begin(), blocks.end(), isStrained)) now_.energy = energy(simulation);
   }
 
   // `unchanged`: nothing moved in this frame, so the measures of the frame before still hold.
@@ -157,6 +167,7 @@ class Recorder {
   std::size_t laid_ = 0;              // blocks whose new place is included
   PenetrationWorkspace workspace_;
   FrameMeasures now_;
+  double startPenetration_m_ = 0.0;
   double largestRise_j_ = 0.0;
   bool rested_ = false;  // whether all blocks were at rest in the frame before
   bool settled_ = false;
@@ -187,6 +198,7 @@ RunResult runScene(Simulation& simulation, const RunOptions& options, const Fram
   if (afterFrame) afterFrame(simulation);
   const long frames = std::max(1L, std::lround(options.seconds / simulation.scene.settings.frame_s));
   const PrepareResult prepared = prepareFor(simulation, options);
+  recorder.prepared(simulation);
   bool interrupted = prepared.end == PrepareEnd::cancelled;
   for (long frame = 0; frame < frames && !interrupted; ++frame) {
     if (!simulation.scene.moves.empty()) {

@@ -26,6 +26,10 @@ struct IslandStep {
   double time_s = 0.0;          ///< s, start of the step
   double drift_s = 0.0;         ///< s, step of the positions
   double kick_s = 0.0;          ///< s; step of the velocities: mean of the last and this drift (leapfrog with changing steps)
+  double pushedFrom_s = 0.0;    ///< s; user forces act in the step by their means from this time on,
+  double pushedUntil_s = 0.0;   ///< s, up to this one
+  double pushedBefore_s = 0.0;  ///< s; the step before, whose means BDF2 carries on, or 0: it does not
+  bool twoStep = false;         ///< of implicit steps: BDF2, else implicit Euler
   double advance_s = 0.0;       ///< s by which what the contact points store lags behind the positions
   double maxStiffening = 1.0;   ///< upper bound of the stiffening of contacts made now
   /// Pairs that touch or may use up their clearance soon: all pairs, unless the steps are so short that a list of these pays.

@@ -55,11 +55,13 @@ HeightSpan spanThrough(const OrientedBox& box, const Eigen::Vector2d& place) {
   return span;
 }
 
-// A block under another: what their outlines have in common, and the height at which the lower one ends there.
+// A block under another: what their outlines have in common, and the heights at which the lower one ends there and the upper one
+// begins.
 struct Support {
   std::size_t block;
   AreaMoments overlap;
   double top_m;
+  double bottom_m;
 };
 
 using Supports = std::vector<std::vector<Support>>;
@@ -77,7 +79,7 @@ void addSupport(const Scene& scene, const std::vector<Footprint>& footprints, st
   const HeightSpan& upper = pIsLower ? ofQ : ofP;
   if (lower.upper - upper.lower > 0.5 * std::min(lower.upper - lower.lower, upper.upper - upper.lower)) return;
   if (scene.blocks[pIsLower ? q : p].fixed) return;
-  below[pIsLower ? q : p].push_back({pIsLower ? p : q, overlap, lower.upper});
+  below[pIsLower ? q : p].push_back({pIsLower ? p : q, overlap, lower.upper, upper.lower});
 }
 
 // Extents of the blocks along an axis, m.
@@ -154,12 +156,21 @@ Supports supportsOf(const Scene& scene, const std::vector<Footprint>& footprints
   return below;
 }
 
-// Height difference of the tops of a block's supports, m.
-double unevenness(const std::vector<Support>& supports) {
+// Height difference of the tops of a block's supports, m. A block that has compressed some, as at rest, may lie on them at a
+// slope of its own: then it is the largest gap between it and one of them.
+double unevenness(const std::vector<Support>& supports, double height_m) {
   if (supports.empty()) return 0.0;
-  const auto byTop = [](const Support& s, const Support& t) { return s.top_m < t.top_m; };
-  const auto [lowest, highest] = std::minmax_element(supports.begin(), supports.end(), byTop);
-  return highest->top_m - lowest->top_m;
+  double lowest_m = 1e300;
+  double highest_m = -1e300;
+  double gap_m = 0.0;
+  bool presses = false;
+  for (const Support& support : supports) {
+    lowest_m = std::min(lowest_m, support.top_m);
+    highest_m = std::max(highest_m, support.top_m);
+    gap_m = std::max(gap_m, support.bottom_m - support.top_m);
+    presses = presses || support.top_m - support.bottom_m > tuning::kFirstContactError * height_m;
+  }
+  return presses ? gap_m : highest_m - lowest_m;
 }
 
 // Whether one of a block's sides is level.
@@ -250,7 +261,8 @@ void weigh(const Scene& scene, const std::vector<Footprint>& footprints, const S
     const double own = scene.blocks[b].mass * weighing;
     load[b] += own;
     if (isLevel(scene.blocks[b])) sums[stack].level_n += own;
-    const bool uneven = unevenness(below[b]) > tuning::kUnevenHeight * (footprints[b].upper_m - footprints[b].lower_m);
+    const double height_m = footprints[b].upper_m - footprints[b].lower_m;
+    const bool uneven = unevenness(below[b], height_m) > tuning::kUnevenHeight * height_m;
     sums[stack].anyUneven = sums[stack].anyUneven || uneven;
     double area_m2 = 0.0;
     double largest_m2 = 0.0;

@@ -3,6 +3,7 @@
 #include "broadphase/islands.h"
 #include "broadphase/sort_and_sweep.h"
 #include "broadphase/swept_boxes.h"
+#include "core/scene/user_force.h"
 #include "core/state.h"
 #include "solver/algebra/eigen_llt.h"
 #include "solver/block/affine.h"
@@ -54,6 +55,7 @@ struct Memo {
   std::vector<AffineField> carriedMotion;  ///< and of the velocities that carried them, in implicit and multi-stage methods
   ByIsland<NewtonSystem> newtonSystems;    ///< not of rigid methods and the report's
   ByIsland<SparseFactors> sparseFactors;   ///< of `implicitEigen` alone
+  std::vector<UserForce> forcesBefore;     ///< user forces of the frame before
   GripForce tetherForce;                   ///< the hand's, as last evaluated
 };
 

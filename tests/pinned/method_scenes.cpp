@@ -1,4 +1,5 @@
 #include "tests/pinned/pinned_scene.h"
+#include "tests/support/block_scenes.h"
 
 #include <cctype>
 
@@ -9,7 +10,7 @@ namespace {
 // with a corner first.
 Scene sampler() {
   Scene scene = swaying(awake(bitCodeScene("(101)-(111)-(101)")), 0.5, 2.0);
-  scene.forces.push_back({3, -1, Vec3(0.0, 0.2, 0.0), 0.1, 0.3});
+  scene.forces.push_back(constantForce(3, -1, Vec3(0.0, 0.2, 0.0), 0.1, 0.3));
   BlockSpec falling;
   falling.centre = Vec3(0.005, 0.0, 3.0 * kBlockHeight_m + 0.025);
   falling.orientation = Eigen::Quaterniond(0.99, 0.06, 0.04, 0.02).normalized();

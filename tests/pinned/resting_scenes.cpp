@@ -1,4 +1,5 @@
 #include "tests/pinned/pinned_scene.h"
+#include "tests/support/block_scenes.h"
 
 namespace springtower {
 namespace {
@@ -26,8 +27,8 @@ Scene slidingBlock() {
 // All asleep, a weak force wakes one block; then a strong one draws it out, and others wake.
 Scene pulledAsleep() {
   Scene scene = towerScene(5);
-  scene.forces.push_back({4, -1, Vec3(0.0, 0.002, 0.0), 3.2, 3.4});
-  scene.forces.push_back({4, -1, Vec3(0.0, 4.0, 0.0), 3.8, 3.85});
+  scene.forces.push_back(constantForce(4, -1, Vec3(0.0, 0.002, 0.0), 3.2, 3.4));
+  scene.forces.push_back(constantForce(4, -1, Vec3(0.0, 4.0, 0.0), 3.8, 3.85));
   return scene;
 }
 
@@ -37,7 +38,7 @@ Scene swayThatWakes() {
 
 Scene cornerForce() {
   Scene scene = towerScene(3);
-  scene.forces.push_back({7, 6, Vec3(0.1, 0.05, -0.1), 0.1, 0.6});
+  scene.forces.push_back(constantForce(7, 6, Vec3(0.1, 0.05, -0.1), 0.1, 0.6));
   return scene;
 }
 

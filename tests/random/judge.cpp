@@ -3,6 +3,7 @@
 #include "scenarios/random_scene.h"
 #include "solver/block/inertia.h"
 #include "solver/hand/grip.h"
+#include "solver/law/user_force.h"
 #include "solver/metrics/penetration.h"
 #include "tests/random/course.h"
 
@@ -62,9 +63,8 @@ class Work {
     const double frame_s = simulation.scene.settings.frame_s;
     for (std::size_t f = 0; f < simulation.scene.forces.size(); ++f) {
       const UserForce& force = simulation.scene.forces[f];
-      const double acts_s = std::min(force.end_s, simulation.time_s) - std::max(force.start_s, simulation.time_s - frame_s);
-      const double share = std::clamp(acts_s / frame_s, 0.0, 1.0);
-      done_j += share * force.force.dot(placeOf(simulation, force) - places_[f]);
+      const Load mean = force.meanOver(simulation.time_s - frame_s, simulation.time_s);
+      done_j += mean.force.dot(placeOf(simulation, force) - places_[f]);
     }
     sum_j += done_j;
     put_j += std::abs(done_j);
@@ -75,9 +75,7 @@ class Work {
 
  private:
   static Vec3 placeOf(const Simulation& simulation, const UserForce& force) {
-    const auto b = static_cast<std::size_t>(force.block);
-    if (force.corner < 0) return centre(simulation.state.position, b);
-    return simulation.state.position.at(b, static_cast<std::size_t>(force.corner));
+    return springtower::placeOf(simulation.model, simulation.state.position, force);
   }
 
   GripForce hand_;

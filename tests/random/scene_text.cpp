@@ -41,6 +41,10 @@ std::string blockText(const BlockSpec& block) {
 std::string forceText(const UserForce& force) {
   std::string text = fmt::format("[[force]]\nblock = {}\nforce_n = {}\nstart_s = {}\nend_s = {}\n", force.block,
                                  vector(force.force), number(force.start_s), number(force.end_s));
+  if (!force.torque.isZero(0.0) || force.torqueAtEnd) text += fmt::format("torque_n_m = {}\n", vector(force.torque));
+  if (force.point) text += fmt::format("point_m = {}\n", vector(*force.point));
+  if (force.forceAtEnd) text += fmt::format("force_end_n = {}\n", vector(*force.forceAtEnd));
+  if (force.torqueAtEnd) text += fmt::format("torque_end_n_m = {}\n", vector(*force.torqueAtEnd));
   if (force.corner >= 0) text += fmt::format("corner = {}\n", force.corner);
   return text;
 }

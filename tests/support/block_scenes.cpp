@@ -82,6 +82,16 @@ BreathingModes breathingModes(const BlockModel& model, Inertia inertia, std::siz
   return {solver.eigenvalues(), solver.eigenvectors()};
 }
 
+UserForce constantForce(int block, int corner, const Vec3& force_n, double start_s, double end_s) {
+  UserForce force;
+  force.block = block;
+  force.corner = corner;
+  force.force = force_n;
+  force.start_s = start_s;
+  force.end_s = end_s;
+  return force;
+}
+
 Momentum momentum(const Simulation& simulation) {
   Momentum sum;
   for (std::size_t b = 0; b < simulation.model.blockCount(); ++b) {

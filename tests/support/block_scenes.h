@@ -52,6 +52,9 @@ inline void stretch(ParticleArray& position, std::size_t block, const Vec3& shar
   for (std::size_t c = 0; c < kCorners; ++c) position.add(block, c, shares.cwiseProduct(position.at(block, c) - middle));
 }
 
+/// A constant force on a block (N, world axes) over a time (s), at a corner or, for -1, at the centre.
+UserForce constantForce(int block, int corner, const Vec3& force_n, double start_s, double end_s);
+
 /// Momentum (kg m/s) and angular momentum about the origin (kg m2/s) of all blocks, with the inertia in force.
 struct Momentum {
   Vec3 linear = Vec3::Zero();

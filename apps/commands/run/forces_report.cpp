@@ -34,7 +34,10 @@ Json forcesJson(const Simulation& simulation) {
   }
   Json pushes = Json::array();
   for (const UserPush& user : userPushes(simulation))
-    pushes.push_back({{"block", user.block}, {"place_m", vectorJson(user.place)}, {"force_n", vectorJson(user.force)}});
+    pushes.push_back({{"block", user.block},
+                      {"place_m", vectorJson(user.place)},
+                      {"force_n", vectorJson(user.force)},
+                      {"torque_n_m", vectorJson(user.torque)}});
   Json contacts = Json::array();
   for (const ContactForce& contact : activeSetNow) {
     contacts.push_back({{"upper", blockJson(contact.upper)},

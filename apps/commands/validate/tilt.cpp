@@ -111,8 +111,8 @@ ValidationSection validateTilts(const ValidationPlan& plan) {
   ValidationSection section{
       "Turning gravity",
       "Gravity turns by 0.1 degree a second towards the worst side that statics gives; the tower goes when "
-      "a block has fallen (half a "
-      "height lower, half a width aside or turned by 5 degrees). Friction is active where the margin would "
+      "a block has fallen (half its "
+      "least side lower, half its middle side aside or turned by 5 degrees). Friction is active where the margin would "
       "be larger with more of it; "
       "statics is an upper bound there. Elastic blocks let a tower lean, so it goes earlier by an angle that shrinks "
       "with the tolerance: what is judged is 0.01 mm, beside it stands the default."};

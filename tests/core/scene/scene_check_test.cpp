@@ -7,6 +7,7 @@
 #include <gmock/gmock.h>
 #include <limits>
 #include <numbers>
+#include <optional>
 
 namespace springtower {
 namespace {
@@ -41,18 +42,31 @@ TEST(StartingPlaces, ThatTouchAreFine) {
   EXPECT_NO_THROW(checkScene(sceneOf({blockAt({0, 0, kHalfHeight_m}), blockAt({0.081, 0.0267, stacked})}), "corner at corner"));
 }
 
-TEST(StartingPlaces, MayOverlapByAMillionthOfTheLeastDimension) {
-  const double allowed = 1e-6 * 0.0182;
-  EXPECT_NO_THROW(checkScene(sceneOf({blockAt({0, 0, kHalfHeight_m - 0.9 * allowed})}), "test"));
-  EXPECT_THROW(checkScene(sceneOf({blockAt({0, 0, kHalfHeight_m - 1.1 * allowed})}), "test"), InputError);
-  const BlockSpec lower = blockAt({0, 0, kHalfHeight_m});
-  EXPECT_NO_THROW(checkScene(sceneOf({lower, blockAt({0, 0, 3.0 * kHalfHeight_m - 0.9 * allowed})}), "test"));
-  EXPECT_THROW(checkScene(sceneOf({lower, blockAt({0, 0, 3.0 * kHalfHeight_m - 1.1 * allowed})}), "test"), InputError);
+// Four tolerances, of the larger of the one in force and the default one, up to a tenth of the thinner block.
+TEST(StartingPlaces, MayOverlapAsAtRest) {
+  const auto overlapping = [](double depth, std::optional<double> tolerance_m, double side_m) {
+    BlockSpec lower = blockAt({0, 0, 0.5 * side_m - 0.99 * depth});
+    BlockSpec upper = blockAt({0, 0, 1.5 * side_m - 1.98 * depth});
+    lower.dimensions.z() = upper.dimensions.z() = side_m;
+    Scene scene = sceneOf({lower, upper});
+    scene.settings.tolerance_m = tolerance_m;
+    return scene;
+  };
+  struct Case {
+    std::optional<double> tolerance_m;
+    double side_m;
+    double allowed_m;
+  };
+  for (const Case& of : {Case{{}, 0.0182, 2e-4}, Case{1e-5, 0.0182, 2e-4}, Case{1e-4, 0.0182, 4e-4}, Case{{}, 0.0091, 1e-4},
+                         Case{1e-3, 0.0182, 0.00182}}) {
+    EXPECT_NO_THROW(checkScene(overlapping(of.allowed_m, of.tolerance_m, of.side_m), "test")) << of.allowed_m;
+    EXPECT_THROW(checkScene(overlapping(1.03 * of.allowed_m, of.tolerance_m, of.side_m), "test"), InputError) << of.allowed_m;
+  }
 }
 
 TEST(StartingPlaces, InsideTheFloorAreNamedWithTheirDepth) {
   EXPECT_THAT(checking(sceneOf({blockAt({0, 0, kHalfHeight_m}), blockAt({0.2, 0, 0.0081})})),
-              ThrowsMessage<InputError>("test: block 1 starts 1 mm inside the floor z = 0, allowed is touching it"));
+              ThrowsMessage<InputError>("test: block 1 starts 1 mm inside the floor z = 0, allowed up to 0.2 mm, as at rest"));
   Scene withoutFloor = sceneOf({blockAt({0, 0, -0.5})});
   withoutFloor.floor = false;
   EXPECT_NO_THROW(checkScene(withoutFloor, "test"));
@@ -60,10 +74,12 @@ TEST(StartingPlaces, InsideTheFloorAreNamedWithTheirDepth) {
 
 TEST(StartingPlaces, InsideOneAnotherNameBothBlocksAndTheDepth) {
   const BlockSpec first = blockAt({0, 0, kHalfHeight_m});
-  EXPECT_THAT(checking(sceneOf({blockAt({1, 0, kHalfHeight_m}), first, blockAt({0.0, 0.0, 0.0263}, 90.0)})),
-              ThrowsMessage<InputError>("test: block 1 and block 2 start 1 mm inside each other, allowed is touching"));
-  EXPECT_THAT(checking(sceneOf({first, first})),
-              ThrowsMessage<InputError>("test: block 0 and block 1 start 18.2 mm inside each other, allowed is touching"));
+  EXPECT_THAT(
+      checking(sceneOf({blockAt({1, 0, kHalfHeight_m}), first, blockAt({0.0, 0.0, 0.0263}, 90.0)})),
+      ThrowsMessage<InputError>("test: block 1 and block 2 start 1 mm inside each other, allowed up to 0.2 mm, as at rest"));
+  EXPECT_THAT(
+      checking(sceneOf({first, first})),
+      ThrowsMessage<InputError>("test: block 0 and block 1 start 18.2 mm inside each other, allowed up to 0.2 mm, as at rest"));
 }
 
 // A cube of side 1 balanced on its corner, half a diagonal above the flat one below: only the flat one's face separates them,
@@ -77,9 +93,10 @@ TEST(StartingPlaces, OfTurnedBlocksAreJudgedByTheirBoxes) {
   for (const bool flatFirst : {true, false}) {
     onCorner.centre.z() = touching;
     EXPECT_NO_THROW(checkScene(flatFirst ? sceneOf({flat, onCorner}) : sceneOf({onCorner, flat}), "test"));
-    onCorner.centre.z() = touching - 0.01;
-    EXPECT_THAT(checking(flatFirst ? sceneOf({flat, onCorner}) : sceneOf({onCorner, flat})),
-                ThrowsMessage<InputError>("test: block 0 and block 1 start 10 mm inside each other, allowed is touching"));
+    onCorner.centre.z() = touching - 0.02;
+    EXPECT_THAT(
+        checking(flatFirst ? sceneOf({flat, onCorner}) : sceneOf({onCorner, flat})),
+        ThrowsMessage<InputError>("test: block 0 and block 1 start 20 mm inside each other, allowed up to 10.99 mm, as at rest"));
   }
 }
 
@@ -94,16 +111,18 @@ TEST(StartingPlaces, OfCrossedEdgesAreJudgedByTheProductOfTheEdges) {
     return sceneOf({lower, upper});
   };
   EXPECT_NO_THROW(checkScene(bars(std::numbers::sqrt2), "test"));
-  EXPECT_THAT(checking(bars(std::numbers::sqrt2 - 0.002)),
-              ThrowsMessage<InputError>("test: block 0 and block 1 start 2 mm inside each other, allowed is touching"));
+  EXPECT_THAT(
+      checking(bars(std::numbers::sqrt2 - 0.02)),
+      ThrowsMessage<InputError>("test: block 0 and block 1 start 20 mm inside each other, allowed up to 10.99 mm, as at rest"));
 }
 
-// Whether two boxes share a point, found by sampling both: the answer of the separating axes must not contradict it.
+// Whether two boxes share a point, so far inside both that they overlap by more than is allowed, found by sampling both: the
+// answer of the separating axes must not contradict it.
 TEST(StartingPlaces, AreRefusedWheneverABoxHoldsAPointOfAnother) {
   RandomStream random(11, 0);
   const auto inside = [](const BlockSpec& block, const Vec3& point) {
     const Vec3 own = block.orientation.conjugate() * (point - block.centre);
-    return (own.cwiseAbs().array() < 0.499 * block.dimensions.array()).all();
+    return (own.cwiseAbs().array() < 0.5 * block.dimensions.array() - 2e-4).all();
   };
   int overlapping = 0;
   int accepted = 0;
@@ -114,7 +133,7 @@ TEST(StartingPlaces, AreRefusedWheneverABoxHoldsAPointOfAnother) {
     bool sharesAPoint = false;
     for (int sample = 0; sample < 3000 && !sharesAPoint; ++sample) {
       const Vec3 own =
-          (Vec3(random.uniform(), random.uniform(), random.uniform()).array() - 0.5) * 0.998 * first.dimensions.array();
+          (Vec3(random.uniform(), random.uniform(), random.uniform()).array() - 0.5) * (first.dimensions.array() - 2e-4);
       sharesAPoint = inside(second, first.orientation * own + first.centre);
     }
     bool refused = false;

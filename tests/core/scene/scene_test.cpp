@@ -192,7 +192,7 @@ TEST(Offsets, MayNotPushBlocksIntoOneAnother) {
   options.offsets = {{0, 1, 0.0, 0.001}};
   EXPECT_THAT([&] { bitCodeScene("(111)-(101)", options); },
               ThrowsMessage<InputError>("(111)-(101): block 0 (row 0, position 1) and block 1 (row 0, position 2) start 0.55 mm "
-                                        "inside each other, allowed is touching"));
+                                        "inside each other, allowed up to 0.2 mm, as at rest"));
 }
 
 TEST(UnevenRows, StandOnTheHighestBlockBelow) {

@@ -247,7 +247,7 @@ TEST_P(InertiaTest, ACoupleTurnsABlockAsTheorySays) {
   setSteps(scene.settings, Method::semiImplicitEuler, 1.0 / 12000.0, 200);  // the first kick is half: 0.1 % of all
   for (int corner = 0; corner < 8; ++corner) {
     const double side = cornerSide(static_cast<std::size_t>(corner), 0);
-    scene.forces.push_back({0, corner, Vec3(0.0, side * force, 0.0), 0.0, end_s});
+    scene.forces.push_back(constantForce(0, corner, Vec3(0.0, side * force, 0.0), 0.0, end_s));
   }
   Simulation simulation(scene);
   stepFor(simulation, 2.0 * end_s);

@@ -5,6 +5,7 @@
 #include "scenarios/towers.h"
 #include "solver/world/engine.h"
 #include "solver/world/simulation.h"
+#include "tests/support/block_scenes.h"
 #include "tests/support/prepare_and_step.h"
 #include "tests/support/uneven_tower.h"
 
@@ -260,7 +261,7 @@ TEST_P(SnapshotTest, ARestoredSwayRepeatsItsFuture) {
   scene.settings.method = GetParam();
   scene.gravity.sway_deg = 0.5;
   scene.gravity.sway_hz = 2.0;
-  scene.forces.push_back({3, -1, Vec3(0.0, 0.2, 0.0), 0.1, 0.3});
+  scene.forces.push_back(constantForce(3, -1, Vec3(0.0, 0.2, 0.0), 0.1, 0.3));
   const Counters between = expectSameFuture(scene, 10, 25);
   if (isImplicit(GetParam())) {
     EXPECT_GE(between.implicitSteps, 15U) << "in each frame";

@@ -259,7 +259,7 @@ TEST(FixedBlocksAsleep, CarryATowerAsTheFloorDoes) {
   for (const bool table : {false, true}) {
     constexpr std::size_t kPushed = 28;
     Scene scene = towerScene(18);
-    scene.forces.push_back({kPushed, -1, scene.blocks[kPushed].orientation * Vec3::UnitX(), 2.0, 2.5});
+    scene.forces.push_back(constantForce(kPushed, -1, scene.blocks[kPushed].orientation * Vec3::UnitX(), 2.0, 2.5));
     if (table) {
       for (BlockSpec& block : scene.blocks) block.centre.z() += 0.2;
       scene.blocks.push_back(shelfAt(0.2));
@@ -345,7 +345,7 @@ TEST(FixedBlocksInput, IsChecked) {
   };
   Scene scene = fixedScene(Method::implicit, {shelfAt(0.0), shelfAt(0.01), freeBlock({0.0, 0.0, 0.5})});
   EXPECT_EQ(messageOf(scene), "") << "fixed blocks may lie in one another and in the floor";
-  scene.forces.push_back({0, -1, Vec3::UnitX(), 0.0, 1.0});
+  scene.forces.push_back(constantForce(0, -1, Vec3::UnitX(), 0.0, 1.0));
   EXPECT_EQ(messageOf(scene), "scene: force 0: block: found block 0, which is fixed, allowed is a block that moves");
   scene.forces.clear();
   scene.blocks[1].spin.z() = 1.0;

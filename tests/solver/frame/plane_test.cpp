@@ -123,13 +123,9 @@ TEST(Plane, RefusesScenesThatAreNotInIt) {
               ThrowsMessage<InputError>(HasSubstr("turn out of the plane")));
   EXPECT_THAT(refusal([](Scene& s) { s.gravity.tilt_deg = s.gravity.direction_deg = 30.0; }),
               ThrowsMessage<InputError>(HasSubstr("gravity: y")));
-  EXPECT_THAT(refusal([](Scene& s) {
-                s.forces.push_back({0, -1, Vec3::UnitY(), 0.0, 1.0});
-              }),
+  EXPECT_THAT(refusal([](Scene& s) { s.forces.push_back(constantForce(0, -1, Vec3::UnitY(), 0.0, 1.0)); }),
               ThrowsMessage<InputError>(HasSubstr("force 0: force y: found 1")));
-  EXPECT_THAT(refusal([](Scene& s) {
-                s.forces.push_back({0, 3, Vec3::UnitX(), 0.0, 1.0});
-              }),
+  EXPECT_THAT(refusal([](Scene& s) { s.forces.push_back(constantForce(0, 3, Vec3::UnitX(), 0.0, 1.0)); }),
               ThrowsMessage<InputError>(HasSubstr("force 0: corner")));
 }
 

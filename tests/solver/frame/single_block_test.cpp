@@ -281,7 +281,7 @@ double fallWithoutSleep(Simulation& simulation, double from_s, double until_s) {
   while (simulation.time_s < until_s) {
     prepareAndStep(simulation);
     const FittedBox now = fittedBox(simulation.state.position, 1);
-    if (start[1].centre.z() - now.centre.z() > kFallDropInHeights * kBlockHeight_m) return simulation.time_s;
+    if (start[1].centre.z() - now.centre.z() > kFallDropInLeastSides * kBlockHeight_m) return simulation.time_s;
     if (simulation.time_s <= from_s) continue;
     EXPECT_EQ(simulation.asleep[1], 0) << "asleep at " << simulation.time_s << " s";
     if (simulation.asleep[1] != 0) break;
@@ -308,7 +308,7 @@ struct Pushed : ::testing::Test {
     Scene scene = overhangScene(0.0);
     const double start_s = 3.0;
     const double duration_s = std::sqrt(2.0 * way / (gain * (1.0 + gain / loss)));
-    scene.forces.push_back({1, -1, Vec3(0.0, 1.2 * friction, 0.0), start_s, start_s + duration_s});
+    scene.forces.push_back(constantForce(1, -1, Vec3(0.0, 1.2 * friction, 0.0), start_s, start_s + duration_s));
     Simulation simulation(scene);
     stepFor(simulation, start_s);
     EXPECT_EQ(simulation.asleep[1], 1) << "it should sleep before it is pushed";

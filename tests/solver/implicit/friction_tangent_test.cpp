@@ -29,7 +29,7 @@ constexpr std::size_t kDrawn = 4;  // middle block of the middle row
 struct DrawnBlock {
   DrawnBlock() {
     step.drift_s = 0.25 * simulation.scene.settings.frame_s;
-    effective_s = endShare(Method::implicit) * step.drift_s;
+    effective_s = kBdf2 * step.drift_s;
     evaluateTrialForces(step);
     island().trialIsAhead = true;
     island().useConsistentTangent = true;
@@ -41,7 +41,8 @@ struct DrawnBlock {
     scene.settings.method = Method::implicit;
     const BlockSpec& drawn = scene.blocks[kDrawn];
     const double held_n = 3.0 * scene.staticFriction * drawn.mass * kStandardGravity_m_s2;
-    scene.forces.push_back({static_cast<int>(kDrawn), -1, 1.5 * held_n * (drawn.orientation * Vec3::UnitX()), 0.5, 1.0});
+    scene.forces.push_back(
+        constantForce(static_cast<int>(kDrawn), -1, 1.5 * held_n * (drawn.orientation * Vec3::UnitX()), 0.5, 1.0));
     return scene;
   }
 

@@ -43,7 +43,7 @@ struct VibratingBlock {
   void note(double first, double before, double now) {
     Engine& engine = *simulation.engine;
     const double h = step.drift_s;
-    const double effective_s = endShare(Method::implicit) * h;
+    const double effective_s = kBdf2 * h;
     const double last = before - first;
     for (std::size_t c = 0; c < kCorners; ++c) {
       simulation.state.velocity.values(0, 0)[c] = now;

@@ -79,7 +79,7 @@ TEST(WideIsland, ABrickIsPushedOutOfAWallByImplicitSteps) {
   const double friction_n = 0.4 * kStandardGravity_m_s2 * brick.mass * (2.0 * rowsAbove + 1.0);
   const double excess = 0.25;
   const double push_s = 0.03;
-  scene.forces.push_back({pushed, -1, Vec3(0.0, (1.0 + excess) * friction_n, 0.0), 0.5, 0.5 + push_s});
+  scene.forces.push_back(constantForce(pushed, -1, Vec3(0.0, (1.0 + excess) * friction_n, 0.0), 0.5, 0.5 + push_s));
   Simulation simulation(scene);
   stepFor(simulation, 0.5);
   const Vec3 start = centre(simulation.state.position, pushed);

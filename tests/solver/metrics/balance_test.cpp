@@ -1,5 +1,6 @@
 #include "solver/metrics/balance.h"
 
+#include "tests/support/block_scenes.h"
 #include "tests/support/prepare_and_step.h"
 
 #include <gtest/gtest.h>
@@ -29,7 +30,7 @@ TEST(Balance, OfAFallingBlockLacksItsWholeWeight) {
 TEST(Balance, OfAPushedBlockAtRestIncludesThePush) {
   Scene scene = blockAlone(0.0);
   const double weight = scene.blocks[0].mass * scene.gravity.magnitude;
-  scene.forces.push_back({0, -1, Vec3(0.1 * weight, 0.0, 0.0), 0.0, 2.0});
+  scene.forces.push_back(constantForce(0, -1, Vec3(0.1 * weight, 0.0, 0.0), 0.0, 2.0));
   Simulation simulation(scene);
   while (simulation.time_s < 1.99) prepareAndStep(simulation);
   ASSERT_EQ(userPushes(simulation).size(), 1U);

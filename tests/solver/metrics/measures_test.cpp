@@ -74,6 +74,36 @@ TEST_F(StandingTest, FallsWhenTurnedByMoreThanFiveDegreesAboutAnyAxis) {
   EXPECT_NEAR(now().amount, 180.0, 1e-5);
 }
 
+// The second block's sides are 50, 20 and 10 mm: neither which of them is upright nor how the scene is turned matters.
+TEST_F(StandingTest, MeasuresABlockByItsSortedSides) {
+  boxes[1].dimensions = Vec3(0.01, 0.05, 0.02);  // on its edge
+  model = modelOf(boxes);
+  for (const double turn_deg : {0.0, 33.0}) {
+    const Eigen::Quaterniond turn = turned(turn_deg, Vec3::UnitZ());
+    std::vector<TestBox> placed = boxes;
+    for (TestBox& box : placed) {
+      box.centre = turn * box.centre;
+      box.orientation = turn * box.orientation;
+    }
+    start = fittedBoxes(cornersOf(placed));
+    const auto moved = [&](const Vec3& by, double angle_deg, const Vec3& axis) {
+      std::vector<TestBox> now = placed;
+      now[1].centre += turn * by;
+      now[1].orientation = turned(angle_deg, turn * axis) * now[1].orientation;
+      return standing(model, start, cornersOf(now)).fall;
+    };
+    EXPECT_EQ(moved({0.0, 0.0, -0.0049}, 0.0, Vec3::UnitX()), Fall::none);
+    EXPECT_EQ(moved({0.0, 0.0, -0.0051}, 0.0, Vec3::UnitX()), Fall::lower);
+    for (const Vec3& aside : {Vec3(1, 0, 0), Vec3(0, -1, 0), Vec3(0.6, 0.8, 0)}) {
+      EXPECT_EQ(moved(0.0099 * aside, 0.0, Vec3::UnitX()), Fall::none);
+      EXPECT_EQ(moved(0.0101 * aside, 0.0, Vec3::UnitX()), Fall::sideways);
+    }
+    EXPECT_EQ(moved(Vec3::Zero(), 4.9, Vec3::UnitZ()), Fall::none);
+    EXPECT_EQ(moved(Vec3::Zero(), 5.1, Vec3::UnitZ()), Fall::turned);
+    EXPECT_EQ(moved({0.0, 0.0, -0.001}, 90.0, Vec3::UnitX()), Fall::turned) << "tipped over";
+  }
+}
+
 TEST_F(StandingTest, LeavesOutHeldAndRemovedBlocks) {
   boxes[1].centre.z() -= 1.0;
   EXPECT_FALSE(now().stands);

@@ -3,6 +3,7 @@
 #include "solver/world/engine.h"
 #include "solver/world/simulation.h"
 #include "tests/solver/reference/report_scenes.h"
+#include "tests/support/block_scenes.h"
 #include "tests/support/prepare_and_step.h"
 
 #include <algorithm>
@@ -169,7 +170,7 @@ TEST(ReportFailure, TheTopRowMovesWhenALooseBlockIsDrawnOut) {
   scene.settings.sleep = Sleep::off;
   const std::size_t loose = 12;
   const Vec3 along = scene.blocks[loose].orientation * Vec3::UnitX();
-  scene.forces.push_back({static_cast<std::int32_t>(loose), -1, 0.156 * along, 0.2, 0.45});
+  scene.forces.push_back(constantForce(static_cast<std::int32_t>(loose), -1, 0.156 * along, 0.2, 0.45));
   Simulation reported(asReported(scene));
   EXPECT_GT(topRowMoves(reported, 21, 0.8), 3e-4);
   Simulation ours(scene);
@@ -200,7 +201,7 @@ Scene overhangingBlock() {
   upper.orientation = Eigen::AngleAxisd(0.5 * std::numbers::pi, Vec3::UnitZ());
   upper.centre = Vec3(0.0, 0.5 * kBlockWidth_m + 3e-4, 1.5 * kBlockHeight_m);
   scene.blocks.push_back(upper);
-  for (const int corner : {0, 2}) scene.forces.push_back({1, corner, Vec3(0.0, 0.0, -0.005), 0.0, 0.3});
+  for (const int corner : {0, 2}) scene.forces.push_back(constantForce(1, corner, Vec3(0.0, 0.0, -0.005), 0.0, 0.3));
   return scene;
 }
 

@@ -152,7 +152,7 @@ TEST_P(RigidMethod, FloorCarriesTheWeight) {
 TEST_P(RigidMethod, ASleepingTowerWakesWhenItLosesItsSupport) {
   Scene scene = bitCodeScene("(010)-(010)");
   scene.settings.method = GetParam();
-  scene.forces.push_back({0, -1, Vec3(0.0, 3.0, 0.0), 3.0, 3.2});
+  scene.forces.push_back(constantForce(0, -1, Vec3(0.0, 3.0, 0.0), 3.0, 3.2));
   Simulation simulation(scene);
   stepFor(simulation, 2.9);
   ASSERT_EQ(std::count(simulation.asleep.begin(), simulation.asleep.end(), std::uint8_t{1}), 2);

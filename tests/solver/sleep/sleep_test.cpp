@@ -3,6 +3,7 @@
 #include "solver/hand/moves.h"
 #include "solver/runner/run.h"
 #include "tests/solver/hand/take.h"
+#include "tests/support/block_scenes.h"
 #include "tests/support/prepare_and_step.h"
 
 #include <algorithm>
@@ -49,7 +50,7 @@ TEST(Sleep, TheFullTowerSleepsWithinFiveSecondsAndThenCostsNothing) {
 TEST(Sleep, AWeakForceWakesItsBlockAlone) {
   Scene scene = towerScene(3);
   constexpr int kBlock = 7;
-  scene.forces.push_back({kBlock, -1, Vec3(0.01 * kBlockMass_kg * 9.81, 0.0, 0.0), 4.0, 4.2});
+  scene.forces.push_back(constantForce(kBlock, -1, Vec3(0.01 * kBlockMass_kg * 9.81, 0.0, 0.0), 4.0, 4.2));
   Simulation simulation(scene);
   stepUntilAsleep(simulation, 3.9);
   ASSERT_TRUE(allAsleep(simulation));
@@ -73,7 +74,7 @@ TEST(Sleep, AWeakForceWakesItsBlockAlone) {
 TEST(Sleep, AStrongPullMovesBlocks) {
   Scene scene = towerScene(5);
   constexpr int kBlock = 4;
-  scene.forces.push_back({kBlock, -1, Vec3(0.0, 4.0, 0.0), 4.0, 4.05});
+  scene.forces.push_back(constantForce(kBlock, -1, Vec3(0.0, 4.0, 0.0), 4.0, 4.05));
   Simulation simulation(scene);
   stepUntilAsleep(simulation, 3.9);
   ASSERT_TRUE(allAsleep(simulation));
@@ -171,7 +172,7 @@ TEST(Sleep, WhatOnlyStandsBesideAColumnDoesNotHoldIt) {
       scene.blocks.push_back(block);
     }
   }
-  scene.forces.push_back({kStorey - 1, -1, Vec3(-4.0 * kBlockMass_kg * 9.81, 0.0, 0.0), 4.0, 8.0});
+  scene.forces.push_back(constantForce(kStorey - 1, -1, Vec3(-4.0 * kBlockMass_kg * 9.81, 0.0, 0.0), 4.0, 8.0));
   expectFallsAsAwake(scene, false);  // its blocks tip all at once
 }
 

@@ -40,7 +40,7 @@ TEST(Snapshot, OfExplicitStepsGoesOnInAnotherScene) {
 
 TEST(Snapshot, OfATowerAsleepGoesOnInAnotherScene) {
   Scene scene = towerScene(3);
-  scene.forces.push_back({7, -1, Vec3(0.4, 0.0, 0.0), 1.2, 2.0});
+  scene.forces.push_back(constantForce(7, -1, Vec3(0.4, 0.0, 0.0), 1.2, 2.0));
   expectTheSameFuture(scene, 70, 40);
 }
 
@@ -51,7 +51,7 @@ TEST(Snapshot, BringsInputsBack) {
   const auto snapshot = takeSnapshot(simulation);
   simulation.scene.gravity.tilt_deg = 3.0;
   simulation.scene.staticFriction = 0.9;
-  simulation.scene.forces.push_back({0, -1, Vec3::UnitX(), 0.0, 1.0});
+  simulation.scene.forces.push_back(constantForce(0, -1, Vec3::UnitX(), 0.0, 1.0));
   restoreSnapshot(simulation, *snapshot);
   EXPECT_EQ(simulation.scene.gravity.tilt_deg, 0.0);
   EXPECT_NE(simulation.scene.staticFriction, 0.9);

@@ -1,0 +1,50 @@
+#include "core/scene/corners.h"
+
+#include "core/block.h"
+
+#include <Eigen/LU>
+#include <Eigen/SVD>
+#include <memory>
+
+namespace springtower {
+
+namespace {
+
+// From the centre to a corner of the cuboid, m, along its own axes.
+Vec3 armOf(const BlockSpec& block, std::size_t corner) {
+  Vec3 arm;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const auto axis = static_cast<Eigen::Index>(a);
+    arm[axis] = 0.5 * cornerSide(corner, a) * block.dimensions[axis];
+  }
+  return arm;
+}
+
+}  // namespace
+
+CornerPlaces cornersOf(const BlockSpec& block) {
+  CornerPlaces corners;
+  for (std::size_t c = 0; c < kCorners; ++c) {
+    Vec3 arm = armOf(block, c);
+    if (block.strain) arm += (*block.strain)[c];
+    corners[c] = block.centre + block.orientation * arm;
+  }
+  return corners;
+}
+
+void placeByCorners(const CornerPlaces& corners, BlockSpec& block) {
+  block.centre.setZero();
+  for (const Vec3& corner : corners) block.centre += corner / static_cast<double>(kCorners);
+  Eigen::Matrix3d product = Eigen::Matrix3d::Zero();
+  for (std::size_t c = 0; c < kCorners; ++c) product += (corners[c] - block.centre) * armOf(block, c).transpose();
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(product, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const double sense = svd.matrixU().determinant() * svd.matrixV().determinant();  // excludes mirror images
+  const Eigen::Matrix3d turn = svd.matrixU() * Vec3(1.0, 1.0, sense).asDiagonal() * svd.matrixV().transpose();
+  block.orientation = Eigen::Quaterniond(turn).normalized();
+  CornerPlaces strain;
+  for (std::size_t c = 0; c < kCorners; ++c)
+    strain[c] = block.orientation.conjugate() * (corners[c] - block.centre) - armOf(block, c);
+  block.strain = std::make_shared<const CornerPlaces>(strain);
+}
+
+}  // namespace springtower
