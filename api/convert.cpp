@@ -114,6 +114,20 @@ Gravity toPublic(const springtower::Gravity& gravity) {
   return {gravity.magnitude, gravity.tilt_deg, gravity.direction_deg, gravity.sway_deg, gravity.sway_hz};
 }
 
+namespace {
+
+std::optional<springtower::Friction> frictionToEngine(const std::optional<Friction>& friction) {
+  if (!friction) return {};
+  return springtower::Friction{friction->staticFriction, friction->kineticFriction};
+}
+
+std::optional<Friction> frictionToPublic(const std::optional<springtower::Friction>& friction) {
+  if (!friction) return {};
+  return Friction{friction->staticFriction, friction->kineticFriction};
+}
+
+}  // namespace
+
 springtower::BlockSpec toEngine(const Block& block) {
   springtower::BlockSpec result{toEngine(block.centre),
                                 toEngine(block.dimensions),
@@ -123,7 +137,9 @@ springtower::BlockSpec toEngine(const Block& block) {
                                 block.mass_kg,
                                 block.row,
                                 block.position,
+                                block.restitution,
                                 block.fixed,
+                                frictionToEngine(block.friction),
                                 {}};
   if (!block.strain_m) return result;
   CornerPlaces strain;
@@ -141,7 +157,9 @@ Block toPublic(const springtower::BlockSpec& block) {
                block.mass,
                block.row,
                block.position,
+               block.restitution,
                block.fixed,
+               frictionToPublic(block.friction),
                {}};
   if (!block.strain) return result;
   result.strain_m.emplace();
@@ -206,6 +224,10 @@ springtower::Scene toEngine(const Scene& scene) {
   result.plane = scene.plane;
   result.staticFriction = scene.staticFriction;
   result.kineticFriction = scene.kineticFriction;
+  result.restitution = scene.restitution;
+  result.floorFriction = frictionToEngine(scene.floorFriction);
+  for (const FrictionPair& pair : scene.frictionPairs)
+    result.frictionPairs.push_back({pair.a, pair.b, {pair.friction.staticFriction, pair.friction.kineticFriction}});
   result.seconds = scene.seconds;
   result.settings = toEngine(scene.settings);
   return result;
@@ -226,6 +248,10 @@ Scene toPublic(const springtower::Scene& scene) {
   result.plane = scene.plane;
   result.staticFriction = scene.staticFriction;
   result.kineticFriction = scene.kineticFriction;
+  result.restitution = scene.restitution;
+  result.floorFriction = frictionToPublic(scene.floorFriction);
+  for (const springtower::FrictionPair& pair : scene.frictionPairs)
+    result.frictionPairs.push_back({pair.a, pair.b, {pair.friction.staticFriction, pair.friction.kineticFriction}});
   result.seconds = scene.seconds;
   result.settings = toPublic(scene.settings);
   return result;

@@ -3,6 +3,7 @@
 #include "api/convert.h"
 #include "api/world_impl.h"
 #include "core/limits.h"
+#include "core/scene/remove_block.h"
 
 #include <cmath>
 #include <fmt/format.h>
@@ -27,7 +28,7 @@ StaticScene analysed(const Scene& scene, int left = kFloor) {
   blocks.forces.clear();
   if (left != kFloor) {
     if (blocks.blocks.size() < 2) throw InputError(fmt::format("{}: found one block, allowed to leave one out are two", source));
-    blocks.blocks.erase(blocks.blocks.begin() + left);
+    removeBlock(blocks, static_cast<std::size_t>(left));
   }
   return staticScene(blocks);
 }

@@ -33,6 +33,7 @@ std::uint64_t hashOf(const springtower::Scene& scene) {
     for (const springtower::Vec3& vector : {block.centre, block.dimensions, block.velocity, block.spin}) mix(hash, vector);
     for (Eigen::Index a = 0; a < 4; ++a) mix(hash, block.orientation.coeffs()[a]);
     mix(hash, block.mass);
+    mix(hash, block.restitution.value_or(scene.restitution));
     hash.word(block.fixed ? 1 : 0);
     for (std::size_t c = 0; block.strain && c < block.strain->size(); ++c) mix(hash, (*block.strain)[c]);
   }
@@ -55,8 +56,23 @@ std::uint64_t hashOf(const springtower::Scene& scene) {
   }
   const springtower::Gravity& gravity = scene.gravity;
   for (const double value : {gravity.magnitude, gravity.tilt_deg, gravity.direction_deg, gravity.sway_deg, gravity.sway_hz,
-                             scene.staticFriction, scene.kineticFriction}) {
+                             scene.staticFriction, scene.kineticFriction, scene.restitution}) {
     mix(hash, value);
+  }
+  const auto mixFriction = [&](const springtower::Friction& friction) {
+    mix(hash, friction.staticFriction);
+    mix(hash, friction.kineticFriction);
+  };
+  if (scene.floorFriction) mixFriction(*scene.floorFriction);
+  for (std::size_t b = 0; b < scene.blocks.size(); ++b) {
+    if (!scene.blocks[b].friction) continue;
+    hash.word(b);
+    mixFriction(*scene.blocks[b].friction);
+  }
+  for (const springtower::FrictionPair& pair : scene.frictionPairs) {
+    hash.word(static_cast<std::uint64_t>(pair.a));
+    hash.word(static_cast<std::uint64_t>(pair.b));
+    mixFriction(pair.friction);
   }
   for (const bool value : {scene.floor, scene.plane}) hash.word(value ? 1 : 0);
   hash.word(static_cast<std::uint64_t>(scene.settings.method));

@@ -26,6 +26,7 @@ inline constexpr Range kTorqueRange{-1e6, 1e6, "N m"};
 inline constexpr Range kTimeRange{0.0, 1e7, "s"};
 inline constexpr Range kSecondsRange{1e-3, 1e7, "s"};
 inline constexpr Range kFrictionRange{0.0, 10.0, ""};
+inline constexpr Range kRestitutionRange{0.0, 1.0, ""};
 inline constexpr Range kGravityRange{0.0, 1e3, "m/s2"};
 inline constexpr Range kTiltRange{-180.0, 180.0, "deg"};
 inline constexpr Range kDirectionRange{-360.0, 360.0, "deg"};

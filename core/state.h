@@ -51,8 +51,11 @@ struct MotionState {
 /// What does not move: the blocks' constants. The springs are [7][blocks], group-major (see core/block.h); one value serves the
 /// four springs of a group.
 struct BlockModel {
-  std::vector<Vec3> dimensions;                                      ///< length along x, y, z when unrotated, m, [blocks]
-  AlignedVector<double> mass;                                        ///< kg, [blocks]
+  std::vector<Vec3> dimensions;  ///< length along x, y, z when unrotated, m, [blocks]
+  AlignedVector<double> mass;    ///< kg, [blocks]
+  /// Square root of the coefficient of restitution: that of a pair is the product, their geometric mean. [blocks];
+  /// empty where all have the scene's
+  AlignedVector<double> rootRestitution;
   std::vector<std::uint8_t> fixed;                                   ///< 1 where a block is fixed, [blocks]; empty if none is
   std::array<AlignedVector<double>, kSpringGroups> restLength;       ///< m
   std::array<AlignedVector<double>, kSpringGroups> springStiffness;  ///< N/m

@@ -100,7 +100,7 @@ void startManifold(Manifold& manifold, PairPhase phase, int incidentFace, int re
   manifold.phase = phase;
   manifold.incidentFace = static_cast<std::int8_t>(incidentFace);
   manifold.referenceFace = static_cast<std::int8_t>(referenceFace);
-  if (manifold.kind == PointKind::anchor) return;
+  if (manifold.kind != PointKind::penalty) return;
   for (PointRow& row : manifold.points) row.penalty.stiffening.fill(1.0);
 }
 

@@ -46,8 +46,8 @@ inline double stiffestOf(const PenaltyRow& row) {
 struct ImpulseRow {
   FourVectors friction;    ///< N, mean over the step, on upper
   FourValues normalForce;  ///< N, mean over the step
-  FourValues restDepth;    ///< m, allowed overlap, which is not pushed out
-  FourValues stiffening;   ///< not used; 1, or the value of the springs before it
+  FourValues restDepth;    ///< m, overlap of springs without force
+  FourValues heldDepth;    ///< m, allowed overlap of islands in rigid mode: rest depth, and strain of the springs
   FourValues untouched;    ///< 0: no springs store energy
   FourValues slipping;     ///< non-zero where friction is at its bound
 };
@@ -78,6 +78,14 @@ struct alignas(32) PlaceRow {
   FourValues v{};  ///< along its second side
 };
 
+/// Where friction acts on a contact all of whose points slip. Four corners that push would brake a turning face about twice as
+/// much as pressure that is spread evenly over it; so each point's friction acts nearer to the centre of pressure, by a factor.
+struct SlipPatch {
+  float u = 0.0F;       ///< the centre of pressure on the incident face, -1/2..1/2
+  float v = 0.0F;       ///< along its second side
+  float shrink = 1.0F;  ///< distance from there at which friction acts, over the point's own
+};
+
 /// Which features of which blocks touch: `upper` rests on `lower` (labels only: upwards is along the normal). A face manifold has
 /// points of upper's incident face against the plane of lower's reference face (or the floor); its points are corners of the
 /// overlap of the two faces: corners of one block over the other's face, and crossings of their edges. An edge manifold is one
@@ -90,6 +98,8 @@ struct ManifoldShape {
   std::int8_t referenceFace = 0;  ///< of lower; for an edge manifold its edge
   PairPhase phase = PairPhase::separated;
   PointKind kind = PointKind::penalty;
+  bool slips = false;  ///< whether all of its points slip, so that kinetic friction acts at them
+  SlipPatch patch;     ///< where, if they do
 };
 
 /// Number of rows for this many points.

@@ -27,6 +27,10 @@ void requireMovable(const Scene& scene, std::size_t block, std::string_view sour
 /// naming `source`, the coefficient, what was found and what is allowed.
 void checkFriction(double staticFriction, double kineticFriction, std::string_view source);
 
+/// Checks the coefficients of a whole scene: its own, those of the floor, of blocks and of pairs, each pair once. Throws
+/// InputError.
+void checkFrictions(const Scene& scene, std::string_view source);
+
 /// Checks what a scene in the plane y = 0 allows: a force at the centre, without a y component, and a torque about y alone;
 /// gravity without a y component; a block turned so that one of its axes is the plane's normal. Throws InputError naming
 /// `source`, what was found and what is allowed.

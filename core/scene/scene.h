@@ -2,6 +2,7 @@
 
 #include "core/block.h"
 #include "core/scene/drive.h"
+#include "core/scene/friction.h"
 #include "core/scene/user_force.h"
 #include "core/settings.h"
 #include "core/vector.h"
@@ -22,6 +23,8 @@ inline constexpr double kBlockWidth_m = 0.0267;
 inline constexpr double kBlockHeight_m = 0.0182;
 inline constexpr double kBlockMass_kg = 0.0196;
 inline constexpr double kStandardGravity_m_s2 = 9.81;
+/// Wood on wood, falling flat: 0.4 to 0.6 in textbooks.
+inline constexpr double kWoodRestitution = 0.5;
 /// The default tolerance for these blocks, m; others have it in proportion to their height.
 inline constexpr double kBlockTolerance_m = 5e-5;
 
@@ -38,7 +41,9 @@ struct BlockSpec {
   double mass = kBlockMass_kg;                                      ///< kg
   int row = -1;                                                     ///< row of the tower from 0, or -1
   int position = 0;                                                 ///< 1, 2, 3 in its row, or 0
+  std::optional<double> restitution = {};                           ///< coefficient of restitution; the scene's if not given
   bool fixed = false;  ///< never moves, whatever touches it: a shelf, a ramp, a wall; its mass counts for nothing
+  std::optional<Friction> friction = {};  ///< of its surface; the scene's if not given
   /// m, displacements of its corners from those of its cuboid, along its own axes; null: none (see core/scene/corners.h)
   std::shared_ptr<const CornerPlaces> strain = {};
 };
@@ -85,7 +90,12 @@ struct Scene {
   bool plane = false;            ///< all that moves stays in the plane y = 0: a scene of rectangles (see checkScene)
   double staticFriction = 0.4;   ///< Coulomb's coefficient for contacts that stick
   double kineticFriction = 0.4;  ///< and for contacts that slide; equal unless a scene gives two
-  double seconds = 10.0;         ///< s; how long to simulate unless the command line says otherwise
+  /// Speed at which blocks part over that at which they met, of blocks and the floor; two blocks that have their own part by the
+  /// geometric mean. Method `report` has its own (Settings::reportRestitution).
+  double restitution = kWoodRestitution;
+  std::optional<Friction> floorFriction = {};    ///< of the floor's surface; the scene's if not given
+  std::vector<FrictionPair> frictionPairs = {};  ///< of two blocks each, in place of those of their surfaces
+  double seconds = 10.0;                         ///< s; how long to simulate unless the command line says otherwise
   Settings settings;
 };
 

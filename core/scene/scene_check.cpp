@@ -13,6 +13,7 @@
 #include <limits>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace springtower {
@@ -277,6 +278,33 @@ void checkFriction(double staticFriction, double kineticFriction, std::string_vi
   requireInRange(kineticFriction, {0.0, staticFriction, "(the static one)"}, fmt::format("{}: kinetic friction", source));
 }
 
+void checkFrictions(const Scene& scene, std::string_view source) {
+  checkFriction(scene.staticFriction, scene.kineticFriction, source);
+  const auto check = [&](const Friction& friction, const std::string& where) {
+    checkFriction(friction.staticFriction, friction.kineticFriction, fmt::format("{}: {}", source, where));
+  };
+  if (scene.floorFriction) check(*scene.floorFriction, "floor");
+  for (std::size_t b = 0; b < scene.blocks.size(); ++b) {
+    if (scene.blocks[b].friction) check(*scene.blocks[b].friction, nameOfBlock(scene, b));
+  }
+  std::vector<std::pair<int, int>> known;
+  const double last = static_cast<double>(scene.blocks.size()) - 1.0;
+  for (std::size_t i = 0; i < scene.frictionPairs.size(); ++i) {
+    const FrictionPair& pair = scene.frictionPairs[i];
+    const std::string where = fmt::format("friction pair {}", i);
+    for (const int block : {pair.a, pair.b})
+      requireInRange(block, {-1.0, last, "(-1 is the floor)"}, fmt::format("{}: {}: block", source, where));
+    if (pair.a == pair.b) throw InputError(fmt::format("{}: {}: found block {} twice, allowed two", source, where, pair.a));
+    check(pair.friction, where);
+    known.emplace_back(std::minmax(pair.a, pair.b));
+  }
+  std::sort(known.begin(), known.end());
+  const auto twice = std::adjacent_find(known.begin(), known.end());
+  if (twice == known.end()) return;
+  throw InputError(
+      fmt::format("{}: found two friction pairs of blocks {} and {}, allowed is one", source, twice->first, twice->second));
+}
+
 void checkForceInPlane(const UserForce& force, std::string_view source) {
   requireNone(force.force.y(), fmt::format("{}: force y", source));
   if (force.forceAtEnd) requireNone(force.forceAtEnd->y(), fmt::format("{}: force at the end y", source));
@@ -300,7 +328,8 @@ void checkScene(const Scene& scene, std::string_view source) {
   checkSettings(scene.settings, source);
   checkGravity(scene.gravity, source);
   requireInRange(scene.seconds, kSecondsRange, fmt::format("{}: seconds", source));
-  checkFriction(scene.staticFriction, scene.kineticFriction, source);
+  checkFrictions(scene, source);
+  requireInRange(scene.restitution, kRestitutionRange, fmt::format("{}: restitution", source));
   requireInRange(static_cast<double>(scene.blocks.size()), {1.0, static_cast<double>(kMaxBlocks), ""},
                  fmt::format("{}: number of blocks", source));
   std::vector<OrientedBox> boxes;

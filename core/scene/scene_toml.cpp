@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 #include <fstream>
 #include <limits>
+#include <optional>
 #include <toml++/toml.h>
 #include <utility>
 
@@ -34,6 +35,38 @@ void readCorners(const Table& table, BlockSpec& block) {
   placeByCorners(corners, block);
 }
 
+// Friction of a table that has other keys as well: one coefficient, or both; nothing where it has none of them.
+void readSurface(const Table& table, std::optional<Friction>& friction) {
+  const bool both = table.has("static_friction") || table.has("kinetic_friction");
+  if (!both && !table.has("friction")) return;
+  if (both && table.has("friction"))
+    throw InputError(table.where() + ": found friction and static_friction or kinetic_friction, allowed either");
+  Friction& read = friction.emplace();
+  if (!both) {
+    table.read("friction", read.staticFriction, kFrictionRange);
+    read.kineticFriction = read.staticFriction;
+    return;
+  }
+  table.require("static_friction");
+  table.require("kinetic_friction");
+  table.read("static_friction", read.staticFriction, kFrictionRange);
+  table.read("kinetic_friction", read.kineticFriction, {0.0, read.staticFriction, "(the static one)"});
+}
+
+FrictionPair readFrictionPair(const Table& table, std::size_t blocks) {
+  FrictionPair pair;
+  for (const std::string_view key : {"a", "b"}) table.require(key);
+  const auto last = static_cast<std::int64_t>(blocks) - 1;
+  table.readWhole("a", pair.a, -1, last);
+  table.readWhole("b", pair.b, -1, last);
+  std::optional<Friction> friction;
+  readSurface(table, friction);
+  if (!friction)
+    throw InputError(table.where() + ": found no friction, allowed friction or static_friction with kinetic_friction");
+  pair.friction = *friction;
+  return pair;
+}
+
 BlockSpec readBlock(const Table& table) {
   BlockSpec block;
   table.read("dimensions_m", block.dimensions, kDimensionRange);
@@ -49,7 +82,9 @@ BlockSpec readBlock(const Table& table) {
   table.read("mass_kg", block.mass, kMassRange);
   table.read("velocity_m_s", block.velocity, kVelocityRange);
   table.read("spin_rad_s", block.spin, kSpinRange);
+  table.read("restitution", block.restitution, kRestitutionRange);
   table.read("fixed", block.fixed);
+  readSurface(table, block.friction);
   return block;
 }
 
@@ -264,7 +299,8 @@ Scene readScene(const Table& top, const TowerOptions& given, const std::string& 
   top.readTable("tower", {"rows", "code", "heights_sigma_m", "mass_sigma_kg", "seed", "start_gap_m", "offset", "loose"},
                 [&](const Table& table) { scene.blocks = readTower(table, given); });
   top.readTables("block",
-                 {"centre_m", "dimensions_m", "mass_kg", "rotation_deg", "velocity_m_s", "spin_rad_s", "fixed", "corners_m"},
+                 {"centre_m", "dimensions_m", "mass_kg", "rotation_deg", "velocity_m_s", "spin_rad_s", "restitution", "fixed",
+                  "friction", "static_friction", "kinetic_friction", "corners_m"},
                  [&](const Table& table) { scene.blocks.push_back(readBlock(table)); });
   if (scene.blocks.empty()) throw InputError(file + ": found no blocks, allowed a [tower], [[block]]s or both");
   top.readTables("force",
@@ -275,8 +311,15 @@ Scene readScene(const Table& top, const TowerOptions& given, const std::string& 
                  {"block", "row", "position", "velocity_m_s", "spin_rad_s", "amplitude_m", "frequency_hz", "start_s", "end_s"},
                  [&](const Table& table) { scene.drives.push_back(readDrive(table, scene)); });
   top.readTables("moves", kMoveKeys, [&](const Table& table) { scene.moves.push_back(readMove(table)); });
-  top.readTable("floor", {"present"}, [&](const Table& table) { table.read("present", scene.floor); });
+  top.readTable("floor", {"present", "friction", "static_friction", "kinetic_friction"}, [&](const Table& table) {
+    table.read("present", scene.floor);
+    readSurface(table, scene.floorFriction);
+  });
   top.readTable("friction", {"coefficient", "static", "kinetic"}, [&](const Table& table) { readFriction(table, scene); });
+  top.readTable("contact", {"restitution"},
+                [&](const Table& table) { table.read("restitution", scene.restitution, kRestitutionRange); });
+  top.readTables("friction_pair", {"a", "b", "friction", "static_friction", "kinetic_friction"},
+                 [&](const Table& table) { scene.frictionPairs.push_back(readFrictionPair(table, scene.blocks.size())); });
   top.readTable("gravity", {"magnitude_m_s2", "tilt_deg", "direction_deg", "sway_deg", "sway_hz"},
                 [&](const Table& table) { readGravity(table, scene.gravity); });
   top.readTable(
@@ -319,7 +362,7 @@ Scene sceneFromToml(const std::string& path, const TowerOptions& options) {
   }
   Scene scene = readScene(Table(parsed, "", file,
                                 {"name", "seconds", "plane", "tower", "block", "force", "drive", "moves", "floor", "friction",
-                                 "gravity", "settings"}),
+                                 "friction_pair", "contact", "gravity", "settings"}),
                           options, file);
   checkScene(scene, file);
   return scene;

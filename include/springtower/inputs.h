@@ -27,7 +27,8 @@ void setGravity(World& world, const Gravity& gravity);
 /// Gravity as it is set.
 Gravity gravity(const World& world);
 
-/// Sets Coulomb's coefficients and wakes all blocks; the kinetic one is 0 to the static one.
+/// Sets Coulomb's coefficients of surfaces that have none of their own, and wakes all blocks; the kinetic one is 0 to the static
+/// one.
 void setFriction(World& world, double staticFriction, double kineticFriction);
 
 /// Sets whether blocks at rest are put to sleep, and wakes all.

@@ -34,6 +34,20 @@ struct Quaternion {
 /// Stands for the floor where a contact names its lower partner, and for no block at all.
 inline constexpr int kFloor = -1;
 
+/// Coulomb's coefficients of a surface, or of two that touch.
+struct Friction {
+  double staticFriction = 0.4;   ///< while they stick, 0 to 10
+  double kineticFriction = 0.4;  ///< while they slip, 0 to the static one
+  bool operator==(const Friction&) const = default;
+};
+
+/// The coefficients of two blocks, whatever their surfaces.
+struct FrictionPair {
+  int a = 0;
+  int b = kFloor;
+  Friction friction;
+};
+
 /// One block as it starts. The defaults are a block of the game, which lies at the origin.
 struct Block {
   Vec3 centre;                             ///< m; each within 10 km
@@ -44,7 +58,9 @@ struct Block {
   double mass_kg = 0.0196;                 ///< 1e-9 to 1e6
   int row = -1;                            ///< row of the tower from 0, or -1
   int position = 0;                        ///< 1, 2, 3 in its row, or 0
-  bool fixed = false;  ///< never moves, whatever touches it (a shelf, a ramp, a wall); velocity and spin are 0
+  std::optional<double> restitution = {};  ///< 0 to 1; the scene's if not given
+  bool fixed = false;                     ///< never moves, whatever touches it (a shelf, a ramp, a wall); velocity and spin are 0
+  std::optional<Friction> friction = {};  ///< of its surface; the scene's if not given
   /// m, displacements of its corners (numbered as in World::corners) from those of its cuboid, along its own axes; see
   /// placeByCorners
   std::optional<std::array<Vec3, 8>> strain_m = {};
@@ -73,9 +89,9 @@ struct Force {
 /// Several of one block add up. From its end on the block stays where it has come to.
 struct Drive {
   int block = 0;
-  Vec3 velocity_m_s;          ///< within 1000
-  Vec3 spin_rad_s;            ///< world axes; within 1000
-  Vec3 amplitude_m;           ///< displaces by amplitude (1 - cos(2 pi f t)): from rest, to twice this and back; within 100
+  Vec3 velocity_m_s = {};     ///< within 1000
+  Vec3 spin_rad_s = {};       ///< world axes; within 1000
+  Vec3 amplitude_m = {};      ///< displaces by amplitude (1 - cos(2 pi f t)): from rest, to twice this and back; within 100
   double frequency_hz = 0.0;  ///< 0 to 1000; above 0 where there is an amplitude
   double start_s = 0.0;       ///< s, from here on
   double end_s = 1e7;         ///< s, up to here, not less than start_s
@@ -104,7 +120,10 @@ struct Scene {
   bool plane = false;            ///< all moves in the plane y = 0: centres, velocities and forces have no y component
   double staticFriction = 0.4;   ///< Coulomb's coefficient for contacts that stick, 0 to 10
   double kineticFriction = 0.4;  ///< and for contacts that slide, 0 to the static one
-  double seconds = 10.0;         ///< s; for how long the scene is meant to be simulated: a proposal, worlds do not read it
+  double restitution = 0.5;      ///< speed at which blocks part over that at which they met, 0 to 1
+  std::optional<Friction> floorFriction = {};    ///< of the floor's surface; the scene's if not given
+  std::vector<FrictionPair> frictionPairs = {};  ///< in place of the geometric mean of both surfaces; each pair once
+  double seconds = 10.0;  ///< s; for how long the scene is meant to be simulated: a proposal, worlds do not read it
   Settings settings;
 };
 

@@ -3,6 +3,8 @@
 #include "core/tuning.h"
 #include "solver/block/inertia.h"
 #include "solver/contact/create.h"
+#include "solver/contact/evaluate_forces.h"
+#include "solver/contact/rigid_contacts.h"
 #include "solver/world/checkpoint.h"
 #include "solver/world/driven_blocks.h"
 #include "solver/world/over_island.h"
@@ -249,7 +251,7 @@ PairMotion pairMotion(const Simulation& simulation, const BlockPair& pair) {
 
 ApproachEstimate estimateApproach(const IslandStep& step) {
   const Simulation& simulation = step.simulation;
-  std::vector<std::int32_t>& newContacts = step.engine.scratch.newContactCount;
+  std::vector<std::uint16_t>& newContacts = step.engine.scratch.newContactCount;
   for (const std::int32_t block : step.blocks) newContacts[static_cast<std::size_t>(block)] = 0;
   const double frame_s = simulation.scene.settings.frame_s;
   const double fall = simulation.scene.gravity.magnitude * frame_s;
@@ -267,7 +269,7 @@ ApproachEstimate estimateApproach(const IslandStep& step) {
     if (apart || !anyPointTouches(contactOf(step.engine, at))) {
       for (const std::int32_t block : {pair.a, pair.b}) {  // sleeping blocks may belong to other islands as well, and do not move
         if (!sleeps(simulation, block))
-          approach.together = std::max(approach.together, ++newContacts[static_cast<std::size_t>(block)]);
+          approach.together = std::max<std::int32_t>(approach.together, ++newContacts[static_cast<std::size_t>(block)]);
       }
     }
     approach.meeting = approach.meeting || mayMeet;
@@ -291,18 +293,34 @@ bool bounces(const IslandStep& step, double step_s) {
   });
 }
 
-bool isAboutToCollide(const IslandStep& step, double step_s) {
+namespace {
+
+// Whether two blocks that do not touch will meet before long, faster than `most` (m/s).
+bool isAboutToMeet(const IslandStep& step, double most) {
   const Simulation& simulation = step.simulation;
   const double frame_s = simulation.scene.settings.frame_s;
   const auto soon = [&](const Closing& closing) {
     const double reach = frame_s * (std::max(0.0, closing.speed) + 0.5 * frame_s * simulation.scene.gravity.magnitude);
-    return closing.gap < reach && closing.speed * step_s > tuning::kMaxImplicitClosing * simulation.tolerance_m;
+    return closing.gap < reach && closing.speed > most;
   };
   return anyPair(step, [&](std::size_t at) {
     if (step.engine.pairs.touches(at)) return false;
     const BlockPair& key = step.engine.pairs.key[at];
     return soon(closingOf(simulation, at)) && (key.b < 0 || soon(closingOfShapes(simulation, key)));
   });
+}
+
+}  // namespace
+
+bool isAboutToCollide(const IslandStep& step, double step_s) {
+  // Faster ones rebound, which implicit steps do not resolve; what a hand leads or a force pushes does not get away.
+  const double resolved = tuning::kMaxImplicitClosing * step.simulation.tolerance_m / step_s;
+  const bool led = holdsTether(step) || isPushed(step);
+  return isAboutToMeet(step, led ? resolved : std::min(resolved, leastReboundSpeed(step.simulation)));
+}
+
+bool isAboutToRebound(const IslandStep& step) {
+  return isAboutToMeet(step, leastReboundSpeed(step.simulation));
 }
 
 FirstContact findFirstContacts(IslandStep& step) {

@@ -24,6 +24,9 @@ bool bounces(const IslandStep& step, double step_s);
 /// implicit step of `step_s` does not resolve.
 bool isAboutToCollide(const IslandStep& step, double step_s);
 
+/// Whether separated blocks of the island will touch before long so fast that they rebound.
+bool isAboutToRebound(const IslandStep& step);
+
 /// First contacts of an implicit step. none: none that matters. added: blocks without a known contact overlap at its end. impact:
 /// blocks, or points of a contact without force, closed at a speed that requires stiffer contacts than implicit steps have.
 enum class FirstContact { none, added, impact };

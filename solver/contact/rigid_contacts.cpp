@@ -1,8 +1,10 @@
 #include "solver/contact/rigid_contacts.h"
 
+#include "solver/contact/slip.h"
 #include "solver/world/driven_blocks.h"
 
 #include <algorithm>
+#include <span>
 
 namespace springtower {
 
@@ -32,8 +34,6 @@ PointForces pointsNow(const IslandStep& step, const ContactView& manifold) {
 
 // Warm start with the state of the point in the step before.
 void warmStart(const IslandStep& step, const ContactView& manifold, std::size_t i, RigidContact& contact) {
-  const Scene& scene = step.simulation.scene;
-  contact.coefficient = slipsAt(manifold, i) ? scene.kineticFriction : scene.staticFriction;
   if (manifold.kind == PointKind::anchor) {
     const AnchorRow& row = manifold.anchor(i);
     const Vec3 anchor = vectorAt(row.displacement, i);
@@ -45,6 +45,26 @@ void warmStart(const IslandStep& step, const ContactView& manifold, std::size_t 
   const Vec3 friction = vectorAt(row.friction, i);
   contact.impulse = {step.drift_s * row.normalForce[laneOf(i)], step.drift_s * friction.dot(contact.direction[1]),
                      step.drift_s * friction.dot(contact.direction[2])};
+}
+
+// Friction is kinetic where all points of a manifold slip, otherwise static.
+void chooseFriction(const IslandStep& step, const RigidIsland& island, const ContactView& manifold,
+                    std::span<RigidContact> points) {
+  const Friction friction = step.simulation.friction.of(manifold.upper, manifold.lower);
+  double coefficient = friction.staticFriction;
+  if (friction.kineticFriction != friction.staticFriction) {
+    SlipOfPoints slip;
+    for (const RigidContact& contact : points) {
+      Vec3 relative = relativeVelocity(island, contact);
+      relative -= relative.dot(contact.direction[0]) * contact.direction[0];
+      // Where impulses are exact the speeds alone decide: bounds that follow from other normal forces are no measure of slip.
+      const bool slips = manifold.kind == PointKind::impulse || slipsAt(manifold, static_cast<std::size_t>(contact.point));
+      slip.add(contact.impulse[0] > 0.0, slips, relative.norm());
+    }
+    const double noise_m_s = manifold.kind == PointKind::anchor ? slipNoise_m_s(step) : 0.0;
+    if (slip.isGross(step.simulation, noise_m_s)) coefficient = friction.kineticFriction;
+  }
+  for (RigidContact& contact : points) contact.coefficient = coefficient;
 }
 
 }  // namespace
@@ -62,6 +82,7 @@ void gatherContacts(IslandStep& step, RigidIsland& island) {
     contact.direction[0] = points.direction;
     chooseTangents(contact.direction);
     contact.share = 1.0 / std::max(1, manifold.count);
+    const std::size_t first = island.contacts.size();
     for (std::size_t i = 0; i < static_cast<std::size_t>(manifold.count); ++i) {
       contact.point = static_cast<std::int32_t>(i);
       contact.gap = -points.depth[i];
@@ -72,6 +93,7 @@ void gatherContacts(IslandStep& step, RigidIsland& island) {
       warmStart(step, manifold, i, contact);
       island.contacts.push_back(contact);
     }
+    chooseFriction(step, island, manifold, std::span(island.contacts).subspan(first));
   }
 }
 

@@ -1,8 +1,10 @@
 #pragma once
 
+#include "core/tuning.h"
 #include "solver/law/contact_force.h"
 #include "solver/world/island_step.h"
 #include "solver/world/rigid_island.h"
+#include "solver/world/scales.h"
 
 #include <algorithm>
 #include <cmath>
@@ -29,13 +31,32 @@ void storeForces(IslandStep& step, const RigidIsland& island);
 /// The forces that `storeForces` stored in a manifold, for reports: normal and friction of each point.
 void readForces(const ContactView& manifold, PointForces& points);
 
-/// Depth to which the springs of a point would be compressed by the normal force of the last rigid step, m. An island in rigid
-/// mode of a penalty method keeps this depth, so that the return to springs changes no energy. At most the tolerance; 0 in the
-/// rigid methods, which have no springs.
+/// Depth to which the springs of a point would be compressed by the normal force of the last rigid step, m, in an island in rigid
+/// mode of a penalty method. At most the tolerance; 0 in the rigid methods, which have no springs.
 inline double springDepthOfForce(const Simulation& simulation, const ContactView& manifold, std::size_t point) {
   if (isRigid(simulation.scene.settings.method)) return 0.0;
   const double stiffness = pairStiffness(simulation.stiffness, manifold.upper, manifold.lower);
   return std::min(manifold.impulse(point).normalForce[laneOf(point)] / stiffness, simulation.tolerance_m);
+}
+
+/// Strain of a point's springs in rigid mode, m.
+inline double heldStrain(const ContactView& manifold, std::size_t point, double depth_m) {
+  const ImpulseRow& row = manifold.impulse(point);
+  const std::size_t lane = laneOf(point);
+  return std::max(0.0, std::min(row.heldDepth[lane], depth_m) - row.restDepth[lane]);
+}
+
+/// Coefficient of restitution of two blocks, the second -1 for the floor.
+inline double restitutionOf(const Simulation& simulation, const BlockPair& pair) {
+  const AlignedVector<double>& root = simulation.model.rootRestitution;
+  if (root.empty()) return simulation.scene.restitution;
+  const double other = pair.b < 0 ? std::sqrt(simulation.scene.restitution) : root[static_cast<std::size_t>(pair.b)];
+  return root[static_cast<std::size_t>(pair.a)] * other;
+}
+
+/// Blocks that meet at less than this do not rebound, m/s; 0 without gravity.
+inline double leastReboundSpeed(const Simulation& simulation) {
+  return tuning::kMinReboundSpeed * speedScale_m_s(simulation);
 }
 
 /// Velocity of upper against lower at a contact, m/s.

@@ -1,7 +1,6 @@
 #include "solver/frame/choose_method.h"
 
 #include "core/tuning.h"
-#include "solver/frame/island_modes.h"
 #include "solver/world/stiffness.h"
 
 #include <algorithm>
@@ -62,7 +61,7 @@ Settings chooseMethod(const Scene& scene) {
   const double thrown = meetingSpeed(scene);
   const double squaredSpeed = 2.0 * gravity * loads.askewFall_m + thrown * thrown;
   const double stiffening = mass * squaredSpeed / (depth * depth * stiffness);
-  if (stiffening < tuning::kRigidMethodStiffening || mayEnterRigidMode(movableBlocks(scene))) {
+  if (stiffening < tuning::kRigidMethodStiffening || movableBlocks(scene) >= tuning::kMinRigidModeBlocks) {
     settings.method = Method::implicit;
     return settings;
   }

@@ -5,6 +5,7 @@
 #include "solver/contact/approach.h"
 #include "solver/contact/evaluate_forces.h"
 #include "solver/contact/query.h"
+#include "solver/contact/slip.h"
 #include "solver/contact/update.h"
 #include "solver/explicit/leapfrog.h"
 #include "solver/explicit/stable_step.h"
@@ -131,6 +132,7 @@ IslandOutcome runExplicitSteps(IslandStep& step, double begin_s) {
     // The time over which this step changes velocities.
     step.pushedUntil_s = step.time_s + (leapfrog ? 0.5 : 1.0) * step.drift_s;
     step.pushedFrom_s = leapfrog ? step.pushedUntil_s - step.kick_s : step.time_s;
+    if (!isReport) findSlippingContacts(step);
     takeStep(step);
     last = step.drift_s;
     placeDriven(step, step.time_s, step.time_s + step.drift_s, which);

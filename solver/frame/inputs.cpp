@@ -53,6 +53,7 @@ void setFriction(Simulation& simulation, double staticFriction, double kineticFr
   checkFriction(staticFriction, kineticFriction, "scene");
   simulation.scene.staticFriction = staticFriction;
   simulation.scene.kineticFriction = kineticFriction;
+  simulation.friction = FrictionTable(simulation.scene);
   wakeAll(simulation);
 }
 
@@ -64,7 +65,7 @@ void setSleep(Simulation& simulation, Sleep sleep) {
 void kick(Simulation& simulation, std::size_t block, const Vec3& velocity) {
   for (std::size_t c = 0; c < kCorners; ++c) simulation.state.velocity.add(block, c, velocity);
   simulation.engine->memo.blockHistory[block].lastImplicitStep_s = 0.0;
-  simulation.engine->memo.islandHistory[block].explicitFrames = tuning::kExplicitFallbackFrames;
+  simulation.engine->memo.islandHistory[block].implicitSteps = tuning::kStepsAfterKick;
   simulation.restTime_s[block] = 0.0;
   wake(simulation, block, WakeReason::kick);
 }

@@ -25,18 +25,25 @@ double takeBackImplicitSteps(IslandStep& step) {
 
 // Implicit steps, as far as they fit and converge; then rigid or explicit ones, as the table of island_modes.h has it.
 IslandOutcome runByModes(IslandStep& step) {
-  const IslandFacts facts = islandFacts(step);
+  IslandFacts facts = islandFacts(step);
   IslandOutcome outcome;
   double begin_s = step.part.begin_s;
   IslandMode mode = nextMode(begin_s > 0.0 ? ModeChange::frameContinues : ModeChange::frameBegins, facts);
   setMode(step, mode);
+  if (facts.fast) {
+    for (const std::int32_t block : step.blocks) step.engine.memo.blockHistory[static_cast<std::size_t>(block)].hasFallen = true;
+  }
   if (mode == IslandMode::implicit) {
     outcome = runImplicitSteps(step, facts.mostlyFallen, begin_s);
     if (!outcome.inside || begin_s >= step.part.end_s) return outcome;
+    facts.stands = stands(step, facts);
     mode = nextMode(ModeChange::implicitFailed, facts);
     if (mode == IslandMode::rigid) {
       if (facts.rigidBefore) begin_s = takeBackImplicitSteps(step);
       setMode(step, mode);
+    } else {  // implicit steps are tried again in the next frame
+      for (const std::int32_t block : step.blocks)
+        step.engine.memo.islandHistory[static_cast<std::size_t>(block)].explicitFrames = 0;
     }
   }
   const int before = outcome.substeps;

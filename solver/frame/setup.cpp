@@ -22,6 +22,11 @@ namespace {
 void placeBlock(const BlockSpec& spec, std::size_t b, Simulation& simulation) {
   simulation.model.dimensions[b] = spec.dimensions;
   simulation.model.mass[b] = spec.mass;
+  if (spec.restitution) {
+    const double others = std::sqrt(simulation.scene.restitution);
+    simulation.model.rootRestitution.resize(simulation.model.blockCount(), others);
+    simulation.model.rootRestitution[b] = std::sqrt(*spec.restitution);
+  }
   if (spec.fixed) {
     simulation.model.fixed.resize(simulation.model.blockCount(), 0);
     simulation.model.fixed[b] = 1;
@@ -144,7 +149,7 @@ void sizeEngine(Simulation& simulation) {
   e.memo.blockHistory.assign(count, BlockHistory{});
   e.memo.islandHistory.assign(count, IslandHistory{});
   e.sleep.windows.resize(count);
-  e.scratch.newContactCount.assign(count, 0);
+  if (!isRigid(scene.settings.method)) e.scratch.newContactCount.assign(count, 0);
   placeFixedBlocks(simulation);
   for (std::size_t b = 0; b < count; ++b) {
     const bool asBefore = b > 0 && scene.blocks[b].dimensions == scene.blocks[b - 1].dimensions &&
@@ -160,6 +165,7 @@ void sizeEngine(Simulation& simulation) {
 Simulation::Simulation(const Scene& given) : scene(given), engine(std::make_unique<Engine>()) {
   checkScene(scene, scene.name);
   if (scene.settings.method == Method::automatic) scene.settings = chooseMethod(scene);
+  friction = FrictionTable(scene);
   const std::size_t count = scene.blocks.size();
   model.dimensions.resize(count);
   model.mass.resize(count);

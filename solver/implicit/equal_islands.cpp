@@ -35,6 +35,7 @@ bool isSameBlock(const Simulation& simulation, std::size_t a, std::size_t b) {
   const auto isSame = [&](const auto& values) { return isNear(values[a], values[b], std::abs(values[a])); };
   const BlockStiffness& stiffness = simulation.stiffness;
   return simulation.model.dimensions[a] == simulation.model.dimensions[b] && isSame(simulation.model.mass) &&
+         simulation.friction.haveSameSurface(static_cast<std::int32_t>(a), static_cast<std::int32_t>(b)) &&
          isSame(stiffness.stack_n_m) && isSame(stiffness.floor_n_m) && isSame(stiffness.edge_n_m);
 }
 

@@ -2,14 +2,18 @@
 
 #include "core/tuning.h"
 #include "solver/block/inertia.h"
+#include "solver/contact/approach.h"
 #include "solver/contact/create.h"
+#include "solver/contact/evaluate_forces.h"
 #include "solver/contact/query.h"
 #include "solver/contact/update.h"
 #include "solver/implicit/run.h"
 #include "solver/implicit/saved_island.h"
 #include "solver/implicit/search_monitor.h"
 #include "solver/implicit/smoothing.h"
+#include "solver/implicit/step_count.h"
 #include "solver/world/checkpoint.h"
+#include "solver/world/over_island.h"
 
 #include <algorithm>
 #include <cmath>
@@ -273,7 +277,60 @@ void dropOpenContacts(IslandStep& step) {
   }
 }
 
+// Whether a constant force begins to act on the island at the frame's start, and all that act are constant and go on through it.
+bool forcesBegin(const IslandStep& step) {
+  const double frame_s = step.simulation.scene.settings.frame_s;
+  const std::vector<std::int32_t>& islandOf = step.engine.memo.islands.islandOf;
+  const std::int32_t own = islandOf[static_cast<std::size_t>(step.blocks.front())];
+  bool begin = false;
+  for (const UserForce& user : step.simulation.scene.forces) {
+    if (islandOf[static_cast<std::size_t>(user.block)] != own || !user.actsWithin(step.time_s, step.time_s + frame_s)) continue;
+    if (user.start_s > step.time_s || user.end_s < step.time_s + frame_s || user.forceAtEnd || user.torqueAtEnd) return false;
+    begin = begin || user.start_s > step.time_s - 0.5 * frame_s;
+  }
+  return begin;
+}
+
+// Whether no corner is faster than what counts as motion.
+bool isStill(const IslandStep& step) {
+  const double most = quiescentSpeed(step.simulation);
+  return everyBlock(step, [&](std::size_t b) { return fastestCorner(step.simulation.state.velocity, b, Vec3::Zero()) <= most; });
+}
+
+// The farthest that a corner is from where the frame began, m.
+double farthestInFrame_m(const IslandStep& step) {
+  return largestOfBlocks(step, [&](std::size_t b) {
+    double farthest = 0.0;
+    for (std::size_t c = 0; c < kCorners; ++c) {
+      const Vec3 moved = step.simulation.state.position.at(b, c) - frameStartPosition(step.simulation, b, c);
+      farthest = std::max(farthest, moved.norm());
+    }
+    return farthest;
+  });
+}
+
 }  // namespace
+
+bool followNewForces(IslandStep& step) {
+  step.time_s = step.simulation.time_s;
+  step.gravity = step.simulation.scene.gravity.at(step.time_s);
+  if (!forcesBegin(step) || holdsTether(step) || !isStill(step)) return false;
+  copyFrameStart(step);
+  step.pushedFrom_s = step.time_s;
+  step.pushedUntil_s = step.time_s + step.simulation.scene.settings.frame_s;
+  step.pushedBefore_s = 0.0;
+  const Counters before = step.counters;
+  const ContactLaw law = step.law;
+  step.law = staticLaw(law);
+  step.maxStiffening = 1.0;
+  const bool rests = settleWithFriction(step, lastStep_s(step)) &&
+                     farthestInFrame_m(step) <= tuning::kMaxForceStrain * step.simulation.tolerance_m;
+  step.law = law;
+  if (rests) return true;
+  step.counters = before;
+  restoreIsland(step);
+  return false;
+}
 
 bool startInEquilibrium(IslandStep& step) {
   if (!mayRest(step)) return false;

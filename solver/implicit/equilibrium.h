@@ -13,4 +13,10 @@ namespace springtower {
 /// island is in equilibrium.
 bool startInEquilibrium(IslandStep& step);
 
+/// Where forces begin to act at the start of the frame on an island that rests, moves it into equilibrium with them, if there is
+/// one within its springs' strain: friction and the weight of rigid blocks hold a force without motion, but springs that are
+/// struck would swing to twice its size, and what is held would slip. Returns whether it has; everything is as before where not.
+/// Precondition: no step of the frame has been taken.
+bool followNewForces(IslandStep& step);
+
 }  // namespace springtower

@@ -30,11 +30,36 @@ double pushOf(const ContactLaw& law, const ContactView& trial, std::size_t i, do
   return std::max(0.0, stiffness * row.stiffening[lane] * (elastic + law.maxwellRatio * (elastic - row.maxwellDepth[lane])));
 }
 
-// Tangents of a touching pair with this active set: one for every four points.
+// Whether the friction of a contact's points acts nearer to its centre of pressure than they are.
+bool actsNearer(const ManifoldShape& contact) {
+  return contact.slips && contact.patch.shrink < 1.0F;
+}
+
+// Tangents of a touching pair with this active set: one for every four points, and another for their friction where it acts
+// elsewhere.
 std::size_t tangentCount(const IslandStep& step, const NewtonSystem& island, std::size_t at, ActiveSetBits mask) {
   if ((mask & 0xFFU) == 0) return 0;
   const std::int32_t contact = step.engine.pairs.contact[static_cast<std::size_t>(island.touching[at])];
-  return rowsFor(step.engine.contacts.shape(contact).count);
+  const auto pair = static_cast<std::size_t>(island.touching[at]);
+  const bool nearer = step.engine.contacts.shape(contact).slips && actsNearer(contactOf(step.engine, pair));
+  return rowsFor(step.engine.contacts.shape(contact).count) * (nearer ? 2 : 1);
+}
+
+// The nodes of a tangent's blocks, and what all its points have in common.
+void setPair(const IslandStep& step, const ContactView& m, const Vec3& normal, ContactTangent& tangent) {
+  const std::vector<std::uint8_t>& asleep = step.simulation.asleep;
+  const Engine& engine = step.engine;
+  const auto nodeOf = [&](std::int32_t block) {
+    const bool moves = block >= 0 && asleep[static_cast<std::size_t>(block)] == 0;
+    return moves ? engine.scratch.nodeOf[static_cast<std::size_t>(block)] : -1;
+  };
+  tangent = {};
+  tangent.upper = nodeOf(m.upper);
+  tangent.lower = nodeOf(m.lower);
+  for (std::size_t k = 0; k < 3; ++k) tangent.normal[k] = normal[static_cast<Eigen::Index>(k)];
+  if (tangent.lower < 0) return;
+  const BlockFrame& lower = engine.memo.frames[static_cast<std::size_t>(m.lower)];
+  for (std::size_t a = 0; a < 3; ++a) std::copy_n(lower.dual[a].begin(), 3, tangent.dual[a]);
 }
 
 // Writes a pair's tangents; returns the place behind them.
@@ -45,39 +70,51 @@ ContactTangent* putPair(const IslandStep& step, const NewtonSystem& island, std:
   const auto pair = static_cast<std::size_t>(island.touching[at]);
   const ContactView m = contactOf(engine, pair);
   const ContactView trial = trialOf(engine, pair, m);
+  const bool nearer = actsNearer(m);
   const auto upper = static_cast<std::size_t>(m.upper);
   const BlockFrame* frameLower = m.lower < 0 ? nullptr : &engine.memo.frames[static_cast<std::size_t>(m.lower)];
   static const AffineField kStill{};
   const PointForces points =
       pointForces(m, {&engine.memo.frames[upper], &kStill, &kStill}, {frameLower, &kStill, &kStill}, step.law);
   const double stiffness = step.law.stiffnessOf(m.upper, m.lower);
-  const double friction = step.law.kineticFriction;
+  const double friction = step.law.frictionOf(m);
   const double sign = part == Part::factors ? 1.0 : -1.0;
-  const std::vector<std::uint8_t>& asleep = step.simulation.asleep;
 
   for (std::size_t first = 0; first < static_cast<std::size_t>(m.count); first += 4) {
     ContactTangent& tangent = *to++;
-    tangent = {};
-    if (asleep[upper] == 0) tangent.upper = engine.scratch.nodeOf[upper];
-    if (frameLower != nullptr && asleep[static_cast<std::size_t>(m.lower)] == 0)
-      tangent.lower = engine.scratch.nodeOf[static_cast<std::size_t>(m.lower)];
-    for (std::size_t k = 0; k < 3; ++k) tangent.normal[k] = points.direction[static_cast<Eigen::Index>(k)];
-    for (std::size_t a = 0; a < 3 && tangent.lower >= 0; ++a) std::copy_n(frameLower->dual[a].begin(), 3, tangent.dual[a]);
+    setPair(step, m, points.direction, tangent);
+    ContactTangent& across = nearer ? *to++ : tangent;
+    if (nearer) {
+      setPair(step, m, points.direction, across);
+      across.followsPush = true;
+    }
     for (std::size_t i = first; i < std::min(first + 4, static_cast<std::size_t>(m.count)); ++i) {
       if ((mask >> i & 1U) == 0) continue;
       const std::size_t lane = i - first;
       const PointStiffness resists = pointStiffness(step, m, trial, mask, i, step_s);
       setWeights(engine.memo.frames[upper], points.place[i], lane, tangent.upperWeight);
       if (frameLower != nullptr) setWeights(*frameLower, points.lowerPlace[i], lane, tangent.lowerWeight);
-      tangent.isotropic[lane] = sign * resists.tangential;
-      tangent.alongNormal[lane] = sign * (resists.normal - resists.tangential);
-      for (std::size_t k = 0; k < 3; ++k) tangent.slip[k][lane] = resists.slip[static_cast<Eigen::Index>(k)];
-      tangent.alongSlip[lane] = -sign * resists.tangential;
+      if (nearer) {
+        setWeights(engine.memo.frames[upper], points.slipPlace[i], lane, across.upperWeight);
+        if (frameLower != nullptr) setWeights(*frameLower, points.lowerSlipPlace[i], lane, across.lowerWeight);
+        tangent.alongNormal[lane] = sign * resists.normal;
+        across.alongNormal[lane] = -sign * resists.tangential;
+      } else {
+        tangent.alongNormal[lane] = sign * (resists.normal - resists.tangential);
+      }
+      across.isotropic[lane] = sign * resists.tangential;
+      for (std::size_t k = 0; k < 3; ++k)
+        tangent.slip[k][lane] = across.slip[k][lane] = resists.slip[static_cast<Eigen::Index>(k)];
+      across.alongSlip[lane] = -sign * resists.tangential;
       const bool slides = (mask >> (8 + i) & 1U) != 0;
       if (part == Part::factors || !slides) continue;
-      tangent.coupling[lane] = friction * resists.normal;
-      const Vec3 push = pushOf(step.law, trial, i, stiffness, points.depth[i]) * (normalOf(tangent) - friction * resists.slip);
-      for (std::size_t k = 0; k < 3; ++k) tangent.push[k][lane] = push[static_cast<Eigen::Index>(k)];
+      across.coupling[lane] = friction * resists.normal;
+      const double push = pushOf(step.law, trial, i, stiffness, points.depth[i]);
+      const Vec3 pushed = nearer ? Vec3(push * normalOf(tangent)) : Vec3(push * (normalOf(tangent) - friction * resists.slip));
+      for (std::size_t k = 0; k < 3; ++k) {
+        tangent.push[k][lane] = pushed[static_cast<Eigen::Index>(k)];
+        if (nearer) across.push[k][lane] = -push * friction * resists.slip[static_cast<Eigen::Index>(k)];
+      }
     }
   }
   return to;
@@ -199,6 +236,7 @@ void findTangents(const IslandStep& step, NewtonSystem& island, double step_s) {
 
 SPRINGTOWER_KERNEL
 void addTangentForces(std::span<const ContactTangent> tangents, std::span<const double> displacement, std::span<double> force) {
+  Lanes push = {};  // motion along the normal where the last tangent's points push
   for (const ContactTangent& tangent : tangents) {
     Lanes g[3] = {};
     if (tangent.upper >= 0)
@@ -208,7 +246,8 @@ void addTangentForces(std::span<const ContactTangent> tangents, std::span<const 
     const Lanes along = g[0] * tangent.normal[0] + g[1] * tangent.normal[1] + g[2] * tangent.normal[2];
     const Lanes slid = g[0] * tangent.slip[0] + g[1] * tangent.slip[1] + g[2] * tangent.slip[2];
     const Lanes onNormal = tangent.alongNormal * along;
-    const Lanes onSlip = tangent.alongSlip * slid + tangent.coupling * along;
+    if (!tangent.followsPush) push = along;
+    const Lanes onSlip = tangent.alongSlip * slid + tangent.coupling * push;
     Lanes f[3];
     for (std::size_t k = 0; k < 3; ++k) f[k] = tangent.isotropic * g[k] + onNormal * tangent.normal[k] + onSlip * tangent.slip[k];
     if (tangent.upper >= 0)

@@ -4,6 +4,7 @@
 #include "solver/block/modes.h"
 #include "solver/contact/approach.h"
 #include "solver/contact/evaluate_forces.h"
+#include "solver/contact/slip.h"
 #include "solver/implicit/bdf2.h"
 #include "solver/implicit/correction.h"
 #include "solver/implicit/friction_tangent.h"
@@ -422,6 +423,7 @@ bool stepImplicit(IslandStep& step, bool canRetryFiner) {
   if (drives) islandOf(step).forcesKnown = false;
   synchronise(step);
   setPushes(step);
+  if (findSlippingContacts(step)) islandOf(step).forcesKnown = islandOf(step).factorised = false;
   const bool carried = !islandOf(step).forcesKnown && isCarried(step, effective_s);
   if (!islandOf(step).forcesKnown && !carried)
     evaluateForces(step, step.simulation.state, step.simulation.state.velocity, 0.0, PointUpdate::trial);

@@ -5,9 +5,11 @@
 #include "solver/contact/evaluate_forces.h"
 #include "solver/contact/pushes.h"
 #include "solver/contact/update.h"
+#include "solver/implicit/equilibrium.h"
 #include "solver/implicit/step_count.h"
 #include "solver/world/checkpoint.h"
 #include "solver/world/over_island.h"
+#include "solver/world/scales.h"
 
 #include <algorithm>
 #include <cmath>
@@ -57,6 +59,11 @@ bool touchesSleeping(const IslandStep& step) {
   });
 }
 
+bool touchesAnything(const IslandStep& step) {
+  return std::any_of(step.pairs.begin(), step.pairs.end(),
+                     [&](std::int32_t at) { return step.engine.pairs.touches(static_cast<std::size_t>(at)); });
+}
+
 // Number of implicit steps of the frame. `forced`: whether a force or the hand acts; `known`: whether that is as in the frame
 // before.
 int implicitSteps(const IslandStep& step, bool forced, bool known, bool mostlyFallen) {
@@ -71,6 +78,9 @@ int implicitSteps(const IslandStep& step, bool forced, bool known, bool mostlyFa
   int least = forced ? tuning::kMinForcedSteps : 1;
   if (!calm && touchesSleeping(step)) least = tuning::kStandardImplicitSteps;
   if (!calm && !known) least = std::max(least, mostlyFallen ? tuning::kMinStepsAfterRigid : tuning::kMaxFrequencySteps);
+  if (!known) least = std::max(least, present);  // a kick needs many
+  // A block in the hand alone, which nothing holds against the hand's pull.
+  if (forced && !touchesAnything(step)) least = known ? tuning::kMaxFrequencySteps : tuning::kStepsAfterKick;
   if (!calm && (!forced || !step.driven.empty())) least = std::max(least, stepsForDisplacement(step));
   const int steps = std::max(least, stepsForFrequency(step, present));
   for (const std::int32_t block : step.blocks) histories[static_cast<std::size_t>(block)].implicitSteps = steps;
@@ -83,11 +93,14 @@ int stepsInPart(const IslandStep& step, int steps) {
   return std::max(1, static_cast<int>(std::ceil(steps * share - 1e-9)));
 }
 
-// Step count for retrying the rest of the frame after Newton failed: 4 a frame, and 8 if 4 were already in use. Needed when a
-// whole face starts to slip at once.
-int retryStepCount(double share, int steps) {
+// Step count for retrying the rest of the frame after Newton failed, or where `steps` do not fit: 4 a frame, and 8 if 4 were
+// already in use. Needed when a whole face starts to slip at once. What is led by a hand or pushed has 128 as well: other steps
+// would not leave the rest in place.
+int retryStepCount(double share, int steps, bool led) {
   const auto of = [&](int frame) { return static_cast<int>(std::lround(share * frame)); };
-  return of(tuning::kStandardImplicitSteps) > steps ? of(tuning::kStandardImplicitSteps) : of(tuning::kMaxFrequencySteps);
+  if (of(tuning::kStandardImplicitSteps) > steps) return of(tuning::kStandardImplicitSteps);
+  if (of(tuning::kMaxFrequencySteps) > steps || !led) return of(tuning::kMaxFrequencySteps);
+  return of(tuning::kMaxLedSteps);
 }
 
 // Restarts BDF2 (drops the history) when an external force ends: acceleration jumps, and the history is wrong. Not when one
@@ -151,7 +164,7 @@ void chooseFormula(IslandStep& step, NewtonSystem& island, bool begins) {
 void leaveImplicitSteps(IslandStep& step, bool mostlyFallen) {
   for (const std::int32_t block : step.blocks)
     step.engine.memo.islandHistory[static_cast<std::size_t>(block)].explicitFrames =
-        mostlyFallen ? tuning::kRigidRetryFrames : tuning::kExplicitFallbackFrames;
+        framesOf(step.simulation, mostlyFallen ? tuning::kRigidRetryTime : tuning::kRigidRestTime);
 }
 
 }  // namespace
@@ -200,11 +213,9 @@ void setJacobians(IslandStep& step, double effective_s) {
 
 bool implicitStepsFit(const IslandStep& step, double step_s) {
   const Simulation& simulation = step.simulation;
-  const bool touches = std::any_of(step.pairs.begin(), step.pairs.end(),
-                                   [&](std::int32_t at) { return step.engine.pairs.touches(static_cast<std::size_t>(at)); });
-  if (!touches || isAboutToCollide(step, step_s) || bounces(step, step_s)) return false;
+  const bool lasting = touchesAnything(step) || holdsTether(step);
+  if (!lasting || isAboutToCollide(step, step_s) || bounces(step, step_s)) return false;
   return everyBlock(step, [&](std::size_t b) {
-    if (step.engine.memo.islandHistory[b].explicitFrames > 0) return false;
     const double turning = turningSpeed(affineField(simulation.state.position, b), affineField(simulation.state.velocity, b));
     return !(turning * step_s > tuning::kMaxTurnPerStep);
   });
@@ -222,8 +233,9 @@ IslandOutcome runImplicitSteps(IslandStep& step, bool mostlyFallen, double& reac
   if (wasForced && !forced) resetHistory(step);
   int steps = implicitSteps(step, forced, forced == wasForced, mostlyFallen);
   bool fits = implicitStepsFit(step, step.part.duration_s() / stepsInPart(step, steps));
-  if (!fits && steps < tuning::kStandardImplicitSteps && simulation.scene.settings.substeps == 0) {
-    steps = tuning::kStandardImplicitSteps;
+  for (const int finer : {tuning::kStandardImplicitSteps, forced ? tuning::kMaxLedSteps : 0}) {
+    if (fits || steps >= finer || simulation.scene.settings.substeps > 0) continue;
+    steps = finer;
     fits = implicitStepsFit(step, step.part.duration_s() / stepsInPart(step, steps));
   }
   noteFrame(step, forced);
@@ -232,6 +244,7 @@ IslandOutcome runImplicitSteps(IslandStep& step, bool mostlyFallen, double& reac
   island.forcesKnown = false;
   if (!fits) return outcome;
   bool begins = true;  // with steps of this length
+  if (forced && !wasForced && reached_s == 0.0) followNewForces(step);
   const auto takeSteps = [&](int count) {
     steps = count;
     if (count > 1) copyFrameStart(step);
@@ -246,7 +259,7 @@ IslandOutcome runImplicitSteps(IslandStep& step, bool mostlyFallen, double& reac
     step.time_s = simulation.time_s + reached_s;
     step.gravity = simulation.scene.gravity.at(step.time_s + step.drift_s);  // forces are those of the step's end
     chooseFormula(step, island, std::exchange(begins, false));
-    const int finer = retryStepCount((end_s - reached_s) / simulation.scene.settings.frame_s, steps);
+    const int finer = retryStepCount((end_s - reached_s) / simulation.scene.settings.frame_s, steps, forced);
     const bool canRetryFiner = finer > steps && simulation.scene.settings.substeps == 0 && !mostlyFallen;
     if (!stepImplicit(step, canRetryFiner || mostlyFallen)) {
       if (canRetryFiner) {
@@ -262,9 +275,7 @@ IslandOutcome runImplicitSteps(IslandStep& step, bool mostlyFallen, double& reac
     const std::uint64_t looked = step.counters.manifoldRefreshes + step.counters.contactsCreated;
     outcome.inside = updateContacts(step, refreshTravelOfImplicitSteps(simulation));
     if (!outcome.inside) return outcome;
-    if (looked != step.counters.manifoldRefreshes + step.counters.contactsCreated) {
-      island.forcesKnown = false;
-    }
+    if (looked != step.counters.manifoldRefreshes + step.counters.contactsCreated) island.forcesKnown = false;
   }
   return outcome;
 }

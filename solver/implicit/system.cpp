@@ -137,17 +137,19 @@ void addManifold(const IslandStep& step, NewtonSystem& island, std::size_t at, d
     const auto [normal, tangential, along] = pointStiffness(step, m, trial, mask, i, step_s);
     const bool slides = (mask >> (8 + i) & 1U) != 0;
     const Weights wu = weightsAt(frameUpper, points.place[i]);
-    if (slides && ofUpper != nullptr) takeAlong(tangential, wu, wu, along, ofUpper);
+    const Weights su = m.slips ? weightsAt(frameUpper, points.slipPlace[i]) : wu;  // where friction acts
+    if (slides && ofUpper != nullptr) takeAlong(tangential, su, su, along, ofUpper);
     addProduct(normal, wu, wu, upperNormal);
-    addProduct(tangential, wu, wu, upperTangential);
+    addProduct(tangential, su, su, upperTangential);
     if (frameLower == nullptr) continue;
     const Weights wl = weightsAt(*frameLower, points.lowerPlace[i]);
+    const Weights sl = m.slips ? weightsAt(*frameLower, points.lowerSlipPlace[i]) : wl;
     addProduct(normal, wl, wl, lowerNormal);
-    addProduct(tangential, wl, wl, lowerTangential);
-    if (slides && ofLower != nullptr) takeAlong(tangential, wl, wl, along, ofLower);
-    if (slides && ofBoth != nullptr) takeAlong(-tangential, slot.firstIsRow ? wu : wl, slot.firstIsRow ? wl : wu, along, ofBoth);
+    addProduct(tangential, sl, sl, lowerTangential);
+    if (slides && ofLower != nullptr) takeAlong(tangential, sl, sl, along, ofLower);
+    if (slides && ofBoth != nullptr) takeAlong(-tangential, slot.firstIsRow ? su : sl, slot.firstIsRow ? sl : su, along, ofBoth);
     addProduct(normal, slot.firstIsRow ? wu : wl, slot.firstIsRow ? wl : wu, crossNormal);
-    addProduct(tangential, slot.firstIsRow ? wu : wl, slot.firstIsRow ? wl : wu, crossTangential);
+    addProduct(tangential, slot.firstIsRow ? su : sl, slot.firstIsRow ? sl : su, crossTangential);
   }
   if (ofUpper != nullptr) addContacts(upperNormal, upperTangential, points.direction, 1.0, ofUpper);
   if (ofLower != nullptr) addContacts(lowerNormal, lowerTangential, points.direction, 1.0, ofLower);

@@ -19,6 +19,8 @@ struct LawStep {
   const ContactLaw& law;
   const ContactStep& step;
   double stiffness;       // N/m
+  double friction;        // Coulomb's coefficient
+  double freedPerSlip;    // rest depth that fades per length of slip
   double impactFactor;    // stiffness scale per squared approach speed
   double stiffeningKeep;  // factor on a stiffening beyond 1 after the step
   double maxwellGain;     // share of its lag that the Maxwell branch loses in the step
@@ -29,9 +31,12 @@ struct LawStep {
 SPRINGTOWER_INLINE LawStep lawStep(const ContactView& m, const ContactLaw& law, const ContactStep& step, double reducedMass) {
   const double aim = law.impactPenetration_m;
   const double stiffness = law.stiffnessOf(m.upper, m.lower);
+  const Friction friction = law.friction->of(m.upper, m.lower);
   return {law,
           step,
           stiffness,
+          m.slips ? friction.kineticFriction : friction.staticFriction,
+          law.restDepthPerSlip * friction.kineticFriction,
           reducedMass / (stiffness * aim * aim),
           1.0 / (1.0 + step.advance_s / law.stiffeningTime_s),
           step.advance_s / (law.maxwellTime_s + step.advance_s),
@@ -47,15 +52,28 @@ SPRINGTOWER_INLINE bool any(const LaneMask& mask) {
 struct PointState {
   LaneMask touching;
   LaneMask known;   // those that touched before
-  Lanes closing;    // m/s
   Lanes stiffness;  // N/m
   Lanes bounding;   // N, normal force that bounds friction
 };
 
-// The tangential part of the law, for points with the normal force p.normalForce and the closing velocity `closing`: advances the
+// Motion of four points: the velocity of upper against lower, m/s, and the one that moved them since they were last advanced.
+struct PointMotion {
+  const Lanes* relative;
+  const Lanes* carried;
+};
+
+SPRINGTOWER_INLINE void closingOf(const Lanes* relative, const double* normal, Lanes& closing) {
+  closing = -(relative[0] * normal[0] + relative[1] * normal[1] + relative[2] * normal[2]);
+}
+
+// The tangential part of the law, for points with the normal force p.normalForce where friction acts with `motion`: advances the
 // displacement, keeps it tangential, and bounds it by the cone.
-SPRINGTOWER_INLINE void frictionLaw(const LawStep& s, const PointState& state, const Lanes* relative, const Lanes* carried,
-                                    const double* normal, PointLanes& p) {
+SPRINGTOWER_INLINE void frictionLaw(const LawStep& s, const PointState& state, const PointMotion& motion, const double* normal,
+                                    PointLanes& p) {
+  const Lanes* relative = motion.relative;
+  const Lanes* carried = motion.carried;
+  Lanes closing;
+  closingOf(relative, normal, closing);
   const Lanes zero = {0.0, 0.0, 0.0, 0.0};
   const Lanes one = zero + 1.0;
   const ContactLaw& law = s.law;
@@ -66,7 +84,7 @@ SPRINGTOWER_INLINE void frictionLaw(const LawStep& s, const PointState& state, c
   Lanes slip[3];
   for (int a = 0; a < 3; ++a) {
     displacement[a] = p.displacement[a] + (carried[a] - carriedNormal * normal[a]) * s.step.advance_s;
-    slip[a] = relative[a] + state.closing * normal[a];
+    slip[a] = relative[a] + closing * normal[a];
   }
   const Lanes outOfPlane = displacement[0] * normal[0] + displacement[1] * normal[1] + displacement[2] * normal[2];
   const Lanes tangential = state.stiffness * law.tangentialRatio;
@@ -76,8 +94,7 @@ SPRINGTOWER_INLINE void frictionLaw(const LawStep& s, const PointState& state, c
     friction[a] = -tangential * (displacement[a] + law.dampingTime_s * slip[a]);
   }
   const Lanes squared = friction[0] * friction[0] + friction[1] * friction[1] + friction[2] * friction[2];
-  const Lanes coefficient = p.slipRatio > zero ? zero + law.kineticFriction : zero + law.staticFriction;
-  const Lanes sticking = coefficient * state.bounding;
+  const Lanes sticking = s.friction * state.bounding;
   const LaneMask slides = squared > sticking * sticking;
   if (!any(slides)) {
     p.slipRatio = zero;
@@ -89,13 +106,13 @@ SPRINGTOWER_INLINE void frictionLaw(const LawStep& s, const PointState& state, c
   }
   Lanes size;
   squareRoot(squared, size);
-  const Lanes keep = slides ? law.kineticFriction * state.bounding / size : one;
+  const Lanes keep = slides ? sticking / size : one;
   p.slipRatio = slides & touching ? (keep > tuning::kMinSlipRatio ? keep : zero + tuning::kMinSlipRatio) : zero;
   // Slip releases a little of the rest depth; the dissipation of friction pays for the work.
   Lanes displacementSize;
   squareRoot(displacement[0] * displacement[0] + displacement[1] * displacement[1] + displacement[2] * displacement[2],
              displacementSize);
-  const Lanes freed = p.restDepth - law.restDepthPerSlip * (1.0 - keep) * displacementSize;
+  const Lanes freed = p.restDepth - s.freedPerSlip * (1.0 - keep) * displacementSize;
   p.restDepth = state.known ? (freed > zero ? freed : zero) : p.restDepth;
   for (int a = 0; a < 3; ++a) {
     p.displacement[a] = touching ? displacement[a] * keep : zero;
@@ -106,8 +123,8 @@ SPRINGTOWER_INLINE void frictionLaw(const LawStep& s, const PointState& state, c
 // The law of smoothed contacts, without damping. Stiffening and rest depth are those of the tangent to the normal force, so that
 // the linearised contact is what it is for others. The tangential stiffness follows that of the row's stiffest point, and only
 // between steps: so the forces of a step in which nothing slips have a potential. Friction is kept where that stiffness grows.
-SPRINGTOWER_INLINE void smoothedLaw(const LawStep& s, const Lanes& depth, const Lanes& closing, const Lanes* relative,
-                                    const Lanes* carried, const double* normal, const Lanes& inUse, PointLanes& p) {
+SPRINGTOWER_INLINE void smoothedLaw(const LawStep& s, const Lanes& depth, const PointMotion& motion, const double* normal,
+                                    const Lanes& inUse, PointLanes& p) {
   const Lanes zero = {0.0, 0.0, 0.0, 0.0};
   const LaneMask used = inUse > zero;
   const auto stiffest = [&p] {
@@ -128,23 +145,24 @@ SPRINGTOWER_INLINE void smoothedLaw(const LawStep& s, const Lanes& depth, const 
   p.normalForce = used ? 0.5 * s.stiffness * (depth + root) : zero;
   Lanes bounding = p.normalForce;
   if (s.step.sticks) bounding = p.normalForce * kStickingFriction;
-  frictionLaw(s, {used, used, closing, zero + s.stiffness * holding, bounding}, relative, carried, normal, p);
+  frictionLaw(s, {used, used, zero + s.stiffness * holding, bounding}, motion, normal, p);
 }
 
-// The contact law on four points. `relative` is the velocity of upper against lower, `carried` the one that moved them since the
-// points were last advanced; `inUse` is 1 for lanes that hold a point.
-SPRINGTOWER_INLINE void pointLaw(const LawStep& s, const Lanes& depth, const Lanes* relative, const Lanes* carried,
+// The contact law on four points. `relative` is the velocity of upper against lower there, `slip` the motion where friction acts;
+// `inUse` is 1 for lanes that hold a point.
+SPRINGTOWER_INLINE void pointLaw(const LawStep& s, const Lanes& depth, const Lanes* relative, const PointMotion& slip,
                                  const double* normal, const Lanes& inUse, PointLanes& p) {
   const Lanes zero = {0.0, 0.0, 0.0, 0.0};
   const Lanes one = zero + 1.0;
   const ContactLaw& law = s.law;
-  const Lanes closing = -(relative[0] * normal[0] + relative[1] * normal[1] + relative[2] * normal[2]);
+  Lanes closing;
+  closingOf(relative, normal, closing);
 
   // First contact: the rest depth is the depth when it is detected (explicit steps) or 0 (implicit steps), so the spring starts
   // unloaded and adds no energy. Stiffness is multiplied so that the impact at the present closing speed stops within the impact
   // depth. The rest depth shrinks with the depth as the point lifts, while the spring stores nothing.
   if (s.step.smoothing_j > 0.0) {
-    smoothedLaw(s, depth, closing, relative, carried, normal, inUse, p);
+    smoothedLaw(s, depth, slip, normal, inUse, p);
     return;
   }
   const LaneMask touching = (depth > zero) & (inUse > zero);
@@ -181,7 +199,7 @@ SPRINGTOWER_INLINE void pointLaw(const LawStep& s, const Lanes& depth, const Lan
   p.normalForce = push;
   Lanes bounding = push;
   if (s.step.sticks) bounding = push * kStickingFriction;
-  frictionLaw(s, {touching, known, closing, stiffness, bounding}, relative, carried, normal, p);
+  frictionLaw(s, {touching, known, stiffness, bounding}, slip, normal, p);
 }
 
 // Sums of three lane vectors at once: [sum a, sum b, sum c, 0].
@@ -263,8 +281,8 @@ SPRINGTOWER_INLINE void placePoints(const MovingFace& upper, const FaceBelow& lo
   for (int k = 0; k < 3; ++k) p.carried[k] -= below[k];
 }
 
-void reportFace(const FacePoints& p, const PointLanes& points, const double* normal, std::size_t first, std::size_t count,
-                PointForces& report) {
+void reportFace(const FacePoints& p, const FacePoints& slip, const PointLanes& points, const double* normal, std::size_t first,
+                std::size_t count, PointForces& report) {
   for (std::size_t i = 0; i < 4 && first + i < count; ++i) {
     const std::size_t to = first + i;
     report.depth[to] = p.depth[i];
@@ -272,11 +290,66 @@ void reportFace(const FacePoints& p, const PointLanes& points, const double* nor
     report.direction = Vec3(normal[0], normal[1], normal[2]);
     report.place[to] = Vec3(p.point[0][i], p.point[1][i], p.point[2][i]);
     report.lowerPlace[to] = report.place[to] + p.depth[i] * report.direction;
+    report.slipPlace[to] = Vec3(slip.point[0][i], slip.point[1][i], slip.point[2][i]);
+    report.lowerSlipPlace[to] = report.slipPlace[to] + slip.depth[i] * report.direction;
     for (std::size_t k = 0; k < 3; ++k) report.friction[to][k] = points.force[k][i] - points.normalForce[i] * normal[k];
   }
 }
 
+// Friction that acts nearer to the centre of pressure, as forces at the points themselves: the same sum and moment.
+void spreadFriction(std::size_t count, double shrink, PointForces& report) {
+  double push = 0.0;
+  std::array<double, 3> sum{};
+  for (std::size_t i = 0; i < count; ++i) {
+    push += report.normal[i];
+    for (std::size_t k = 0; k < 3; ++k) sum[k] += report.friction[i][k];
+  }
+  if (!(push > 0.0)) return;
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t k = 0; k < 3; ++k)
+      report.friction[i][k] = shrink * report.friction[i][k] + (1.0 - shrink) * report.normal[i] / push * sum[k];
+  }
+}
+
+// Where the friction of four points acts that slip with all of their contact.
 template <bool Floor, bool SameMotion>
+SPRINGTOWER_INLINE void placeSlip(const SlipPatch& patch, const MovingFace& upper, const FaceBelow& lower, const FacePoints& p,
+                                  FacePoints& slip) {
+  const auto u = static_cast<double>(patch.u);
+  const auto v = static_cast<double>(patch.v);
+  const auto shrink = static_cast<double>(patch.shrink);
+  slip.u = u + shrink * (p.u - u);
+  slip.v = v + shrink * (p.v - v);
+  placePoints<Floor, SameMotion>(upper, lower, slip);
+}
+
+// Adds the forces of four points to the sums on both blocks; friction acts at `slip`, which are the points unless all slip.
+template <bool Floor, bool Slips>
+SPRINGTOWER_INLINE void addPointForces(const FacePoints& p, const FacePoints& slip, const PointLanes& points,
+                                       const double* normal, Lanes* onUpper, Lanes* onLower) {
+  for (int k = 0; k < 3; ++k) {
+    const Lanes& f = points.force[k];
+    const Lanes push = points.normalForce * normal[k];
+    const Lanes across = f - push;
+    Lanes total;
+    if (Slips) {
+      sums(f, push * p.u + across * slip.u, push * p.v + across * slip.v, total);
+    } else {
+      sums(f, f * p.u, f * p.v, total);
+    }
+    onUpper[k] += total;
+    if (Floor) continue;
+    if (Slips) {
+      sums(f, push * p.lowerU + across * slip.lowerU, push * p.lowerV + across * slip.lowerV, total);
+    } else {
+      sums(f, f * p.lowerU, f * p.lowerV, total);
+    }
+    onLower[k] += total;
+  }
+}
+
+// `Slips`: all of its points slip.
+template <bool Floor, bool SameMotion, bool Slips>
 SPRINGTOWER_INLINE void faceForces(const ContactView& m, const ContactSide& upper, const ContactSide& lower, const LawStep& law,
                                    const PointRows* keep, PairForce& result, PointForces* report) {
   const FaceAxes& upperFace = kFaceAxes[static_cast<std::size_t>(m.incidentFace)];
@@ -307,23 +380,18 @@ SPRINGTOWER_INLINE void faceForces(const ContactView& m, const ContactSide& uppe
     const double left = static_cast<double>(count - first);
     const Lanes inUse = Lanes{0.0, 1.0, 2.0, 3.0} < left ? zero + 1.0 : zero;
     placePoints<Floor, SameMotion>(above, below, p);
+    FacePoints shrunk;
+    if (Slips) placeSlip<Floor, SameMotion>(m.patch, above, below, p, shrunk);
+    const FacePoints& slip = Slips ? shrunk : p;
 
     PointLanes points;
     loadPoints(m.points[row]->penalty, points);
-    pointLaw(law, p.depth, p.relative, SameMotion ? p.relative : p.carried, below.normal, inUse, points);
+    pointLaw(law, p.depth, p.relative, {slip.relative, SameMotion ? slip.relative : slip.carried}, below.normal, inUse, points);
     if (keep != nullptr) storePoints(points, (*keep)[row]->penalty);
-    for (int k = 0; k < 3; ++k) {
-      const Lanes& f = points.force[k];
-      Lanes total;
-      sums(f, f * p.u, f * p.v, total);
-      onUpper[k] += total;
-      if (!Floor) {
-        sums(f, f * p.lowerU, f * p.lowerV, total);
-        onLower[k] += total;
-      }
-    }
-    if (report != nullptr) reportFace(p, points, below.normal, first, count, *report);
+    addPointForces<Floor, Slips>(p, slip, points, below.normal, onUpper, onLower);
+    if (report != nullptr) reportFace(p, slip, points, below.normal, first, count, *report);
   }
+  if (Slips && report != nullptr) spreadFriction(count, static_cast<double>(m.patch.shrink), *report);
   for (std::size_t k = 0; k < 3; ++k) {
     place(onUpper[k], 1.0, upperFace, k, result.upper);
     if (!Floor) place(onLower[k], -1.0, lowerFace, k, result.lower);
@@ -350,7 +418,7 @@ SPRINGTOWER_INLINE void edgeForces(const ContactView& m, const ContactSide& uppe
   }
   PointLanes points;
   loadPoints(m.penalty(0), points);
-  pointLaw(law, zero + depth, relative, carried, normal, Lanes{1.0, 0.0, 0.0, 0.0}, points);
+  pointLaw(law, zero + depth, relative, {relative, carried}, normal, Lanes{1.0, 0.0, 0.0, 0.0}, points);
   if (keep != nullptr) storePoints(points, (*keep)[0]->penalty);
   const auto apply = [](const EdgeAxes& edge, double t, double f, std::size_t k, AffineField& force) {
     force.centre[k] = f;
@@ -371,6 +439,8 @@ SPRINGTOWER_INLINE void edgeForces(const ContactView& m, const ContactSide& uppe
       report->place[0][static_cast<Eigen::Index>(k)] = onEdge(upper.frame->place, edgeUpper, t1, k);
       report->lowerPlace[0][static_cast<Eigen::Index>(k)] = onEdge(lower.frame->place, edgeLower, t2, k);
     }
+    report->slipPlace[0] = report->place[0];
+    report->lowerSlipPlace[0] = report->lowerPlace[0];
   }
 }
 
@@ -379,12 +449,15 @@ SPRINGTOWER_INLINE void evaluate(const ContactView& m, const ContactSide& upper,
   const bool same = upper.carried == upper.motion;
   if (m.phase == PairPhase::edge) {
     edgeForces(m, upper, lower, law, keep, result, report);
+  } else if (m.slips && m.patch.shrink < 1.0F) {
+    m.lower < 0 ? faceForces<true, false, true>(m, upper, lower, law, keep, result, report)
+                : faceForces<false, false, true>(m, upper, lower, law, keep, result, report);
   } else if (m.lower < 0) {
-    same ? faceForces<true, true>(m, upper, lower, law, keep, result, report)
-         : faceForces<true, false>(m, upper, lower, law, keep, result, report);
+    same ? faceForces<true, true, false>(m, upper, lower, law, keep, result, report)
+         : faceForces<true, false, false>(m, upper, lower, law, keep, result, report);
   } else {
-    same ? faceForces<false, true>(m, upper, lower, law, keep, result, report)
-         : faceForces<false, false>(m, upper, lower, law, keep, result, report);
+    same ? faceForces<false, true, false>(m, upper, lower, law, keep, result, report)
+         : faceForces<false, false, false>(m, upper, lower, law, keep, result, report);
   }
 }
 

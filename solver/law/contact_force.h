@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/scene/friction.h"
 #include "narrowphase/manifold.h"
 #include "solver/block/affine.h"
 #include "solver/law/block_stiffness.h"
@@ -12,22 +13,26 @@ namespace springtower {
 /// The contact law of a point, with its constants. In the normal direction a spring of stiffness k on the elastic depth e = depth
 /// - rest depth, a Maxwell branch in parallel, and a dashpot; the sum never pulls. Tangentially a spring on the displacement from
 /// the anchor with a dashpot, bounded by Coulomb's cone (Cundall & Strack 1979): displacement beyond the cone is slip and is
-/// dropped.
+/// dropped. The cone is that of static friction unless all points of the contact slip together.
 struct ContactLaw {
   const BlockStiffness* stiffness = nullptr;  ///< k of each pair, N/m
   double maxwellRatio = 0.0;                  ///< stiffness of the Maxwell branch over k
   double maxwellTime_s = 1.0;                 ///< its relaxation time, s
   double dampingTime_s = 0.0;                 ///< dashpot over stiffness, s
   double tangentialRatio = 1.0;               ///< tangential stiffness over k
-  double staticFriction = 0.0;                ///< Coulomb's coefficient while it sticks
-  double kineticFriction = 0.0;               ///< and while it slips
+  const FrictionTable* friction = nullptr;    ///< Coulomb's coefficients: static while any point of a contact sticks
   double impactPenetration_m = 1.0;           ///< target depth of an impact; determines the stiffening of a new contact
   double stiffeningTime_s = 1.0;              ///< s, time constant with which that stiffening fades
-  double restDepthPerSlip = 0.0;  ///< rest depth that fades per length of slip; its work is paid by the friction of the slip
+  double restDepthPerSlip = 0.0;  ///< rest depth that fades per length of slip, over kinetic friction, which pays for the work
 
   /// k of a pair's points, N/m; `lower` is negative for the floor.
   [[nodiscard]] double stiffnessOf(std::int32_t upper, std::int32_t lower) const {
     return pairStiffness(*stiffness, upper, lower);
+  }
+  /// Coulomb's coefficient of a contact as it is: that of all its points.
+  [[nodiscard]] double frictionOf(const ManifoldShape& contact) const {
+    const Friction of = friction->of(contact.upper, contact.lower);
+    return contact.slips ? of.kineticFriction : of.staticFriction;
   }
 };
 
@@ -67,7 +72,10 @@ struct PointForces {
   std::array<std::array<double, 3>, kManifoldPoints> friction{};
   std::array<Vec3, kManifoldPoints> place;       ///< on upper
   std::array<Vec3, kManifoldPoints> lowerPlace;  ///< on lower: the foot of the point
-  Vec3 direction = Vec3::UnitZ();                ///< unit normal from lower to upper
+  /// Of a contact that slips: where the friction of each point acts. `friction` is what acts at the points to the same effect.
+  std::array<Vec3, kManifoldPoints> slipPlace;
+  std::array<Vec3, kManifoldPoints> lowerSlipPlace;
+  Vec3 direction = Vec3::UnitZ();  ///< unit normal from lower to upper
 };
 
 /// Evaluates a manifold: advances a copy of its points by `step.advance_s` and returns the forces. The advanced points are

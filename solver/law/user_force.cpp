@@ -35,9 +35,8 @@ void addTorque(const ParticleArray& position, std::size_t block, const Vec3& tor
 Vec3 placeOf(const BlockModel& model, const ParticleArray& position, const UserForce& user) {
   const auto block = static_cast<std::size_t>(user.block);
   if (user.corner >= 0) return position.at(block, static_cast<std::size_t>(user.corner));
-  const Vec3 middle = centre(position, block);
-  if (!user.point) return middle;
-  return middle + meanEdges(position, block) * shareOf(model, user);
+  if (!user.point) return centre(position, block);
+  return centre(position, block) + meanEdges(position, block) * shareOf(model, user);
 }
 
 void addUserForce(const BlockModel& model, const ParticleArray& position, const UserForce& user, const Load& load,

@@ -55,10 +55,9 @@ Imbalance largestImbalance(std::span<const Imbalance> imbalances) {
 }
 
 double farthestOutsideCone(const Simulation& simulation, std::span<const ContactForce> contacts) {
-  const double friction = std::max(simulation.scene.staticFriction, simulation.scene.kineticFriction);
   double farthest = 0.0;
   for (const ContactForce& contact : contacts)
-    farthest = std::max(farthest, contact.frictionForce.norm() - friction * contact.normalForce);
+    farthest = std::max(farthest, contact.frictionForce.norm() - staticFrictionOf(simulation, contact) * contact.normalForce);
   return farthest;
 }
 

@@ -48,7 +48,7 @@ void addFriction(IslandStep& step) {
       const double speed = relative.norm();
       if (speed == 0.0) continue;
       const double normalForce = contact.impulse / step.advance_s;
-      const double size = simulation.scene.kineticFriction * normalForce +
+      const double size = simulation.friction.of(first.block, second.block).kineticFriction * normalForce +
                           simulation.scene.settings.reportFrictionDrag * particleMass(simulation.model, contact) * speed;
       const Vec3 force = -size / speed * relative;
       if (moves(step, first)) addToCorners(step.engine.memo.force, first, force);

@@ -103,13 +103,19 @@ void readMovers(RigidIsland& island) {
   for (std::size_t i = 0; i < island.bodies.size(); ++i) {
     const RigidBody& body = island.bodies[i];
     SolverBody& mover = island.movers[i];
-    mover.velocity = Lanes{body.velocity[0], body.velocity[1], body.velocity[2], 0.0};
-    mover.spin = Lanes{body.spin[0], body.spin[1], body.spin[2], 0.0};
     for (int k = 0; k < 3; ++k)
       mover.inverseInertia[k] = Lanes{body.inverseInertia(0, k), body.inverseInertia(1, k), body.inverseInertia(2, k), 0.0};
     mover.inverseMass = body.inverseMass;
   }
   island.movers.back() = SolverBody{};
+  readVelocities(island);
+}
+
+void readVelocities(RigidIsland& island) {
+  for (std::size_t i = 0; i < island.bodies.size(); ++i) {
+    toLanes(island.bodies[i].velocity, island.movers[i].velocity);
+    toLanes(island.bodies[i].spin, island.movers[i].spin);
+  }
 }
 
 void writeMovers(RigidIsland& island) {

@@ -13,8 +13,9 @@ void placeConstraints(RigidIsland& island);
 /// Gaps of all points after the bodies have moved by `moved` and `turned`, to first order.
 void moveGaps(RigidIsland& island);
 
-/// Velocities of the island's bodies for the passes, and back.
+/// Velocities of the island's bodies for the passes, with what else these need of them; the velocities alone; and back.
 void readMovers(RigidIsland& island);
+void readVelocities(RigidIsland& island);
 void writeMovers(RigidIsland& island);
 
 /// A vector in the first three of four lanes.

@@ -1,6 +1,7 @@
 #include "core/tuning.h"
 #include "solver/contact/rigid_contacts.h"
 #include "solver/rigid/methods.h"
+#include "solver/rigid/rebound.h"
 #include "solver/rigid/run.h"
 
 #include <algorithm>
@@ -238,7 +239,8 @@ void stepRigidLcp(IslandStep& step, RigidIsland& island) {
                  contact.impulse[0] * contact.direction[0] + contact.impulse[1] * contact.direction[1] +
                      contact.impulse[2] * contact.direction[2]);
   }
-  for (RigidBody& body : island.bodies) moveFreely(body, step.drift_s);
+  markPushed(step, island);
+  for (RigidBody& body : island.bodies) moveInStep(step, body);
 }
 
 }  // namespace springtower

@@ -3,6 +3,7 @@
 #include "core/tuning.h"
 #include "narrowphase/near_points.h"
 #include "solver/contact/create.h"
+#include "solver/contact/rigid_contacts.h"
 #include "solver/rigid/constraints.h"
 #include "solver/rigid/warm_start.h"
 #include "solver/world/checkpoint.h"
@@ -21,11 +22,13 @@ struct PairBodies {
   std::int32_t pair;
   std::array<std::int32_t, 2> block;
   std::array<std::int32_t, 2> body;
+  double restitution = 0.0;
 };
 
 PairBodies bodiesOf(const IslandStep& step, const RigidIsland& island, std::int32_t pair) {
   const BlockPair& key = step.engine.pairs.key[static_cast<std::size_t>(pair)];
   PairBodies of{pair, {key.a, key.b}, {}};
+  of.restitution = restitutionOf(step.simulation, key);
   for (std::size_t s = 0; s < 2; ++s) {
     const std::int32_t block = of.block[s];
     const bool moves = !sleeps(step.simulation, block) || isDriven(step, block);
@@ -71,6 +74,7 @@ void addConstraint(const RigidIsland& island, const PairBodies& of, const NearPo
   }
   toLanes(near.normal, p.normal);
   p.gap = near.normal.dot(near.onA - near.onB);
+  p.restitution = of.restitution;
 }
 
 // A pair that is farther apart than the points looked for is separated, and is not looked at before its blocks have moved by
@@ -255,7 +259,8 @@ void addOutrun(IslandStep& step, RigidIsland& island, double step_s) {
     if (isFast) ++fast;
     const PairBodies of = bodiesOf(step, island, pair);
     if (!isFast && !outruns(of.body[0]) && !outruns(of.body[1])) continue;
-    step.engine.scratch.covered[static_cast<std::size_t>(pair)] = 1;
+    std::uint8_t& covered = step.engine.scratch.covered[static_cast<std::size_t>(pair)];
+    covered = std::max<std::uint8_t>(covered, 1);
     island.fastPairs.push_back(pair);
   }
 }
@@ -280,8 +285,8 @@ void listFastPoints(IslandStep& step, RigidIsland& island, bool firstSubstep) {
   removeFastFromSteady(island);
 }
 
-bool hasUncoveredContact(const IslandStep& step, const RigidIsland& island) {
-  return std::any_of(island.listedPairs.begin(), island.listedPairs.end(), [&](std::int32_t pair) {
+bool hasUncoveredContact(const IslandStep& step) {
+  return std::any_of(step.activePairs.begin(), step.activePairs.end(), [&](std::int32_t pair) {
     const auto at = static_cast<std::size_t>(pair);
     return step.engine.scratch.covered[at] == 0 && step.engine.pairs.touches(at);
   });
@@ -297,8 +302,10 @@ void equaliseMemory(RigidIsland& island) {
   const auto equalise = [](auto&... lists) {
     const std::size_t points = std::max({lists.points.capacity()...});
     const std::size_t groups = std::max({lists.groups.capacity()...});
+    const std::size_t active = std::max({lists.active.capacity()...});
     (lists.points.reserve(points), ...);
     (lists.groups.reserve(groups), ...);
+    (lists.active.reserve(active), ...);
   };
   equalise(island.steady, island.steadyKnown);
   equalise(island.fast, island.fastKnown, island.fastBefore);
@@ -310,13 +317,16 @@ void equaliseMemory(RigidIsland& island) {
 void keepPoints(IslandStep& step, RigidIsland& island) {
   for (const PointList* list : {&island.steady, &island.fast}) {
     for (const PointGroup& group : list->groups) {
-      const auto at = static_cast<std::size_t>(group.pair);
       const auto first = list->points.begin() + group.first;
       const bool pushes = std::any_of(first, first + group.count, [](const ContactConstraint& p) { return p.push > 0.0; });
-      if (!pushes || step.engine.pairs.touches(at)) continue;
-      savePair(step.engine, at);
-      createTouching(step, at);
+      if (pushes) step.engine.scratch.covered[static_cast<std::size_t>(group.pair)] = kCoveredAndMet;
     }
+  }
+  for (const std::int32_t pair : island.listedPairs) {
+    const auto at = static_cast<std::size_t>(pair);
+    if (step.engine.scratch.covered[at] != kCoveredAndMet || step.engine.pairs.touches(at)) continue;
+    savePair(step.engine, at);
+    createTouching(step, at);
   }
   std::swap(island.steady, island.steadyKnown);
   std::swap(island.fast, island.fastKnown);

@@ -23,7 +23,7 @@ void addOutrun(IslandStep& step, RigidIsland& island, double step_s);
 void listFastPoints(IslandStep& step, RigidIsland& island, bool firstSubstep);
 
 /// Whether a pair that was not covered has met in the step.
-bool hasUncoveredContact(const IslandStep& step, const RigidIsland& island);
+bool hasUncoveredContact(const IslandStep& step);
 
 /// Before the first step: nothing is known but the manifolds.
 void forgetPoints(RigidIsland& island);

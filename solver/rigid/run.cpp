@@ -10,6 +10,7 @@
 #include "solver/contact/update.h"
 #include "solver/rigid/list_points.h"
 #include "solver/rigid/methods.h"
+#include "solver/rigid/rebound.h"
 #include "solver/rigid/warm_start.h"
 #include "solver/world/checkpoint.h"
 #include "solver/world/driven_blocks.h"
@@ -125,12 +126,14 @@ void stepOnce(IslandStep& step) {
     body.turned.setZero();
   }
   gatherContacts(step, island);
+  setContactRebounds(step, island);
   clock.lap(Stage::contacts);
   if (step.simulation.scene.settings.method == Method::rigidLcp) {
     stepRigidLcp(step, island);
   } else {
     stepXpbd(step, island);
   }
+  applyContactRebounds(step, island);
   storeForces(step, island);
   clock.lap(Stage::contacts);
   writePositions(island, step.blocks, step.simulation.state.position);
@@ -252,9 +255,9 @@ void applyForces(IslandStep& step) {
 
 void moveFreely(RigidBody& body, double step_s) {
   body.place += step_s * body.velocity;
-  if (body.inverseMass == 0.0) {  // driven
+  body.moved += step_s * body.velocity;
+  if (body.inverseMass == 0.0) {  // driven: its spin is given, and stays
     turnAxes(step_s * body.spin, body.axes);
-    body.moved += step_s * body.velocity;
     body.turned += step_s * body.spin;
     return;
   }
@@ -262,12 +265,25 @@ void moveFreely(RigidBody& body, double step_s) {
     return Vec3(body.axes * (body.inverseMoment * (body.axes.transpose() * momentum)));
   };
   const Vec3 momentum = body.axes * (body.moment * (body.axes.transpose() * body.spin));
-  const Vec3 quarter = 0.25 * step_s * body.spin;
-  const Vec3 middle = turnedVector(quarter, spinOf(turnedVector(-quarter, momentum)));
-  turnAxes(step_s * middle, body.axes);
-  body.spin = spinOf(momentum);
-  body.moved += step_s * body.velocity;
-  body.turned += step_s * middle;
+  // What spins fast turns in parts of the step: the error of the energy is of second order in the angle.
+  const double parts = std::ceil(body.spin.norm() * step_s / tuning::kMaxTurnAtOnce);
+  const int count = static_cast<int>(std::clamp(parts, 1.0, static_cast<double>(tuning::kMaxTurns)));
+  const double part_s = step_s / count;
+  for (int i = 0; i < count; ++i) {
+    const Vec3 quarter = 0.25 * part_s * body.spin;
+    const Vec3 middle = turnedVector(quarter, spinOf(turnedVector(-quarter, momentum)));
+    turnAxes(part_s * middle, body.axes);
+    body.spin = spinOf(momentum);
+    body.turned += part_s * middle;
+  }
+}
+
+void moveInStep(const IslandStep& step, RigidBody& body) {
+  moveFreely(body, step.drift_s);
+  if (body.pushed || body.inverseMass == 0.0 || holdsTether(step)) return;
+  const Vec3 lag = 0.5 * step.drift_s * step.drift_s * step.gravity;
+  body.place -= lag;
+  body.moved -= lag;
 }
 
 namespace {
@@ -292,6 +308,7 @@ bool runSteps(IslandStep& step, int steps, int substeps, double begin_s) {
     step.gravity = simulation.scene.gravity.at(at_s);
     driveBodies(step, at_s, sequential ? step.drift_s / substeps : step.drift_s);
     saveStep(step);
+    const double gained_j = island.gained_j;
     for (int repeat = 0;; ++repeat) {
       const std::uint64_t born = step.counters.contactsCreated;
       placeDriven(step, at_s, at_s);
@@ -302,9 +319,10 @@ bool runSteps(IslandStep& step, int steps, int substeps, double begin_s) {
       }
       placeDriven(step, at_s, at_s + step.drift_s);
       inside = findContacts(step);
-      const bool met = sequential ? hasUncoveredContact(step, island) : born != step.counters.contactsCreated;
+      const bool met = sequential ? hasUncoveredContact(step) : born != step.counters.contactsCreated;
       if (!inside || !met || repeat == tuning::kMaxRigidStepRepeats) break;
       restoreStep(step);
+      island.gained_j = gained_j;
       recomputeClearances(step);
     }
     computeFrames(simulation.state.position, step.blocks, step.engine.memo.frames);
@@ -334,6 +352,8 @@ IslandOutcome runRigidSteps(IslandStep& step, int steps, double begin_s) {
   step.activeListSteps = 0;
   RigidIsland& island = rigidIslandOf(step);
   forgetPoints(island);
+  island.rebounds = false;
+  island.gained_j = 0.0;
   outcome.inside = runSteps(step, count, substeps, begin_s);
   if (sequential && outcome.inside) storeInManifolds(step, island, step.drift_s / substeps);
   equaliseMemory(island);

@@ -33,6 +33,10 @@ void applyForces(IslandStep& step);
 /// of the step (second order).
 void moveFreely(RigidBody& body, double step_s);
 
+/// The same through a step of step.drift_s: a body that no contact pushes falls freely in it, by its mean velocity and not by
+/// that of the step's end, which applyForces has set.
+void moveInStep(const IslandStep& step, RigidBody& body);
+
 /// Rotates orthonormal axes by a small angle (rad, world axes), to second order; they stay orthonormal.
 void turnAxes(const Vec3& angle, Eigen::Matrix3d& axes);
 

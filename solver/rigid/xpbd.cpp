@@ -1,5 +1,6 @@
 #include "solver/contact/rigid_contacts.h"
 #include "solver/rigid/methods.h"
+#include "solver/rigid/rebound.h"
 #include "solver/rigid/run.h"
 
 #include <algorithm>
@@ -50,21 +51,35 @@ void solvePoint(RigidIsland& island, RigidContact& contact, std::array<double, 3
 // The anchor displacement grows by what the corrections have left over. If it exceeds what friction can hold, the point slides
 // and its anchor follows. This is decided at the step's end: during the passes, before the other points are corrected, any point
 // would appear to slide.
-void dragAnchor(const RigidIsland& island, double kinetic, RigidContact& contact) {
+void dragAnchor(const RigidIsland& island, RigidContact& contact) {
   const Vec3 move = relativeMove(island, contact);
   for (std::size_t k = 0; k < 2; ++k) contact.anchor_m[k] += move.dot(contact.direction[k + 1]);
   const double load = std::max(contact.impulse[0], contact.loadBefore);
   const double part = contact.share * std::min(contact.mass[1], contact.mass[2]);
-  contact.sliding = boundFriction(contact.anchor_m[0], contact.anchor_m[1], contact.coefficient * load / part);
-  if (contact.sliding) boundFriction(contact.anchor_m[0], contact.anchor_m[1], kinetic * load / part);
+  const double most = contact.coefficient * load / part;
+  contact.sliding = boundFriction(contact.anchor_m[0], contact.anchor_m[1], most);
+  if (contact.sliding) boundFriction(contact.anchor_m[0], contact.anchor_m[1], most);  // within it in spite of rounding
 }
 
-// Removes velocities that the position corrections have added: the separating velocity along the normal, so there is no rebound,
-// and the tangential velocity of sticking points, as far as friction can stop it.
+// Speed at which the blocks of a contact parted before the step, m/s; 0 where they came nearer.
+double partingBefore(const RigidIsland& island, const RigidContact& contact) {
+  Vec3 relative = Vec3::Zero();
+  const auto add = [&](std::int32_t at, const Vec3& arm, double sign) {
+    if (at < 0) return;
+    const RigidPose& before = island.bodies[static_cast<std::size_t>(at)].before;
+    relative += sign * (before.velocity + before.spin.cross(arm));
+  };
+  add(contact.upper, contact.armUpper, 1.0);
+  add(contact.lower, contact.armLower, -1.0);
+  return std::max(0.0, relative.dot(contact.direction[0]));
+}
+
+// Removes velocities that the position corrections have added: the separating velocity along the normal, as far as the blocks did
+// not part before, and the tangential velocity of sticking points, as far as friction can stop it.
 void settleVelocity(RigidIsland& island, const RigidContact& contact) {
   if (contact.impulse[0] <= 0.0) return;
   const Vec3 relative = relativeVelocity(island, contact);
-  const double parting = std::max(0.0, relative.dot(contact.direction[0]));
+  const double parting = std::max(0.0, relative.dot(contact.direction[0]) - partingBefore(island, contact));
   Vec3 impulse = -contact.mass[0] * parting * contact.direction[0];
   if (!contact.sliding) {
     double first = -contact.share * contact.mass[1] * relative.dot(contact.direction[1]);
@@ -86,7 +101,8 @@ void stepXpbd(IslandStep& step, RigidIsland& island) {
   const Scene& scene = step.simulation.scene;
   const double step_s = step.drift_s;
   applyForces(step);
-  for (RigidBody& body : island.bodies) moveFreely(body, step_s);
+  markTouching(island);
+  for (RigidBody& body : island.bodies) moveInStep(step, body);
   for (RigidContact& contact : island.contacts) {
     contact.loadBefore = contact.impulse[0] * step_s;
     contact.impulse = {};
@@ -101,7 +117,7 @@ void stepXpbd(IslandStep& step, RigidIsland& island) {
     turnAxes(body.turned, body.axes);
   }
   for (RigidContact& contact : island.contacts) {
-    dragAnchor(island, scene.kineticFriction, contact);
+    dragAnchor(island, contact);
     for (double& impulse : contact.impulse) impulse /= step_s;
     settleVelocity(island, contact);
   }

@@ -58,7 +58,7 @@ void findLoads(Simulation& simulation) {
       if (block < 0 || engine.scratch.joined[static_cast<std::size_t>(block)] == 0) return;
       LoadChange& change = engine.scratch.loadChange[static_cast<std::size_t>(block)];
       change.load_n += 0.5 * force.norm();
-      if (sleeps(simulation, partner)) change.hold_n += simulation.scene.staticFriction * force.norm();
+      if (sleeps(simulation, partner)) change.hold_n += simulation.friction.of(pair.a, pair.b).staticFriction * force.norm();
     };
     add(pair.a, pair.b, restForce);
     add(pair.b, pair.a, -restForce);

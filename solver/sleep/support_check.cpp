@@ -131,7 +131,6 @@ void listPushedGroups(Simulation& simulation) {
 Vec3 findSupports(Simulation& simulation, std::span<const SupportPair> beneath, const Vec3& up) {
   SupportCheckScratch& check = simulation.engine->scratch.support;
   check.supports.clear();
-  const Scene& scene = simulation.scene;
   Vec3 middle = Vec3::Zero();
   for (const SupportPair& of : beneath) {
     const BlockPair& pair = simulation.engine->pairs.key[static_cast<std::size_t>(of.pair)];
@@ -141,6 +140,7 @@ Vec3 findSupports(Simulation& simulation, std::span<const SupportPair> beneath, 
     const double sense = contact.upper == above ? 1.0 : -1.0;
     if (!(sense * points.direction.dot(up) > tuning::kSupportCosine)) continue;
     const bool awake = !sleeps(simulation, pair.a == above ? pair.b : pair.a);
+    const Friction coefficients = simulation.friction.of(pair.a, pair.b);
     for (std::size_t i = 0; i < static_cast<std::size_t>(contact.count); ++i) {
       if (!(points.normal[i] > 0.0)) continue;
       const Vec3 friction{points.friction[i][0], points.friction[i][1], points.friction[i][2]};
@@ -148,11 +148,11 @@ Vec3 findSupports(Simulation& simulation, std::span<const SupportPair> beneath, 
       point.arm = points.place[i];
       point.normal = sense * points.direction;
       point.force = sense * (points.normal[i] * points.direction + friction);
-      point.friction = scene.staticFriction;
-      if (awake && friction.norm() > tuning::kAwakeSlidingShare * scene.kineticFriction * points.normal[i]) {
+      point.friction = coefficients.staticFriction;
+      if (awake && friction.norm() > tuning::kAwakeSlidingShare * coefficients.kineticFriction * points.normal[i]) {
         point.state = SupportState::slip;
         point.slide = sense * friction;
-        point.friction = scene.kineticFriction;
+        point.friction = coefficients.kineticFriction;
       }
       check.supports.push_back(point);
       middle += point.arm;

@@ -46,7 +46,7 @@ class Dual {
       const ForcePoint& point = model_.points[usable_[i]];
       Vec3 spring = upper_[i].transpose() * displacement.segment<6>(6 * point.upper);
       if (point.lower >= 0) spring += lower_[i].transpose() * displacement.segment<6>(6 * point.lower);
-      const Projection projection = project(spring, model_.friction);
+      const Projection projection = project(spring, point.friction);
       forces_[i] = projection.value;
       derivatives_[i] = projection.derivative;
       value += 0.5 * projection.value.squaredNorm();

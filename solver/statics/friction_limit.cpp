@@ -31,7 +31,7 @@ double frictionLimit_n(const Simulation& simulation, std::span<const ContactForc
   int rows = balances;
   for (const ContactForce& contact : contacts) {
     if (!(contact.normalForce > 0.0)) continue;
-    const double most = simulation.scene.staticFriction * contact.normalForce / force_n;
+    const double most = staticFrictionOf(simulation, contact) * contact.normalForce / force_n;
     for (int side = 0; side < tuning::kFrictionLimitSides; ++side) {
       const double angle = 2.0 * std::numbers::pi * side / tuning::kFrictionLimitSides;
       const std::array<double, 2> friction = {most * std::cos(angle), most * std::sin(angle)};

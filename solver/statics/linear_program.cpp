@@ -68,9 +68,10 @@ struct EquilibriumProgram::Solver {
   Solver(const StaticsModel& theModel, std::vector<std::size_t> points)
       : model(theModel), usable(std::move(points)), present(usable.size()) {}
 
-  // Unit force along an edge of the pyramid: normal component 1.
-  [[nodiscard]] Vec3 edgeForce(int side) const {
-    return {1.0, model.friction * std::cos(angleOf(side)), model.friction * std::sin(angleOf(side))};
+  // Unit force along an edge of a point's pyramid: normal component 1.
+  [[nodiscard]] Vec3 edgeForce(const Edge& edge) const {
+    const double friction = model.points[usable[edge.point]].friction;
+    return {1.0, friction * std::cos(angleOf(edge.side)), friction * std::sin(angleOf(edge.side))};
   }
 
   void addEdges(const std::vector<Edge>& fresh) {
@@ -80,7 +81,7 @@ struct EquilibriumProgram::Solver {
       for (const bool onUpper : {true, false}) {
         const std::int32_t block = onUpper ? point.upper : point.lower;
         if (block < 0) continue;
-        const Vec6 wrench = model.wrench(point, onUpper) * edgeForce(edge.side);
+        const Vec6 wrench = model.wrench(point, onUpper) * edgeForce(edge);
         for (Eigen::Index i = 0; i < 6; ++i) {
           if (wrench[i] == 0.0) continue;
           columns.add(6 * block + static_cast<int>(i), wrench[i]);
@@ -104,9 +105,10 @@ struct EquilibriumProgram::Solver {
       if (point.lower >= 0) gain += model.wrench(point, false).transpose() * price.segment<6>(6 * point.lower);
       if (!seekingBalance && !pointCosts.empty()) gain[0] -= pointCosts[p];
       // Without friction a pyramid is its axis, and one edge is enough.
-      const double turns = model.friction > 0.0 ? std::atan2(gain[2], gain[1]) / (2.0 * std::numbers::pi) : 0.0;
+      const double turns = point.friction > 0.0 ? std::atan2(gain[2], gain[1]) / (2.0 * std::numbers::pi) : 0.0;
       const int side = (static_cast<int>(std::lround(turns * tuning::kConeSides)) + tuning::kConeSides) % tuning::kConeSides;
-      if (edgeForce(side).dot(gain) <= tuning::kLpPriceTolerance || present[p].test(static_cast<std::size_t>(side))) continue;
+      if (edgeForce({p, side}).dot(gain) <= tuning::kLpPriceTolerance || present[p].test(static_cast<std::size_t>(side)))
+        continue;
       improving.push_back({p, side});
     }
     return improving;
@@ -152,7 +154,7 @@ EquilibriumProgram::EquilibriumProgram(const StaticsModel& model, std::vector<st
   solver_->slackColumns = 2 * rows;
   std::vector<Solver::Edge> edges;
   for (std::size_t p = 0; p < solver_->usable.size(); ++p) {
-    const int sides = model.friction > 0.0 ? tuning::kLpFirstSides : 1;
+    const int sides = model.points[solver_->usable[p]].friction > 0.0 ? tuning::kLpFirstSides : 1;
     for (int side = 0; side < tuning::kConeSides; side += tuning::kConeSides / sides) edges.push_back({p, side});
   }
   if (!edges.empty()) solver_->addEdges(edges);
@@ -204,7 +206,7 @@ std::vector<Vec3> EquilibriumProgram::forces() const {
   std::vector<Vec3> forces(solver_->usable.size(), Vec3::Zero());
   for (std::size_t e = 0; e < solver_->edges.size(); ++e) {
     const double size = solver_->clp.primalColumnSolution()[solver_->edgeColumns[e]];
-    if (size > 0.0) forces[solver_->edges[e].point] += size * solver_->edgeForce(solver_->edges[e].side);
+    if (size > 0.0) forces[solver_->edges[e].point] += size * solver_->edgeForce(solver_->edges[e]);
   }
   return forces;
 }
@@ -218,7 +220,6 @@ bool parallelForcesBalance(const StaticsModel& model, std::span<const std::size_
   const Vec3 hint = std::abs(up.x()) < 0.9 ? Vec3::UnitX() : Vec3::UnitY();
   const Vec3 across = (hint - up * up.dot(hint)).normalized();
   const Eigen::Matrix3d axes = (Eigen::Matrix3d() << up, across, up.cross(across)).finished();
-  const double leastCosine = 1.0 / std::sqrt(1.0 + model.friction * model.friction);
   ClpSimplex clp;
   const auto blocks = static_cast<int>(model.blockCount());
   prepare(clp, 3 * blocks);
@@ -231,6 +232,7 @@ bool parallelForcesBalance(const StaticsModel& model, std::span<const std::size_
   LpColumns columns;
   for (const std::size_t p : usable) {
     const ForcePoint& point = model.points[p];
+    const double leastCosine = 1.0 / std::sqrt(1.0 + point.friction * point.friction);
     // With the rounding of a slope that equals the friction.
     if (point.frame.col(0).dot(up) < leastCosine * (1.0 - 1e-12)) continue;
     for (const bool onUpper : {true, false}) {

@@ -2,6 +2,8 @@
 
 #include "core/error.h"
 
+#include <algorithm>
+
 namespace springtower {
 namespace {
 
@@ -51,11 +53,11 @@ StaticsModel staticsModel(const Scene& scene, std::span<const FacePair> facings)
   if (count == 0.0) throw InputError("statics: found fixed blocks only, allowed is at least one that is not");
   model.forceUnit_n = mass / count * scene.gravity.magnitude;
   model.lengthUnit_m = height / count;
-  model.friction = scene.staticFriction;
   for (const BlockSpec& block : scene.blocks) {
     model.centre.push_back(block.centre);
     model.weight.push_back(block.fixed ? 0.0 : block.mass * count / mass);
   }
+  const FrictionTable friction(scene);
   for (std::size_t f = 0; f < facings.size(); ++f) {
     const auto isGround = [&](BlockId block) { return block == kFloor || scene.blocks[index(block)].fixed; };
     const bool upsideDown = isGround(facings[f].upper);
@@ -63,10 +65,14 @@ StaticsModel staticsModel(const Scene& scene, std::span<const FacePair> facings)
     const auto upper = static_cast<std::int32_t>(upsideDown ? facings[f].lower : facings[f].upper);
     const auto lower = upsideDown || isGround(facings[f].lower) ? -1 : static_cast<std::int32_t>(facings[f].lower);
     const Eigen::Matrix3d frame = frameOf(upsideDown ? Vec3(-facings[f].normal) : facings[f].normal);
+    const double coefficient =
+        friction.of(static_cast<std::int32_t>(facings[f].upper), static_cast<std::int32_t>(facings[f].lower)).staticFriction;
+    model.friction = model.points.empty() ? coefficient : std::max(model.friction, coefficient);
     for (const FacingPoint& point : facings[f].points) {
-      model.points.push_back({upper, lower, point.place, frame, point.gap_m, f});
+      model.points.push_back({upper, lower, point.place, frame, point.gap_m, coefficient, f});
     }
   }
+  if (model.points.empty()) model.friction = scene.staticFriction;
   return model;
 }
 

@@ -19,6 +19,7 @@ struct ForcePoint {
   Vec3 place = Vec3::Zero();
   Eigen::Matrix3d frame = Eigen::Matrix3d::Identity();  ///< columns: the normal (from lower to upper) and two tangents
   double gap_m = 0.0;
+  double friction = 0.0;   ///< static coefficient there
   std::size_t facing = 0;  ///< index of the facing it belongs to
 };
 
@@ -31,7 +32,7 @@ struct StaticsModel {
   std::vector<Vec3> centre;    ///< m
   std::vector<double> weight;  ///< in mean block weights; 0 for fixed blocks, on which no forces are counted
   std::vector<ForcePoint> points;
-  double friction = 0.0;
+  double friction = 0.0;      ///< the largest static coefficient of all points; the scene's where there are none
   double forceUnit_n = 1.0;   ///< mean block weight
   double lengthUnit_m = 1.0;  ///< mean least side of the blocks
 

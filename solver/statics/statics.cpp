@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "core/scene/remove_block.h"
 #include "core/tuning.h"
 #include "solver/statics/forces.h"
 
@@ -43,6 +44,7 @@ struct Settlement {
 std::optional<Settlement> settle(const StaticsModel& model) {
   StaticsModel smooth = model;
   smooth.friction = 0.0;
+  for (ForcePoint& point : smooth.points) point.friction = 0.0;
   EquilibriumProgram program(smooth, allPoints(smooth), smooth.gravityLoad(-Vec3::UnitZ()));
   if (!program.isFeasible()) return {};
   std::vector<double> costs;
@@ -72,7 +74,7 @@ Scene without(const Scene& scene, BlockId block) {
   Scene rest = scene;
   rest.forces.clear();
   rest.drives.clear();
-  rest.blocks.erase(rest.blocks.begin() + static_cast<std::ptrdiff_t>(index(block)));
+  removeBlock(rest, index(block));
   return rest;
 }
 
@@ -142,7 +144,7 @@ ContactLoads contactLoads(const StaticScene& scene) {
     contact.force += point.frame * force;
     contact.normal_n += force[0];
     pressure[point.facing] += force[0] * point.place;
-    const double bound = model.friction * force[0];
+    const double bound = point.friction * force[0];
     // For a negligible force the ratio is meaningless.
     if (force[0] > tuning::kMinStaticLoad * model.forceUnit_n && bound > 0.0) {
       contact.frictionUsed = std::max(contact.frictionUsed, std::min(1.0, force.tail<2>().norm() / bound));

@@ -71,7 +71,7 @@ class Limits {
       if (!crosses(point, tipping.moves)) continue;
       const double behind = tipping.edge - tipping.direction.dot(point.place.head<2>());
       const bool letsGo = pushesUp(point, tipping.moves) &&
-                          model_.friction * std::abs(point.place.z() - tipping.height) <= behind + tuning::kTiltSamePlace_m;
+                          point.friction * std::abs(point.place.z() - tipping.height) <= behind + tuning::kTiltSamePlace_m;
       if (!letsGo) return;
     }
     double arm = 0.0;

@@ -29,7 +29,8 @@ struct StoredShape {
   std::int8_t incidentFace = 0;
   std::int8_t referenceFace = 0;
   bool upperIsB : 1 = false;
-  PointKind kind : 7 = PointKind::penalty;
+  bool slips : 1 = false;
+  PointKind kind : 6 = PointKind::penalty;
 };
 
 /// A pair of blocks and its phase.
@@ -49,6 +50,7 @@ inline ManifoldShape shapeOf(const StoredShape& stored, const PairOfBlocks& pair
   shape.referenceFace = stored.referenceFace;
   shape.phase = pair.phase;
   shape.kind = stored.kind;
+  shape.slips = stored.slips;
   return shape;
 }
 
@@ -83,6 +85,7 @@ class ContactPool {
     const StoredShape& stored = page.shape[slot];
     ContactView view;
     static_cast<ManifoldShape&>(view) = shapeOf(stored, pair);
+    readPatch(page, slot, view);
     view.place[0] = &page.place[slot];
     view.points[0] = &page.points[slot];
     if (stored.count <= static_cast<std::int8_t>(kRowPoints)) return view;
@@ -107,6 +110,7 @@ class ContactPool {
     const StoredShape& stored = page.shape[slot];
     Editable result;
     static_cast<ManifoldShape&>(result.view) = shapeOf(stored, pair);
+    readPatch(page, slot, result.view);
     result.view.place[0] = &page.place[slot];
     result.points = {&page.points[slot], nullptr};
     result.trial = {&page.trial[slot], nullptr};
@@ -120,6 +124,14 @@ class ContactPool {
     result.view.points = {result.points[0], result.points[1]};
     return result;
   }
+
+  /// Sets whether all points of a contact slip, and where friction acts on it then. Any thread, one thread a contact.
+  void setSlipping(std::int32_t contact, const SlipPatch& patch) {
+    First& page = first_.page(contact);
+    page.shape[Pool::slot(contact)].slips = true;
+    (*page.patch)[Pool::slot(contact)] = patch;
+  }
+  void setSticking(std::int32_t contact) { shape(contact).slips = false; }
 
   /// The rows of a contact's points now, and at the end of an implicit step not yet accepted; null past those in use.
   [[nodiscard]] PointRows points(std::int32_t contact) {
@@ -227,6 +239,7 @@ class ContactPool {
     Column<RelativePose> pose;
     Column<PointRow> trial;
     OnDemand<FirstStart> start;
+    OnDemand<Column<SlipPatch>> patch;  // of those that slip
     Working<Column<PairForce>> pairForce;
     void prepare(bool wide) {
       if (wide && pairForce == nullptr) pairForce.reset(new Column<PairForce>);
@@ -240,6 +253,13 @@ class ContactPool {
     void prepare(bool /*wide*/) {}
   };
   using Pool = PagePool<First>;
+
+  // A copied pool has no patches: they are found anew before the next step.
+  static void readPatch(const First& page, std::size_t slot, ManifoldShape& shape) {
+    if (!shape.slips) return;
+    const Column<SlipPatch>* const patches = page.patch.get();
+    if (patches != nullptr) shape.patch = (*patches)[slot];
+  }
 
   template <class Get>
   PointRows rows(std::int32_t contact, const Get& get) {

@@ -40,7 +40,7 @@ std::size_t ofReport(const ReportState& report) {
 }
 
 std::size_t ofModel(const BlockModel& model) {
-  std::size_t sum = sumOf(model.dimensions, model.mass, model.fixed);
+  std::size_t sum = sumOf(model.dimensions, model.mass, model.rootRestitution, model.fixed);
   for (std::size_t g = 0; g < kSpringGroups; ++g)
     sum += sumOf(model.restLength[g], model.springStiffness[g], model.springDamping[g]);
   return sum;
@@ -106,7 +106,7 @@ std::size_t ofScratch(const Scratch& s) {
     sum += sizeof(RigidIsland) + sumOf(island.bodies, island.contacts, island.movers, island.listedPairs, island.fastPairs,
                                        island.fastPairsBefore, lcp.matrix, lcp.inverse, lcp.impulse, lcp.velocity, lcp.least,
                                        lcp.most, lcp.impulseChange, lcp.velocityChange, lcp.column, lcp.clamped, lcp.placeOf);
-    for (const PointList* list : listsOf(island)) sum += sumOf(list->points, list->groups);
+    for (const PointList* list : listsOf(island)) sum += sumOf(list->points, list->groups, list->active);
   }
   return sum;
 }

@@ -24,6 +24,7 @@ struct alignas(sizeof(Lanes)) ContactTangent {  // the AVX2 kernel relies on tha
   std::int32_t lower = -1;
   double normal[3] = {0.0, 0.0, 0.0};
   double dual[3][3] = {};     ///< 1/m, of the lower block
+  bool followsPush = false;   ///< the friction of the points of the tangent before it, which acts elsewhere
   Lanes upperWeight[3] = {};  ///< weights of the point on each of the block's sides
   Lanes lowerWeight[3] = {};
   Lanes isotropic = {};  ///< N/m

@@ -59,4 +59,12 @@ double largestOfBlocks(const IslandStep& step, const Value& value) {
                      [](double a, double b) { return std::max(a, b); });
 }
 
+/// Whether more than half of the island's blocks have fallen since they slept last.
+inline bool isMostlyFallen(const IslandStep& step) {
+  const auto fallen = std::count_if(step.blocks.begin(), step.blocks.end(), [&](std::int32_t block) {
+    return step.engine.memo.blockHistory[static_cast<std::size_t>(block)].hasFallen;
+  });
+  return 2 * static_cast<std::size_t>(fallen) > step.blocks.size();
+}
+
 }  // namespace springtower

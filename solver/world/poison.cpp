@@ -44,7 +44,7 @@ void poisonScratch(Engine& engine) {
     poisonAll(island.bodies, island.contacts, island.movers, island.listedPairs, island.fastPairs, lcp.matrix, lcp.inverse,
               lcp.impulse, lcp.velocity, lcp.least, lcp.most, lcp.impulseChange, lcp.velocityChange, lcp.column, lcp.clamped,
               lcp.placeOf);
-    for (PointList* list : listsOf(island)) poisonAll(list->points, list->groups);
+    for (PointList* list : listsOf(island)) poisonAll(list->points, list->groups, list->active);
   }
 }
 

@@ -30,6 +30,8 @@ struct RigidBody : RigidPose {
   double radius_m = 0.0;                                     ///< of its farthest corner from the centre
   Eigen::Matrix3d inverseInertia = Eigen::Matrix3d::Zero();  ///< 1/(kg m2), world axes
   RigidPose before;                                          ///< at the start of the step
+  Vec3 velocityBefore = Vec3::Zero();                        ///< m/s, at the start of the substep
+  bool struck = false;                                       ///< whether an impact has changed its velocity in the substep
   Vec3 moved = Vec3::Zero();                                 ///< m, displacement so far in the step
   Vec3 turned = Vec3::Zero();                                ///< rad, rotation so far in the step, to first order
   bool pushed = false;                                       ///< whether a contact pushes it in this step
@@ -46,13 +48,15 @@ struct RigidContact {
   Vec3 armUpper;                     ///< m, from the body's centre to the point
   Vec3 armLower;                     ///< m
   double gap = 0.0;                  ///< m at the start of the step; negative where the blocks overlap
-  double coefficient = 0.0;          ///< of friction: static or kinetic, by the point's state in the last step
+  double coefficient = 0.0;          ///< of friction: static, or kinetic where all points of the manifold slip
   std::array<double, 3> mass{};      ///< kg, effective along each direction
   std::array<double, 3> impulse{};   ///< N s, accumulated along each direction
   std::array<double, 2> anchor_m{};  ///< m, tangential displacement since the point began to stick (position-based method)
   double share = 1.0;                ///< one over the number of points of its manifold
   double loadBefore = 0.0;           ///< N s2, normal position impulse of the step before (position-based method)
   bool sliding = false;              ///< whether friction is at its bound
+  double impact = 0.0;               ///< m/s, speed at which the blocks meet if they do in the step; 0: too slow to rebound
+  double restitution = 0.0;          ///< of the pair
 };
 
 /// A body in the passes over the contacts. Vectors fill three of four lanes.
@@ -61,33 +65,40 @@ struct alignas(32) SolverBody {
   Lanes spin;               ///< rad/s
   Lanes inverseInertia[3];  ///< 1/(kg m2), columns, world axes
   double inverseMass;       ///< 1/kg; 0 of what does not move
+  int changed;              ///< the last pass of an impact that changed its velocity
 };
 
 /// One point of two blocks in sequential impulses; `upper` is the pair's first block, or what does not move. Vectors fill three
 /// of four lanes. The point is fixed to its blocks; arms, normal, gap and masses are those at the present poses.
 struct alignas(32) ContactConstraint {
-  Lanes placeUpper;      ///< m, in the body's axes from its centre; in the world on what does not move
-  Lanes placeLower;      ///< m, likewise
-  Lanes ownNormal;       ///< the normal in the axes of the body that it turns with, or in the world's
-  Lanes normal;          ///< unit, from lower to upper
-  Lanes armUpper;        ///< m, from the body's centre to half way between the two places
-  Lanes armLower;        ///< m
-  Lanes leverUpper;      ///< m, arm x normal
-  Lanes leverLower;      ///< m
-  Lanes turnUpper;       ///< rad/s, change of the body's spin by an impulse of 1 N s along the normal
-  Lanes turnLower;       ///< likewise, with opposite sign
-  Lanes friction{};      ///< N s, on upper, tangential
-  double push = 0.0;     ///< N s along the normal
-  double normalMass;     ///< kg, effective along the normal
-  double acrossMass;     ///< kg, lower bound of the effective tangential mass
-  double gap;            ///< m at the start of the step; negative where the blocks overlap by more than the allowed depth
-  double rest = 0.0;     ///< m, overlap of springs without force
-  double allowed = 0.0;  ///< m, overlap that is not pushed out: of springs with the force at which the point was taken over
-  double coefficient;    ///< of friction: static or kinetic, by the point's state in the last substep
-  std::int32_t upper;    ///< index of its body in the island; the last index stands for what does not move
+  Lanes placeUpper;       ///< m, in the body's axes from its centre; in the world on what does not move
+  Lanes placeLower;       ///< m, likewise
+  Lanes ownNormal;        ///< the normal in the axes of the body that it turns with, or in the world's
+  Lanes normal;           ///< unit, from lower to upper
+  Lanes armUpper;         ///< m, from the body's centre to half way between the two places
+  Lanes armLower;         ///< m
+  Lanes leverUpper;       ///< m, arm x normal
+  Lanes leverLower;       ///< m
+  Lanes turnUpper;        ///< rad/s, change of the body's spin by an impulse of 1 N s along the normal
+  Lanes turnLower;        ///< likewise, with opposite sign
+  Lanes friction{};       ///< N s, on upper, tangential
+  Lanes towardsCentre{};  ///< m, from the point to where its friction acts; zero unless all points of the pair slip
+  double push = 0.0;      ///< N s along the normal
+  double normalMass;      ///< kg, effective along the normal
+  double acrossMass;      ///< kg, lower bound of the effective tangential mass
+  double gap;             ///< m at the start of the step; negative where the blocks overlap by more than the allowed depth
+  double rest = 0.0;      ///< m, overlap of springs without force
+  double allowed = 0.0;   ///< m, overlap that is not pushed out: rest depth, and strain of the springs
+  double found = 0.0;     ///< m, overlap as the frame began
+  double coefficient;     ///< of friction: static, or kinetic where all points of the pair slip
+  double restitution;     ///< of the pair
+  double before;          ///< N s, push with which the substep began
+  double impact = 0.0;    ///< m/s, speed at which the blocks meet if they do in the substep; 0: too slow to rebound
+  std::int32_t upper;     ///< index of its body in the island; the last index stands for what does not move
   std::int32_t lower;
   NormalOf normalOf;     ///< a: upper, b: lower
   bool sliding = false;  ///< whether friction is at its bound
+  bool slips = false;    ///< whether all points of the pair slip
   bool idle = true;      ///< whether its normal and friction impulses are zero so far
 };
 
@@ -100,15 +111,20 @@ struct PointGroup {
   double moved_m;  ///< upper bound of the relative motion since
 };
 
+/// What scratch.covered says of a pair whose blocks have met in the step.
+inline constexpr std::uint8_t kCoveredAndMet = 2;
+
 /// Points of an island, pair by pair, ascending.
 struct PointList {
   std::vector<ContactConstraint> points;
   std::vector<PointGroup> groups;
+  std::vector<std::int32_t> active;  ///< points at which the blocks touch in the substep or nearly do, ascending
 };
 
 inline void clear(PointList& list) {
   list.points.clear();
   list.groups.clear();
+  list.active.clear();
 }
 
 /// Working space of the pivoting method: rows are the contacts' normals, then their tangents.
@@ -142,6 +158,8 @@ struct RigidIsland {
   std::vector<std::int32_t> fastPairsBefore;  ///< working space
   bool knowsManifolds = false;                ///< points start with the forces of manifolds where no others are known
   double energyBefore_j = 0.0;                ///< kinetic energy before the step plus the work of gravity in it
+  bool rebounds = false;                      ///< whether blocks have met in the frame so fast that they rebound
+  double gained_j = 0.0;                      ///< kinetic energy in the frame so far beyond the work of gravity; < 0: lost
   bool touches = false;                       ///< whether any contact pushes in the step
   LcpWorkspace pivoting;
 };

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 namespace springtower {
 
@@ -13,6 +14,11 @@ namespace springtower {
 /// sqrt(h / g), s; without gravity so long that nothing is at rest for as long.
 inline double restTimeScale_s(const Simulation& simulation) {
   return std::sqrt(simulation.lengths.blockHeight_m / std::max(simulation.scene.gravity.magnitude, 1e-9));
+}
+
+/// Frames that a time takes, given in sqrt(h / g), or that of the Earth's gravity where there is none.
+inline std::int32_t framesOf(const Simulation& simulation, double time) {
+  return static_cast<std::int32_t>(std::ceil(time * simulation.lengths.fallTime_s / simulation.scene.settings.frame_s));
 }
 
 /// sqrt(g h), m/s; 0 without gravity.

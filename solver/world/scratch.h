@@ -59,28 +59,28 @@ struct NearDriven {
 /// assertions fill it with NaN when a frame begins (solver/world/poison); a test does so in every build.
 struct Scratch {
   // Pairs and islands.
-  std::vector<std::int32_t> awakeBlocks;      ///< ascending
-  std::vector<double> reach;                  ///< m, travel up to which a block cannot have left its swept box, [blocks]
-  std::vector<BlockPair> mergedKeys;          ///< keys of the new pair table,
-  std::vector<std::int32_t> mergedFrom;       ///< previous index of each of them, or -1,
-  std::vector<std::byte> mergedColumn;        ///< and space for one column of the table
-  std::vector<std::int32_t> cursor;           ///< of counting sorts
-  FramePart part;                             ///< that is run now
-  std::vector<std::uint8_t> inParts;          ///< 1 where a block moves through the frame in several parts, [blocks]
-  std::vector<std::uint8_t> takesPart;        ///< 1 for the islands that are run now, [islands]
-  std::vector<std::int32_t> byDuration;       ///< awake blocks, those in parts first
-  std::vector<BlockPair> islandEdges;         ///< swept pairs of blocks that are at the same time of the frame
-  std::vector<std::int32_t> drivenNow;        ///< fixed blocks that drives move in this frame, ascending
-  std::vector<std::uint8_t> sweepAsleep;      ///< flags of sleep for the sweep, in which these count as awake, [blocks]
-  std::vector<NearDriven> nearDriven;         ///< blocks near them, by driven block
-  std::vector<BlockPair> drivenOfIslands;     ///< islands and driven blocks near them, ascending
-  ParticleArray drivenMean;                   ///< m/s, mean velocities of driven blocks in the last step, [blocks]
-  std::vector<std::int32_t> watchedPairs;     ///< active pairs of each island, by position in islandPairs
-  std::vector<double> path;                   ///< m, path of each block's fastest corner in the last step, [blocks]
-  std::vector<double> assumedPath;            ///< m, upper bound of that path for which a list of active pairs is valid, [blocks]
-  std::vector<std::int32_t> newContactCount;  ///< [blocks]: pairs of the block that may make first contact in this frame
-  std::vector<std::uint8_t> covered;          ///< 1 where a pair has constraints in a rigid step, by position in engine.pairs
-  std::vector<std::int32_t> nodeOf;           ///< index of each block in its island, for implicit steps and rigid methods
+  std::vector<std::int32_t> awakeBlocks;   ///< ascending
+  std::vector<double> reach;               ///< m, travel up to which a block cannot have left its swept box, [blocks]
+  std::vector<BlockPair> mergedKeys;       ///< keys of the new pair table,
+  std::vector<std::int32_t> mergedFrom;    ///< previous index of each of them, or -1,
+  std::vector<std::byte> mergedColumn;     ///< and space for one column of the table
+  std::vector<std::int32_t> cursor;        ///< of counting sorts
+  FramePart part;                          ///< that is run now
+  std::vector<std::uint8_t> inParts;       ///< 1 where a block moves through the frame in several parts, [blocks]
+  std::vector<std::uint8_t> takesPart;     ///< 1 for the islands that are run now, [islands]
+  std::vector<std::int32_t> byDuration;    ///< awake blocks, those in parts first
+  std::vector<BlockPair> islandEdges;      ///< swept pairs of blocks that are at the same time of the frame
+  std::vector<std::int32_t> drivenNow;     ///< fixed blocks that drives move in this frame, ascending
+  std::vector<std::uint8_t> sweepAsleep;   ///< flags of sleep for the sweep, in which these count as awake, [blocks]
+  std::vector<NearDriven> nearDriven;      ///< blocks near them, by driven block
+  std::vector<BlockPair> drivenOfIslands;  ///< islands and driven blocks near them, ascending
+  ParticleArray drivenMean;                ///< m/s, mean velocities of driven blocks in the last step, [blocks]
+  std::vector<std::int32_t> watchedPairs;  ///< active pairs of each island, by position in islandPairs
+  std::vector<double> path;                ///< m, path of each block's fastest corner in the last step, [blocks]
+  std::vector<double> assumedPath;         ///< m, upper bound of that path for which a list of active pairs is valid, [blocks]
+  std::vector<std::uint16_t> newContactCount;  ///< [blocks]: pairs of the block that may make first contact in this frame
+  std::vector<std::uint8_t> covered;  ///< not 0 where a pair has constraints in a rigid step, by position in engine.pairs
+  std::vector<std::int32_t> nodeOf;   ///< index of each block in its island, for implicit steps and rigid methods
 
   // Steps.
   std::vector<std::int32_t> firstEqualIsland;      ///< of each island before the first frame: the first that is equal

@@ -69,6 +69,7 @@ void restoreSnapshot(Simulation& s, const Snapshot& snapshot) {
   s.scene.forces = snapshot.forces;
   s.scene.staticFriction = snapshot.staticFriction;
   s.scene.kineticFriction = snapshot.kineticFriction;
+  s.friction = FrictionTable(s.scene);
   s.scene.settings.sleep = snapshot.sleep;
   s.tether = snapshot.tether;
   s.state = snapshot.state;

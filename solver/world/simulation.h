@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/counters.h"
+#include "core/scene/friction.h"
 #include "core/scene/scene.h"
 #include "core/state.h"
 #include "solver/law/block_stiffness.h"
@@ -33,6 +34,7 @@ struct Simulation {
   std::uint64_t frame = 0;           ///< frames done
   double tolerance_m = 0.0;          ///< the tolerance in force: as given, or what the given substeps allow
   double dampingTime_s = 0.0;        ///< s, dashpot over stiffness of springs and contacts
+  FrictionTable friction;            ///< of every pair, from the scene
   BlockStiffness stiffness;          ///< of contacts and springs, by block; part of the model
   int fixedSubsteps = 0;             ///< steps of every frame if the user gave them, otherwise 0
   int substeps = 0;                  ///< steps of the last frame (the most over its islands)
@@ -106,6 +108,12 @@ struct ContactForce {
   bool sliding;
 };
 std::vector<ContactForce> contactForces(const Simulation& simulation);
+
+/// The static coefficient of friction of a contact's blocks.
+inline double staticFrictionOf(const Simulation& simulation, const ContactForce& contact) {
+  return simulation.friction.of(static_cast<std::int32_t>(contact.upper), static_cast<std::int32_t>(contact.lower))
+      .staticFriction;
+}
 
 /// The contact points of one block.
 std::vector<ContactForce> contactForcesOn(const Simulation& simulation, BlockId block);

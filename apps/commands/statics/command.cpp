@@ -8,6 +8,7 @@
 #include "apps/common/output_file.h"
 #include "core/error.h"
 #include "core/limits.h"
+#include "core/scene/remove_block.h"
 #include "scenarios/registry.h"
 
 #include <CLI/CLI.hpp>
@@ -86,7 +87,7 @@ Scene sceneOf(const StaticsCommand& command) {
     gone.push_back(block);
   }
   std::sort(gone.rbegin(), gone.rend());
-  for (const std::size_t block : gone) scene.blocks.erase(scene.blocks.begin() + static_cast<std::ptrdiff_t>(block));
+  for (const std::size_t block : gone) removeBlock(scene, block);
   if (scene.blocks.empty() || scene.blocks.size() > kMaxStaticBlocks) {
     throw InputError(fmt::format("{}: found {} blocks, allowed for statics are 1 to {}", onOneLine(command.scene),
                                  scene.blocks.size(), kMaxStaticBlocks));

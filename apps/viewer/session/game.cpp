@@ -143,7 +143,7 @@ std::vector<Hint> hints(const Simulation& simulation, std::span<const ContactFor
   std::vector<Hint> all(blocks);
   for (std::size_t b = 0; b < blocks; ++b) all[b].block = blockId(b);
   for (const ContactForce& contact : contacts) {
-    const double drag = simulation.scene.staticFriction * contact.normalForce;
+    const double drag = staticFrictionOf(simulation, contact) * contact.normalForce;
     // A contact presses on the face below it from above, whichever of its blocks the engine calls upper.
     const double load = contact.normalForce * contact.normal.z();
     all[index(contact.upper)].drag_n += drag;

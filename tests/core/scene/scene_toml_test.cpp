@@ -179,7 +179,7 @@ TEST(BadSceneFile, IsNamedInOneLine) {
   const std::pair<const char*, const char*> cases[] = {
       {"unknown_key",
        ":3:1: unknown key 'colour' in block[0], allowed centre_m, dimensions_m, mass_kg, rotation_deg, velocity_m_s, "
-       "spin_rad_s, fixed, corners_m"},
+       "spin_rad_s, restitution, fixed, friction, static_friction, kinetic_friction, corners_m"},
       {"wrong_type", ":1:11: seconds: found the text 'ten', allowed a number from 0.001 to 10000000 s"},
       {"wrong_whole_number", ":2:8: tower.rows: found 3.5, allowed a whole number from 1 to 2000"},
       {"wrong_array", ":2:12: block[0].centre_m: found an array of 2, allowed an array of three numbers from -10000 to 10000 m"},

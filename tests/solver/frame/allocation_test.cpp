@@ -55,8 +55,8 @@ TEST_P(AllocationTest, NoneWhenFramesRunAgain) {
   scene.settings.tolerance_m = what.tolerance_m;
   if (what.pull_n > 0.0) {
     const int middle = 3 * (what.rows / 2) + 1;
-    scene.forces.push_back(constantForce(
-        middle, -1, what.pull_n * (scene.blocks[static_cast<std::size_t>(middle)].orientation * Vec3::UnitX()), 0.1, 1.0));
+    scene.forces.push_back(
+        {middle, -1, what.pull_n * (scene.blocks[static_cast<std::size_t>(middle)].orientation * Vec3::UnitX()), 0.1, 1.0});
   }
   Simulation simulation(scene);
   prepareAndStep(simulation);

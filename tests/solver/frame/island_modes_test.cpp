@@ -5,70 +5,54 @@
 namespace springtower {
 namespace {
 
-IslandFacts fastIsland() {
+IslandFacts movingIsland() {
   IslandFacts facts;
-  facts.blocks = 54;
   facts.leftAlone = true;
-  facts.fast = true;
-  facts.moving = true;
+  facts.rigidBefore = true;
+  facts.rigidPinned = true;
   return facts;
 }
 
 TEST(IslandModes, FastIslandsThatAreLeftAloneTakeRigidSteps) {
-  EXPECT_EQ(nextMode(ModeChange::frameBegins, fastIsland()), IslandMode::rigid);
-  IslandFacts slow = fastIsland();
-  slow.fast = false;
-  EXPECT_EQ(nextMode(ModeChange::frameBegins, slow), IslandMode::implicit);
-  IslandFacts held = fastIsland();
-  held.leftAlone = false;
-  EXPECT_EQ(nextMode(ModeChange::frameBegins, held), IslandMode::implicit);
-}
-
-TEST(IslandModes, OneOrTwoBlocksReboundSoTheyStayImplicit) {
-  for (const std::size_t blocks : {1U, 2U, 3U, 255U, 256U, 10000U}) {
-    IslandFacts facts = fastIsland();
-    facts.blocks = blocks;
-    const bool rigid = blocks >= 3;
-    EXPECT_EQ(nextMode(ModeChange::frameBegins, facts), rigid ? IslandMode::rigid : IslandMode::implicit) << blocks;
-  }
-}
-
-// Below the entry speed, rigid mode continues until the exit speed is reached.
-TEST(IslandModes, AFallGoesOnUntilItIsSlow) {
-  IslandFacts falling = fastIsland();
-  falling.rigidBefore = true;
-  falling.fast = false;
-  EXPECT_EQ(nextMode(ModeChange::frameBegins, falling), IslandMode::rigid);
-  falling.moving = false;
-  EXPECT_EQ(nextMode(ModeChange::frameBegins, falling), IslandMode::implicit);
-  falling.rigidPinned = true;
-  EXPECT_EQ(nextMode(ModeChange::frameBegins, falling), IslandMode::rigid) << "implicit steps have just failed";
-  falling.leftAlone = false;
-  EXPECT_EQ(nextMode(ModeChange::frameBegins, falling), IslandMode::implicit) << "a hand takes hold";
-}
-
-TEST(IslandModes, FailedImplicitStepsAreFollowedByRigidOnesWhereBlocksHaveFallen) {
-  IslandFacts facts = fastIsland();
-  EXPECT_EQ(nextMode(ModeChange::implicitFailed, facts), IslandMode::explicitFallback);
-  facts.mostlyFallen = true;
-  EXPECT_EQ(nextMode(ModeChange::implicitFailed, facts), IslandMode::rigid);
+  IslandFacts facts;
+  facts.leftAlone = true;
+  EXPECT_EQ(nextMode(ModeChange::frameBegins, facts), IslandMode::implicit);
+  facts.fast = true;
+  EXPECT_EQ(nextMode(ModeChange::frameBegins, facts), IslandMode::rigid);
   facts.leftAlone = false;
-  EXPECT_EQ(nextMode(ModeChange::implicitFailed, facts), IslandMode::explicitFallback);
+  EXPECT_EQ(nextMode(ModeChange::frameBegins, facts), IslandMode::implicit);
 }
 
-// Explicit steps of hundreds of blocks would take seconds a frame.
-TEST(IslandModes, FailedImplicitStepsOfLargeIslandsAreFollowedByRigidOnes) {
-  IslandFacts facts = fastIsland();
-  facts.blocks = 432;
-  EXPECT_EQ(nextMode(ModeChange::implicitFailed, facts), IslandMode::rigid);
+// What has moved or hit something goes on in rigid steps until it has been slow for a time.
+TEST(IslandModes, WhatMovesStaysInRigidSteps) {
+  EXPECT_EQ(nextMode(ModeChange::frameBegins, movingIsland()), IslandMode::rigid);
+  IslandFacts slow = movingIsland();
+  slow.rigidPinned = false;
+  EXPECT_EQ(nextMode(ModeChange::frameBegins, slow), IslandMode::implicit);
+  IslandFacts held = movingIsland();
+  held.leftAlone = false;
+  EXPECT_EQ(nextMode(ModeChange::frameBegins, held), IslandMode::implicit) << "a hand takes hold";
+}
+
+// Rigid steps cost little; but they do not bring a stack to rest that stands and sways.
+TEST(IslandModes, FailedImplicitStepsAreFollowedByRigidOnesButWhereAStackStands) {
+  for (const bool alone : {true, false}) {
+    for (const bool fallen : {true, false}) {
+      IslandFacts facts;
+      facts.leftAlone = alone;
+      facts.mostlyFallen = fallen;
+      EXPECT_EQ(nextMode(ModeChange::implicitFailed, facts), IslandMode::rigid);
+      facts.stands = true;
+      EXPECT_EQ(nextMode(ModeChange::implicitFailed, facts), IslandMode::explicitFallback);
+    }
+  }
 }
 
 // Between the parts of a frame its speed decides nothing.
 TEST(IslandModes, AFrameInPartsGoesOnAsItBegan) {
-  IslandFacts facts = fastIsland();
+  IslandFacts facts;
   EXPECT_EQ(nextMode(ModeChange::frameContinues, facts), IslandMode::implicit);
   facts.rigidBefore = true;
-  facts.moving = facts.fast = false;
   EXPECT_EQ(nextMode(ModeChange::frameContinues, facts), IslandMode::rigid);
 }
 

@@ -168,8 +168,8 @@ TEST(Implicit, AFrameRunAgainTakesTheSameSteps) {
   scene.settings.method = Method::implicit;
   scene.settings.sleep = Sleep::off;
   const double end_s = 1.0 + 6.0 * scene.settings.frame_s;
-  scene.forces.push_back(constantForce(
-      0, -1, Vec3(2.0 * scene.kineticFriction * scene.blocks[0].mass * kStandardGravity_m_s2, 0.0, 0.0), 1.0, end_s));
+  scene.forces.push_back(
+      {0, -1, Vec3(2.0 * scene.kineticFriction * scene.blocks[0].mass * kStandardGravity_m_s2, 0.0, 0.0), 1.0, end_s});
   Simulation simulation(scene);
   while (simulation.time_s < end_s - 0.5 * scene.settings.frame_s) prepareAndStep(simulation);
   const double time_s = simulation.time_s;

@@ -170,7 +170,11 @@ TEST(ReportFailure, TheTopRowMovesWhenALooseBlockIsDrawnOut) {
   scene.settings.sleep = Sleep::off;
   const std::size_t loose = 12;
   const Vec3 along = scene.blocks[loose].orientation * Vec3::UnitX();
-  scene.forces.push_back(constantForce(static_cast<std::int32_t>(loose), -1, 0.156 * along, 0.2, 0.45));
+  UserForce& force = scene.forces.emplace_back();
+  force.block = static_cast<std::int32_t>(loose);
+  force.force = 0.156 * along;
+  force.start_s = 0.2;
+  force.end_s = 0.45;
   Simulation reported(asReported(scene));
   EXPECT_GT(topRowMoves(reported, 21, 0.8), 3e-4);
   Simulation ours(scene);

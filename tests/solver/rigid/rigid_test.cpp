@@ -49,17 +49,16 @@ std::string nameOfTest(const ::testing::TestParamInfo<Method>& test) {
 
 INSTANTIATE_TEST_SUITE_P(Methods, RigidMethod, ::testing::Values(Method::rigidPgs, Method::rigidLcp, Method::xpbd), nameOfTest);
 
-// Velocities first, then positions: after n steps a block has fallen g dt^2 n (n + 1) / 2, within rounding.
+// In free flight a block moves by its mean velocity in a step: after any number of steps it has fallen g t^2 / 2, within
+// rounding.
 TEST_P(RigidMethod, FallsFreely) {
   Scene scene = flying();
   scene.settings.substeps = 10;
   Simulation simulation(scene);
   const double start = centre(simulation.state.position, 0).z();
   stepFor(simulation, 0.5);
-  const double dt = scene.settings.frame_s / 10.0;
-  const double steps = 300.0;
   const double drop = start - centre(simulation.state.position, 0).z();
-  EXPECT_NEAR(drop, 0.5 * kStandardGravity_m_s2 * dt * dt * steps * (steps + 1.0), 1e-12);
+  EXPECT_NEAR(drop, 0.5 * kStandardGravity_m_s2 * 0.5 * 0.5, 1e-12);
   EXPECT_NEAR(centre(simulation.state.velocity, 0).z(), -kStandardGravity_m_s2 * 0.5, 1e-12);
 }
 
@@ -196,6 +195,7 @@ Scene columnComingDown(Method method, int rows, int passes) {
   setSteps(scene.settings, method, 1e-3, 1);
   scene.settings.sleep = Sleep::off;
   scene.settings.iterations = passes;
+  scene.restitution = 0.0;
   for (BlockSpec& block : scene.blocks) block.velocity.z() = -kColumnSpeed_m_s;
   return scene;
 }
@@ -266,12 +266,10 @@ TEST(RigidSteps, TakenAgainAreGoneOnce) {
 }
 
 // Report Figure 3.3: "by resolving one pair, another pair of embedded objects can occur", and by resolving that the first again.
-// After a pass over a column each pair has been resolved once, and some still approach each other; the number of passes required
-// grows with the column. With enough of them, or with all pairs solved at once (`rigid-lcp`), none do.
-TEST(RigidFailure, ResolvingOnePairUndoesAnother) {
-  EXPECT_GT(approachLeft(Method::rigidPgs, 8, 1), 0.4 * kColumnSpeed_m_s);
-  EXPECT_GT(approachLeft(Method::rigidPgs, 8, 10), 0.1 * kColumnSpeed_m_s);
-  EXPECT_GT(approachLeft(Method::rigidPgs, 16, 100), 4.0 * approachLeft(Method::rigidPgs, 8, 100)) << "twice as high";
+// One pass over a column would leave some pairs at half the speed at which it comes down; so an impact is passed through until
+// its speeds change by no more than a hundredth, or all pairs are solved at once (`rigid-lcp`).
+TEST(RigidImpact, IsResolvedThroughAColumn) {
+  for (const int passes : {1, 10}) EXPECT_LT(approachLeft(Method::rigidPgs, 8, passes), 0.02 * kColumnSpeed_m_s);
   EXPECT_LT(approachLeft(Method::rigidPgs, 8, 1000), 1e-3 * kColumnSpeed_m_s);
   EXPECT_LT(approachLeft(Method::rigidLcp, 8, 1), 1e-3 * kColumnSpeed_m_s);
 }

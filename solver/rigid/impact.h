@@ -1,0 +1,32 @@
+#pragma once
+
+#include "solver/world/island_step.h"
+#include "solver/world/rigid_island.h"
+
+#include <vector>
+
+namespace springtower {
+
+// Impacts in sequential impulses (solver/rigid/pgs.cpp): Newton's law of restitution, bounded by energy. Where blocks meet faster
+// than leastReboundSpeed, they first stop one another, as resting ones do; then they part at the coefficient of restitution
+// times the speed at which they met. Both are solved through all blocks that the impact reaches.
+
+/// Before a substep: the speeds at which blocks meet that meet in it. Bodies move as the movers do; those that no contact pushed
+/// in the last substep fall by step.gravity until they meet.
+void setImpacts(const IslandStep& step, RigidIsland& island);
+
+/// Fastest impact of points that push, m/s; 0: there is none.
+double fastestImpact(const RigidIsland& island);
+
+/// After the passes: takes back so much of the change from the bodies' velocities to the movers' that their kinetic energy is at
+/// most `most_j` (J). Momentum is conserved, as it is by either.
+void boundRebound(RigidIsland& island, double most_j);
+
+/// After an impact: the contacts of blocks whose velocity it has changed start the next substep with the impulses that there were
+/// before; those of the impact would act a second time. Notes which pairs have met.
+void forgetImpact(IslandStep& step, RigidIsland& island);
+
+/// Kinetic energy, J.
+double kineticEnergy(const std::vector<RigidBody>& bodies);
+
+}  // namespace springtower
