@@ -56,8 +56,7 @@ Motion motionOf(const IslandStep& step) {
 
 // Whether it lies on something that is no part of it.
 bool isSupported(const IslandStep& step) {
-  return std::any_of(step.pairs.begin(), step.pairs.end(), [&](std::int32_t pair) {
-    const auto at = static_cast<std::size_t>(pair);
+  return anyPair(step, [&](std::size_t at) {
     const BlockPair& key = step.engine.pairs.key[at];
     return step.engine.pairs.touches(at) && (key.b < 0 || sleeps(step.simulation, key.a) || sleeps(step.simulation, key.b));
   });

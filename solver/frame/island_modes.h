@@ -24,7 +24,7 @@ struct IslandFacts {
   /// Root mean square speed, by mass, above 0.45 sqrt(g h): blocks could rise by a tenth of their height. Of what stands on
   /// something and slides as a whole it is not: that is smooth.
   bool fast = false;
-  bool stands = false;  ///< see `stands`; asked only where implicit steps have failed
+  bool stands = false;  ///< see `stands`; found only where implicit steps have failed
 };
 IslandFacts islandFacts(const IslandStep& step);
 

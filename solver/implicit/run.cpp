@@ -60,8 +60,7 @@ bool touchesSleeping(const IslandStep& step) {
 }
 
 bool touchesAnything(const IslandStep& step) {
-  return std::any_of(step.pairs.begin(), step.pairs.end(),
-                     [&](std::int32_t at) { return step.engine.pairs.touches(static_cast<std::size_t>(at)); });
+  return anyPair(step, [&](std::size_t at) { return step.engine.pairs.touches(at); });
 }
 
 // Number of implicit steps of the frame. `forced`: whether a force or the hand acts; `known`: whether that is as in the frame

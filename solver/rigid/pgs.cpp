@@ -385,6 +385,10 @@ EvenPressure pressureOn(const RigidIsland& island, std::span<const ContactConstr
 // Friction is static, or where all points of a pair slip kinetic and that of even pressure (solver/contact/slip.h). Precondition:
 // the movers have the velocities at the end of the substep before, and the points are placed.
 void chooseFriction(const IslandStep& step, const RigidIsland& island, PointList& list) {
+  // Where a fall has too many points for its passes to converge, friction at the points that touch gains no energy.
+  const std::size_t all = island.steady.points.size() + island.fast.points.size();
+  const bool converges = all * tuning::kCheapPasses <= tuning::kCheapEvaluations;
+  const bool evens = converges || isRigid(step.simulation.scene.settings.method);
   for (const PointGroup& group : list.groups) {
     const BlockPair& pair = step.engine.pairs.key[static_cast<std::size_t>(group.pair)];
     const Friction friction = step.simulation.friction.of(pair.a, pair.b);
@@ -392,10 +396,7 @@ void chooseFriction(const IslandStep& step, const RigidIsland& island, PointList
         std::span(list.points).subspan(static_cast<std::size_t>(group.first), static_cast<std::size_t>(group.count));
     const bool slips = isSlipping(step, island, points);
     EvenPressure pressure;
-    // Where a fall has too many points for its passes to converge, friction at the points that touch gains no energy.
-    const std::size_t all = island.steady.points.size() + island.fast.points.size();
-    const bool converges = all * tuning::kCheapPasses <= tuning::kCheapEvaluations;
-    if (slips && (converges || isRigid(step.simulation.scene.settings.method))) pressure = pressureOn(island, points);
+    if (slips && evens) pressure = pressureOn(island, points);
     for (ContactConstraint& p : points) {
       p.slips = pressure.shrink < 1.0;
       p.coefficient = slips ? friction.kineticFriction : friction.staticFriction;

@@ -7,6 +7,7 @@
 #include "solver/world/simulation.h"
 #include "tests/support/allocations.h"
 #include "tests/support/block_scenes.h"
+#include "tests/support/method_names.h"
 #include "tests/support/prepare_and_step.h"
 
 #include <array>
@@ -56,20 +57,14 @@ double placeX(const Simulation& simulation, std::size_t block) {
 struct DrivenBlocks : ::testing::TestWithParam<Method> {};
 struct DrivenBlocksThatHold : DrivenBlocks {};  // by methods with static friction
 
-std::string nameOfMethod(const ::testing::TestParamInfo<Method>& info) {
-  std::string name(nameOf(info.param));
-  for (char& letter : name) letter = letter == '-' ? '_' : letter;
-  return name;
-}
-
 INSTANTIATE_TEST_SUITE_P(Methods, DrivenBlocks,
                          ::testing::Values(Method::implicit, Method::implicitEuler, Method::semiImplicitEuler, Method::midpoint,
                                            Method::rungeKutta4, Method::report, Method::rigidPgs, Method::rigidLcp, Method::xpbd),
-                         nameOfMethod);
+                         methodName);
 INSTANTIATE_TEST_SUITE_P(Methods, DrivenBlocksThatHold,
                          ::testing::Values(Method::implicit, Method::implicitEuler, Method::semiImplicitEuler, Method::midpoint,
                                            Method::rungeKutta4, Method::rigidPgs, Method::rigidLcp, Method::xpbd),
-                         nameOfMethod);
+                         methodName);
 
 TEST(Drives, MoveByAFunctionOfTime) {
   Drive line;

@@ -8,6 +8,7 @@
 #include "solver/world/engine.h"
 #include "solver/world/simulation.h"
 #include "tests/support/block_scenes.h"
+#include "tests/support/method_names.h"
 #include "tests/support/prepare_and_step.h"
 
 #include <algorithm>
@@ -70,12 +71,6 @@ double alongRamp(const Simulation& simulation, double slope_deg) {
 
 struct FixedBlocks : ::testing::TestWithParam<Method> {};
 struct FixedBlocksThatHold : FixedBlocks {};  // by methods with static friction
-
-std::string methodName(const ::testing::TestParamInfo<Method>& info) {
-  std::string name(nameOf(info.param));
-  for (char& letter : name) letter = letter == '-' ? '_' : letter;
-  return name;
-}
 
 INSTANTIATE_TEST_SUITE_P(Methods, FixedBlocks,
                          ::testing::Values(Method::implicit, Method::implicitEuler, Method::semiImplicitEuler, Method::midpoint,

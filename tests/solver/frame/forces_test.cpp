@@ -119,8 +119,8 @@ TEST(Forces, ARampPullsABlockLooseAtItsFrictionLimit) {
   EXPECT_NEAR(way_m(), expected_m, 0.05 * expected_m);
 }
 
-// A force below the limit of friction does not let a block slip, whenever it begins: it gives way by what its springs are
-// strained.
+// A force below the limit of friction does not let a block slip, whenever it begins: it moves by the
+// deflection of its springs.
 TEST(Forces, APushBelowTheFrictionLimitMovesNothing) {
   for (const double start_s : {0.0, 1.0, 1.0 + 0.3 * kFrame_s}) {
     Scene scene = oneBlockScene(true);

@@ -77,7 +77,7 @@ TEST_P(Restart, FromCornersStaysWhereItLay) {
   }
 }
 
-// From the cuboids alone it finds back to its strain: no corner moves farther than springs and contacts give way.
+// From the cuboids alone it returns to its strain: no corner moves farther than springs and contacts deflect.
 TEST_P(Restart, FromCuboidsFindsTheRestState) {
   const Simulation before = atRest(GetParam().make(), 8.0);
   Simulation simulation(restarted(before, false));

@@ -4,6 +4,7 @@
 #include "solver/statics/statics.h"
 #include "solver/world/simulation.h"
 #include "tests/support/block_scenes.h"
+#include "tests/support/method_names.h"
 #include "tests/support/prepare_and_step.h"
 
 #include <cmath>
@@ -85,11 +86,7 @@ TEST_P(TwoCoefficients, ASlidingBlockKeepsSliding) {
 INSTANTIATE_TEST_SUITE_P(Methods, TwoCoefficients,
                          ::testing::Values(Method::implicit, Method::implicitEuler, Method::semiImplicitEuler, Method::rigidPgs,
                                            Method::rigidLcp, Method::xpbd),
-                         [](const auto& tested) {
-                           std::string name(nameOf(tested.param));
-                           std::erase(name, '-');
-                           return name;
-                         });
+                         methodName);
 
 struct TurningFace : ::testing::TestWithParam<Method> {};
 
@@ -125,11 +122,7 @@ TEST_P(TurningFace, StopsAsEvenPressureWouldStopIt) {
 
 INSTANTIATE_TEST_SUITE_P(Methods, TurningFace,
                          ::testing::Values(Method::implicit, Method::implicitEuler, Method::semiImplicitEuler, Method::rigidPgs),
-                         [](const auto& tested) {
-                           std::string name(nameOf(tested.param));
-                           std::erase(name, '-');
-                           return name;
-                         });
+                         methodName);
 
 // By statics these towers stand: the least margin is 0.8 degrees. Their uphill patches are at their static limit, those downhill
 // hold them.
@@ -177,11 +170,7 @@ TEST_P(SurfacesTest, BlocksRestAndSlideByTheirOwnCoefficients) {
 INSTANTIATE_TEST_SUITE_P(Methods, SurfacesTest,
                          ::testing::Values(Method::implicit, Method::implicitEuler, Method::semiImplicitEuler, Method::rigidPgs,
                                            Method::rigidLcp, Method::xpbd),
-                         [](const auto& tested) {
-                           std::string name(nameOf(tested.param));
-                           std::erase(name, '-');
-                           return name;
-                         });
+                         methodName);
 
 // A block on a rough one on a smooth floor: by statics it stands up to the least of both angles, whichever contact it is of.
 TEST(Friction, StaticsUsesPairs) {
