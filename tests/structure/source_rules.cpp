@@ -209,6 +209,15 @@ class FunctionLengths {
   bool isFunction_ = false;
 };
 
+// Whether a test writes into the folder for temporary files that all processes share.
+bool usesSharedFolder(std::string_view path, std::string_view text) {
+  if (!path.starts_with("tests/") || path.starts_with("tests/support/")) return false;
+  for (const std::string_view name : {"TempDir", "temp_directory_path"}) {
+    if (text.find(std::string(name) + "()") != std::string_view::npos) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 std::vector<std::string> brokenRules(std::string_view path, std::string_view text) {
@@ -240,6 +249,9 @@ std::vector<std::string> brokenRules(std::string_view path, std::string_view tex
   }
   if (path.ends_with(".h")) {
     for (const std::string& name : missingStandardIncludes(text)) broken.push_back(std::string(path) + ": " + name);
+  }
+  if (usesSharedFolder(path, text)) {
+    broken.push_back(std::string(path) + ": files of a test belong in its own ScratchFolder, for tests run side by side");
   }
   if (lineNumber > kMaxLines) {
     broken.push_back(std::string(path) + ": " + std::to_string(lineNumber) + " lines, more than " + std::to_string(kMaxLines));

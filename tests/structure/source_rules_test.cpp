@@ -1,5 +1,7 @@
 #include "tests/structure/source_rules.h"
 
+#include "tests/support/program.h"
+
 #include <filesystem>
 #include <fstream>
 #include <gmock/gmock.h>
@@ -62,8 +64,8 @@ TEST(SourceRules, PublicHeadersKnowTheStandardLibraryAlone) {
 }
 
 TEST(SourceRules, ThePublicInterfaceIsSmall) {
-  const std::filesystem::path root = std::filesystem::path(testing::TempDir()) / "springtower_public_headers";
-  std::filesystem::remove_all(root);
+  const ScratchFolder folder;
+  const std::filesystem::path& root = folder.path();
   std::filesystem::create_directories(root / "include/springtower");
   const auto add = [&](int number) {
     std::ofstream(root / ("include/springtower/part" + std::to_string(number) + ".h")) << "#pragma once\n";
@@ -72,7 +74,6 @@ TEST(SourceRules, ThePublicInterfaceIsSmall) {
   EXPECT_THAT(brokenRulesInTree(root), IsEmpty());
   add(kMaxPublicHeaders);
   EXPECT_THAT(brokenRulesInTree(root), ElementsAre(HasSubstr("8 public headers")));
-  std::filesystem::remove_all(root);
 }
 
 TEST(SourceRules, ARoomOfTheSolverKnowsThoseBeforeIt) {
@@ -146,25 +147,30 @@ TEST(SourceRules, HeadersAreGuardedAndFilesAreShort) {
 }
 
 TEST(SourceRules, AFilePlantedDeepInATreeIsFound) {
-  const std::filesystem::path root = std::filesystem::path(testing::TempDir()) / "springtower_source_rules";
-  std::filesystem::remove_all(root);
+  const ScratchFolder folder;
+  const std::filesystem::path& root = folder.path();
   std::filesystem::create_directories(root / "broadphase/detail");
   std::ofstream(root / "broadphase/sweep.cpp") << "#include \"core/state.h\"\n";
   EXPECT_THAT(brokenRulesInTree(root), IsEmpty());
   std::ofstream(root / "broadphase/detail/islands.h") << "#pragma once\n#include \"narrowphase/exact/cubic.h\"\n";
   EXPECT_THAT(brokenRulesInTree(root), ElementsAre(HasSubstr("broadphase/detail/islands.h:2: ")));
-  std::filesystem::remove_all(root);
 }
 
 TEST(SourceRules, TheSolverHasFewFilesBesideItsFolders) {
-  const std::filesystem::path root = std::filesystem::path(testing::TempDir()) / "springtower_flat_solver";
-  std::filesystem::remove_all(root);
+  const ScratchFolder folder;
+  const std::filesystem::path& root = folder.path();
   std::filesystem::create_directories(root / "solver");
   for (int i = 0; i < kMaxFlatFiles; ++i) std::ofstream(root / ("solver/file" + std::to_string(i) + ".cpp")) << "\n";
   EXPECT_THAT(brokenRulesInTree(root), IsEmpty());
   std::ofstream(root / "solver/one_more.cpp") << "\n";
   EXPECT_THAT(brokenRulesInTree(root), ElementsAre(HasSubstr("13 files")));
-  std::filesystem::remove_all(root);
+}
+
+TEST(SourceRules, ATestHasItsFilesInAFolderOfItsOwn) {
+  const std::string shared = std::string("const auto path = testing::TempDir") + "();\n";
+  EXPECT_THAT(brokenRules("tests/core/a_test.cpp", shared), ElementsAre(HasSubstr("ScratchFolder")));
+  EXPECT_THAT(brokenRules("tests/support/program.cpp", shared), IsEmpty());
+  EXPECT_THAT(brokenRules("core/a.cpp", shared), IsEmpty());
 }
 
 TEST(SourceRules, AHeaderIncludesWhatItUsesOfTheStandardLibrary) {

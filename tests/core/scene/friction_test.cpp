@@ -3,9 +3,9 @@
 #include "core/error.h"
 #include "core/scene/remove_block.h"
 #include "core/scene/scene.h"
+#include "tests/support/program.h"
 
 #include <cmath>
-#include <cstdio>
 #include <fstream>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -16,12 +16,12 @@ namespace {
 
 using ::testing::HasSubstr;
 
+// Reads a text as a scene file in a folder of its own: tests run side by side.
 Scene readText(const std::string& text) {
-  const std::string path = testing::TempDir() + "friction_test.toml";
+  const ScratchFolder folder;
+  const std::string path = folder.file("friction.toml");
   std::ofstream(path) << text;
-  Scene scene = sceneFromToml(path);
-  std::remove(path.c_str());
-  return scene;
+  return sceneFromToml(path);
 }
 
 // Three blocks: one as the scene is, a rough one, one that is smooth against the floor alone.

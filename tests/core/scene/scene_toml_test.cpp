@@ -1,5 +1,6 @@
 #include "core/error.h"
 #include "core/scene/scene.h"
+#include "tests/support/program.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -8,7 +9,6 @@
 #include <gmock/gmock.h>
 #include <numbers>
 #include <string>
-#include <unistd.h>
 #include <vector>
 
 namespace springtower {
@@ -19,13 +19,12 @@ using testing::ThrowsMessage;
 const std::string kData = SPRINGTOWER_TEST_DATA_DIR "/scenes/";
 const std::string kScenes = SPRINGTOWER_SOURCE_DIR "/scenes/";
 
-// Reads a text as a scene file. Tests run side by side, so each process has a file of its own.
+// Reads a text as a scene file in a folder of its own: tests run side by side.
 Scene fromText(const std::string& text) {
-  const std::string path = testing::TempDir() + fmt::format("springtower_scene_{}.toml", getpid());
+  const ScratchFolder folder;
+  const std::string path = folder.file("scene.toml");
   std::ofstream(path) << text;
-  Scene scene = sceneFromToml(path);
-  std::filesystem::remove(path);
-  return scene;
+  return sceneFromToml(path);
 }
 
 TEST(SceneFile, SetsEverythingASceneHas) {
@@ -97,7 +96,7 @@ TEST(SceneFile, HasTheDefaultsOfASceneWhereItIsSilent) {
   EXPECT_EQ(scene.staticFriction, tower.staticFriction);
   EXPECT_EQ(scene.gravity.magnitude, tower.gravity.magnitude);
   EXPECT_TRUE(scene.floor);
-  EXPECT_THAT(scene.name, testing::HasSubstr("springtower_scene_"));
+  EXPECT_THAT(scene.name, testing::HasSubstr("scene.toml"));
 }
 
 TEST(SceneFile, RotationIsAnAxisTimesItsAngle) {

@@ -2,13 +2,12 @@
 
 #include "core/error.h"
 #include "core/scene/scene.h"
+#include "tests/support/program.h"
 
-#include <filesystem>
 #include <fmt/format.h>
 #include <fstream>
 #include <gmock/gmock.h>
 #include <string>
-#include <unistd.h>
 
 namespace springtower {
 namespace {
@@ -38,16 +37,15 @@ std::string complaintAbout(const std::string& text) {
 
 // What reading a scene from this text says, if anything.
 std::string complaintOfTheReader(const std::string& text) {
-  const std::string path = testing::TempDir() + fmt::format("springtower_keys_{}.toml", getpid());
+  const ScratchFolder folder;
+  const std::string path = folder.file("scene.toml");
   std::ofstream(path) << text;
-  std::string complaint = "none";
   try {
     sceneFromToml(path);
   } catch (const InputError& error) {
-    complaint = error.what();
+    return error.what();
   }
-  std::filesystem::remove(path);
-  return complaint;
+  return "none";
 }
 
 TEST(LongKeys, AreRefusedWhereverASceneFileMayHaveAKey) {

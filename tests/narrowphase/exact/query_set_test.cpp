@@ -4,6 +4,7 @@
 #include "core/random.h"
 #include "narrowphase/exact/exact_time_of_impact.h"
 #include "tests/narrowphase/exact/feature_distance.h"
+#include "tests/support/program.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -151,20 +152,13 @@ TEST_P(QuerySet, AnswersDoNotDependOnTheOrderOfCorners) {
 /// Writes a file for one test and removes it.
 class TemporaryFile {
  public:
-  explicit TemporaryFile(const std::string& text) {
-    path_ = (fs::temp_directory_path() /
-             ("springtower_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()) + ".csv"))
-                .string();
-    std::ofstream(path_) << text;
-  }
-  TemporaryFile(const TemporaryFile&) = delete;
-  TemporaryFile& operator=(const TemporaryFile&) = delete;
-  ~TemporaryFile() { fs::remove(path_); }
+  explicit TemporaryFile(const std::string& text) { std::ofstream(path_) << text; }
 
   const std::string& path() const { return path_; }
 
  private:
-  std::string path_;
+  ScratchFolder folder_;
+  std::string path_ = folder_.file("queries.csv");
 };
 
 const std::string kHeader =
