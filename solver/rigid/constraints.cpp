@@ -1,130 +1,187 @@
 #include "solver/rigid/constraints.h"
 
+#include "solver/rigid/packs.h"
+
 namespace springtower {
 
 namespace {
 
-// A vector given in a body's axes, in the world's.
-SPRINGTOWER_INLINE void turned(const Eigen::Matrix3d& axes, const Lanes& own, Lanes& world) {
-  Lanes x, y, z;
-  toLanes(axes.col(0), x);
-  toLanes(axes.col(1), y);
-  toLanes(axes.col(2), z);
-  world = x * own[0] + y * own[1] + z * own[2];
+// Places and masses of one body of each of four pairs.
+struct LanePlace {
+  LaneVector centre;
+  LaneVector axes[3];
+  Lanes inverseMass;
+  LaneMatrix inertia;
+};
+
+SPRINGTOWER_INLINE void gatherPlaces(const BodyPlace* places, const PackedIndex& at, LanePlace& to) {
+  const BodyPlace& a = places[at[0]];
+  const BodyPlace& b = places[at[1]];
+  const BodyPlace& c = places[at[2]];
+  const BodyPlace& d = places[at[3]];
+  transpose(a.centre, b.centre, c.centre, d.centre, to.centre);
+  for (int k = 0; k < 3; ++k) transpose(a.axes[k], b.axes[k], c.axes[k], d.axes[k], to.axes[k]);
+  to.inverseMass = Lanes{a.inverseMass, b.inverseMass, c.inverseMass, d.inverseMass};
+  LaneVector column[3];
+  for (int k = 0; k < 3; ++k)
+    transpose(a.inverseInertia[k], b.inverseInertia[k], c.inverseInertia[k], d.inverseInertia[k], column[k]);
+  to.inertia = {column[0].x, column[1].x, column[2].x, column[1].y, column[2].y, column[2].z};
 }
 
-// A point's place on one of its bodies, and that body's centre; of what does not move the world's origin.
-SPRINGTOWER_INLINE void placeOn(const RigidIsland& island, std::int32_t body, const Lanes& own, Lanes& centre, Lanes& place) {
-  centre = Lanes{0.0, 0.0, 0.0, 0.0};
-  place = own;
-  if (body == unmovedBody(island)) return;
-  const RigidBody& moves = island.bodies[static_cast<std::size_t>(body)];
-  toLanes(moves.place, centre);
-  turned(moves.axes, own, place);
-  place += centre;
+// A vector given in the bodies' axes, in the world's.
+SPRINGTOWER_INLINE void turned(const LanePlace& body, const LaneVector& own, LaneVector& world) {
+  setZero(world);
+  addTimes(own.x, body.axes[0], world);
+  addTimes(own.y, body.axes[1], world);
+  addTimes(own.z, body.axes[2], world);
 }
 
 // Contribution of a body to the inverse effective masses at a point.
 struct Share {
-  double normal;
-  double all;  // sum over the three directions
+  Lanes normal;
+  Lanes all;  // sum over the three directions
 };
 
-SPRINGTOWER_INLINE void shareOf(const SolverBody& body, const Lanes& arm, const Lanes& normal, Lanes& lever, Lanes& turn,
+SPRINGTOWER_INLINE void shareOf(const LanePlace& body, const LaneVector& arm, const LaneVector& normal, LaneVector& turn,
                                 Share& share) {
-  Lanes twice;
-  crossLanes(arm, normal, lever);
-  timesLanes(body.inverseInertia, lever, turn);
-  timesLanes(body.inverseInertia, arm, twice);
-  const double trace = body.inverseInertia[0][0] + body.inverseInertia[1][1] + body.inverseInertia[2][2];
-  share.normal = body.inverseMass + sum(lever * turn);
-  share.all = 3.0 * body.inverseMass + trace * sum(arm * arm) - sum(arm * twice);
+  LaneVector lever, twice;
+  cross(arm, normal, lever);
+  times(body.inertia, lever, turn);
+  times(body.inertia, arm, twice);
+  Lanes leverTurn, arms, armTwice;
+  dot(lever, turn, leverTurn);
+  dot(arm, arm, arms);
+  dot(arm, twice, armTwice);
+  const Lanes trace = body.inertia.xx + body.inertia.yy + body.inertia.zz;
+  share.normal = body.inverseMass + leverTurn;
+  share.all = 3.0 * body.inverseMass + trace * arms - armTwice;
 }
 
-SPRINGTOWER_INLINE void place(const RigidIsland& island, ContactConstraint& p) {
-  Lanes centreUpper, onUpper, centreLower, onLower;
-  placeOn(island, p.upper, p.placeUpper, centreUpper, onUpper);
-  placeOn(island, p.lower, p.placeLower, centreLower, onLower);
-  if (p.normalOf != NormalOf::world) {
-    const std::int32_t body = p.normalOf == NormalOf::a ? p.upper : p.lower;
-    turned(island.bodies[static_cast<std::size_t>(body)].axes, p.ownNormal, p.normal);
-  }
-  p.gap = sum(p.normal * (onUpper - onLower)) + p.allowed;
-  const Lanes middle = 0.5 * (onUpper + onLower);
-  p.armUpper = middle - centreUpper;
-  p.armLower = middle - centreLower;
-  const SolverBody& upper = island.movers[static_cast<std::size_t>(p.upper)];
-  const SolverBody& lower = island.movers[static_cast<std::size_t>(p.lower)];
+SPRINGTOWER_INLINE void placeNormal(const LanePlace& upper, const LanePlace& lower, const PackedPlace& own, LaneVector& normal) {
+  LaneVector byUpper, byLower;
+  turned(upper, own.normal, byUpper);
+  turned(lower, own.normal, byLower);
+  normal.x = own.turnsUpper ? byUpper.x : (own.turnsLower ? byLower.x : own.normal.x);
+  normal.y = own.turnsUpper ? byUpper.y : (own.turnsLower ? byLower.y : own.normal.y);
+  normal.z = own.turnsUpper ? byUpper.z : (own.turnsLower ? byLower.z : own.normal.z);
+}
+
+SPRINGTOWER_INLINE void placePoint(const LanePlace& upper, const LanePlace& lower, const PackedPlace& own, PackedPoint& p) {
+  LaneVector onUpper, onLower;
+  turned(upper, own.upper, onUpper);
+  add(upper.centre, onUpper);
+  turned(lower, own.lower, onLower);
+  add(lower.centre, onLower);
+  placeNormal(upper, lower, own, p.normal);
+  LaneVector apart = onUpper;
+  subtract(onLower, apart);
+  dot(p.normal, apart, p.gap);
+  p.gap += own.allowed;
+  p.armUpper = {0.5 * (onUpper.x + onLower.x), 0.5 * (onUpper.y + onLower.y), 0.5 * (onUpper.z + onLower.z)};
+  p.armLower = p.armUpper;
+  subtract(upper.centre, p.armUpper);
+  subtract(lower.centre, p.armLower);
   Share up, low;
-  shareOf(upper, p.armUpper, p.normal, p.leverUpper, p.turnUpper, up);
-  shareOf(lower, p.armLower, p.normal, p.leverLower, p.turnLower, low);
-  const double normal = up.normal + low.normal;
-  p.normalMass = 1.0 / normal;
+  shareOf(upper, p.armUpper, p.normal, p.turnUpper, up);
+  shareOf(lower, p.armLower, p.normal, p.turnLower, low);
+  const Lanes normal = up.normal + low.normal;
   // The two tangential directions together have the rest of the sum, and each has at least the inverse masses alone.
-  p.acrossMass = 1.0 / (up.all + low.all - normal - (upper.inverseMass + lower.inverseMass));
-  p.friction -= sum(p.friction * p.normal) * p.normal;
+  const Lanes across = up.all + low.all - normal - (upper.inverseMass + lower.inverseMass);
+  const LaneMask isPoint = p.normalMass > 0.0;
+  const Lanes zero = {0.0, 0.0, 0.0, 0.0};
+  p.normalMass = isPoint ? 1.0 / normal : zero;
+  p.acrossMass = isPoint ? 1.0 / across : zero;
+  removeAlong(p.normal, p.friction);
 }
 
 SPRINGTOWER_KERNEL
-void placeAll(const RigidIsland& island, std::vector<ContactConstraint>& points) {
-  for (ContactConstraint& p : points) place(island, p);
+void placePacks(const BodyPlace* places, PackedPoints& packed, std::size_t first, std::size_t last) {
+  for (std::size_t i = first; i < last; ++i) {
+    PackedPair& pair = packed.pairs[i];
+    LanePlace upper{};
+    LanePlace lower{};
+    gatherPlaces(places, pair.upper, upper);
+    gatherPlaces(places, pair.lower, lower);
+    pair.inverseMassUpper = upper.inverseMass;
+    pair.inverseMassLower = lower.inverseMass;
+    pair.inertiaUpper = upper.inertia;
+    pair.inertiaLower = lower.inertia;
+    for (std::int32_t row = pair.first; row < pair.first + pair.rows; ++row)
+      placePoint(upper, lower, packed.places[static_cast<std::size_t>(row)], packed.points[static_cast<std::size_t>(row)]);
+  }
 }
 
 SPRINGTOWER_KERNEL
-void moveGapsOf(const std::vector<RigidBody>& bodies, std::vector<ContactConstraint>& points) {
-  const auto read = [&](std::int32_t at, Lanes& moved, Lanes& turn) {
-    moved = turn = Lanes{0.0, 0.0, 0.0, 0.0};
-    if (static_cast<std::size_t>(at) == bodies.size()) return;
-    toLanes(bodies[static_cast<std::size_t>(at)].moved, moved);
-    toLanes(bodies[static_cast<std::size_t>(at)].turned, turn);
-  };
-  for (ContactConstraint& p : points) {
-    Lanes movedUpper, turnedUpper, movedLower, turnedLower;
-    read(p.upper, movedUpper, turnedUpper);
-    read(p.lower, movedLower, turnedLower);
-    p.gap += sum(p.normal * (movedUpper - movedLower) + (p.leverUpper * turnedUpper - p.leverLower * turnedLower));
+void moveGapsOf(const BodyMotion* moved, PackedPoints& packed, std::size_t first, std::size_t last) {
+  for (std::size_t i = first; i < last; ++i) {
+    const PackedPair& pair = packed.pairs[i];
+    PackMotion motion;
+    gather(moved, pair, motion);
+    for (std::int32_t row = pair.first; row < pair.first + pair.rows; ++row) {
+      PackedPoint& p = packed.points[static_cast<std::size_t>(row)];
+      LaneVector relative;
+      relativeAt(motion, p, relative);
+      Lanes opening;
+      dot(p.normal, relative, opening);
+      p.gap += opening;
+    }
   }
 }
 
 }  // namespace
 
-void placeConstraints(RigidIsland& island) {
-  placeAll(island, island.steady.points);
-  placeAll(island, island.fast.points);
+void placeConstraints(const RigidIsland& island, PackedPoints& packed) {
+  overPacks(packed, [&](std::size_t first, std::size_t last) { placePacks(island.places.data(), packed, first, last); });
 }
 
 void moveGaps(RigidIsland& island) {
-  moveGapsOf(island.bodies, island.steady.points);
-  moveGapsOf(island.bodies, island.fast.points);
+  for (std::size_t i = 0; i < island.bodies.size(); ++i) {
+    toLanes(island.bodies[i].moved, island.motions[i].linear);
+    toLanes(island.bodies[i].turned, island.motions[i].angular);
+  }
+  for (ActingPoints* list : {&island.steady, &island.fast}) {
+    PackedPoints& packed = list->packed;
+    overPacks(packed, [&](std::size_t first, std::size_t last) { moveGapsOf(island.motions.data(), packed, first, last); });
+  }
 }
 
-void readMovers(RigidIsland& island) {
-  island.movers.resize(island.bodies.size() + 1);
+void readBodies(RigidIsland& island) {
+  const Lanes zero = {0.0, 0.0, 0.0, 0.0};
+  island.places.resize(island.bodies.size() + 1);
+  island.motions.resize(island.bodies.size() + 1);
   for (std::size_t i = 0; i < island.bodies.size(); ++i) {
     const RigidBody& body = island.bodies[i];
-    SolverBody& mover = island.movers[i];
-    for (int k = 0; k < 3; ++k)
-      mover.inverseInertia[k] = Lanes{body.inverseInertia(0, k), body.inverseInertia(1, k), body.inverseInertia(2, k), 0.0};
-    mover.inverseMass = body.inverseMass;
+    BodyPlace& place = island.places[i];
+    toLanes(body.place, place.centre);
+    for (int k = 0; k < 3; ++k) {
+      toLanes(body.axes.col(k), place.axes[k]);
+      toLanes(body.inverseInertia.col(k), place.inverseInertia[k]);
+    }
+    place.inverseMass = body.inverseMass;
+    place.flies = body.pushed || body.inverseMass == 0.0 ? 0.0 : 1.0;
   }
-  island.movers.back() = SolverBody{};
+  BodyPlace& still = island.places.back();
+  still = BodyPlace{};
+  still.centre = zero;
+  for (int k = 0; k < 3; ++k) {
+    still.axes[k] = still.inverseInertia[k] = zero;
+    still.axes[k][k] = 1.0;
+  }
+  island.motions.back() = {zero, zero};
   readVelocities(island);
 }
 
 void readVelocities(RigidIsland& island) {
   for (std::size_t i = 0; i < island.bodies.size(); ++i) {
-    toLanes(island.bodies[i].velocity, island.movers[i].velocity);
-    toLanes(island.bodies[i].spin, island.movers[i].spin);
+    toLanes(island.bodies[i].velocity, island.motions[i].linear);
+    toLanes(island.bodies[i].spin, island.motions[i].angular);
   }
 }
 
-void writeMovers(RigidIsland& island) {
+void writeBodies(RigidIsland& island) {
   for (std::size_t i = 0; i < island.bodies.size(); ++i) {
-    const SolverBody& mover = island.movers[i];
-    for (int k = 0; k < 3; ++k) {
-      island.bodies[i].velocity[k] = mover.velocity[k];
-      island.bodies[i].spin[k] = mover.spin[k];
-    }
+    fromLanes(island.motions[i].linear, island.bodies[i].velocity);
+    fromLanes(island.motions[i].angular, island.bodies[i].spin);
   }
 }
 

@@ -1,13 +1,15 @@
 #include "solver/rigid/impact.h"
 
+#include "core/tuning.h"
 #include "solver/contact/rigid_contacts.h"
 #include "solver/rigid/constraints.h"
+#include "solver/rigid/packs.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <span>
+#include <limits>
 
 namespace springtower {
 
@@ -15,21 +17,36 @@ namespace {
 
 // A block that flies gains some speed before it meets what does not: the square of it, m2/s2, along a normal.
 SPRINGTOWER_KERNEL
-void setImpactsOf(const RigidIsland& island, const Lanes& gravity, double least, std::vector<ContactConstraint>& points) {
-  const auto flies = [&](std::int32_t at) {
-    if (at == unmovedBody(island)) return 0.0;
-    const RigidBody& body = island.bodies[static_cast<std::size_t>(at)];
-    return body.pushed || body.inverseMass == 0.0 ? 0.0 : 1.0;
+void setImpactsOf(const RigidIsland& island, const Vec3& gravity, double least, PackedPoints& packed, std::size_t first,
+                  std::size_t last) {
+  const Lanes zero = {0.0, 0.0, 0.0, 0.0};
+  const LaneVector g = {zero + gravity[0], zero + gravity[1], zero + gravity[2]};
+  const auto flies = [&](const PackedIndex& at, int lane) {
+    return island.places[static_cast<std::size_t>(at[static_cast<std::size_t>(lane)])].flies;
   };
-  for (ContactConstraint& p : points) {
-    const SolverBody& upper = island.movers[static_cast<std::size_t>(p.upper)];
-    const SolverBody& lower = island.movers[static_cast<std::size_t>(p.lower)];
-    const double closing =
-        -(sum(p.normal * (upper.velocity - lower.velocity)) + sum(p.leverUpper * upper.spin) - sum(p.leverLower * lower.spin));
-    const double gained = -2.0 * (flies(p.upper) - flies(p.lower)) * sum(p.normal * gravity) * std::max(0.0, p.gap);
-    const double squared = closing * std::abs(closing) + gained;
-    p.before = p.push;
-    p.impact = squared > least * least ? __builtin_sqrt(squared) : 0.0;
+  for (std::size_t i = first; i < last; ++i) {
+    const PackedPair& pair = packed.pairs[i];
+    PackMotion motion;
+    gather(island.motions.data(), pair, motion);
+    Lanes flying;
+    for (int lane = 0; lane < kPackedPairs; ++lane) flying[lane] = -2.0 * (flies(pair.upper, lane) - flies(pair.lower, lane));
+    for (std::int32_t row = pair.first; row < pair.first + pair.rows; ++row) {
+      PackedPoint& p = packed.points[static_cast<std::size_t>(row)];
+      LaneVector relative;
+      relativeAt(motion, p, relative);
+      Lanes opening, along, open, size, speed;
+      dot(p.normal, relative, opening);
+      dot(p.normal, g, along);
+      largerOf(p.gap, zero, open);
+      sizeOf(opening, size);
+      const Lanes squared = flying * along * open - opening * size;
+      const LaneMask meets = (p.normalMass > zero) & (squared > zero + least * least);
+      squareRoot(meets ? squared : zero, speed);
+      p.before = p.push;
+      p.impact = speed;
+      p.rebound =
+          meets ? packed.places[static_cast<std::size_t>(row)].restitution * speed : zero + std::numeric_limits<double>::lowest();
+    }
   }
 }
 
@@ -43,22 +60,58 @@ double twiceKinetic(const RigidBody& body, const Vec3& velocity, const Vec3& spi
 }  // namespace
 
 void setImpacts(const IslandStep& step, RigidIsland& island) {
-  Lanes gravity;
-  toLanes(step.gravity, gravity);
   const double least = leastReboundSpeed(step.simulation);
-  setImpactsOf(island, gravity, least, island.steady.points);
-  setImpactsOf(island, gravity, least, island.fast.points);
+  for (PackedPoints* packed : packsOf(island)) {
+    overPacks(*packed,
+              [&](std::size_t first, std::size_t last) { setImpactsOf(island, step.gravity, least, *packed, first, last); });
+  }
 }
 
 double fastestImpact(const RigidIsland& island) {
   double fastest = 0.0;
-  for (const PointList* list : {&island.steady, &island.fast}) {
-    for (const std::int32_t i : list->active) {
-      const ContactConstraint& p = list->points[static_cast<std::size_t>(i)];
-      if (p.push > 0.0) fastest = std::max(fastest, p.impact);
+  for (const PackedPoints* packed : packsOf(island)) {
+    for (const std::int32_t i : packed->active) {
+      const PackedPair& pair = packed->pairs[static_cast<std::size_t>(i)];
+      for (std::int32_t row = pair.first; row < pair.first + pair.rows; ++row) {
+        const PackedPoint& p = packed->points[static_cast<std::size_t>(row)];
+        for (int lane = 0; lane < kPackedPairs; ++lane)
+          if (p.push[lane] > 0.0) fastest = std::max(fastest, p.impact[lane]);
+      }
     }
   }
   return fastest;
+}
+
+bool markPushedByPoints(const IslandStep& step, RigidIsland& island) {
+  const double least_m_s = tuning::kRoundingPush * step.simulation.scene.gravity.magnitude * step.drift_s;
+  for (RigidBody& body : island.bodies) body.pushed = false;
+  bool any = false;
+  const auto mark = [&](std::int32_t at, double push) {
+    if (at == unmovedBody(island)) return;
+    RigidBody& body = island.bodies[static_cast<std::size_t>(at)];
+    if (!(push * body.inverseMass > least_m_s)) return;
+    body.pushed = true;
+    any = true;
+  };
+  const Lanes zero = {0.0, 0.0, 0.0, 0.0};
+  for (PackedPoints* packed : packsOf(island)) {
+    for (const std::int32_t i : packed->active) {
+      const PackedPair& pair = packed->pairs[static_cast<std::size_t>(i)];
+      Lanes most = zero;
+      for (std::int32_t row = pair.first; row < pair.first + pair.rows; ++row) {
+        PackedPoint& p = packed->points[static_cast<std::size_t>(row)];
+        const LaneMask pushes = p.push > zero;
+        p.impact = pushes ? p.impact : zero;
+        p.rebound = pushes ? p.rebound : zero + std::numeric_limits<double>::lowest();
+        largerOf(p.push, most, most);
+      }
+      for (std::size_t lane = 0; lane < kPackedPairs; ++lane) {
+        mark(pair.upper[lane], most[static_cast<int>(lane)]);
+        mark(pair.lower[lane], most[static_cast<int>(lane)]);
+      }
+    }
+  }
+  return any;
 }
 
 double kineticEnergy(const std::vector<RigidBody>& bodies) {
@@ -75,9 +128,10 @@ void boundRebound(RigidIsland& island, double most_j) {
   double linear = 0.0;
   double square = 0.0;
   const auto changeOf = [&](std::size_t i, Vec3& velocity, Vec3& spin) {
-    const SolverBody& mover = island.movers[i];
-    velocity = Vec3(mover.velocity[0], mover.velocity[1], mover.velocity[2]) - island.bodies[i].velocity;
-    spin = Vec3(mover.spin[0], mover.spin[1], mover.spin[2]) - island.bodies[i].spin;
+    fromLanes(island.motions[i].linear, velocity);
+    fromLanes(island.motions[i].angular, spin);
+    velocity -= island.bodies[i].velocity;
+    spin -= island.bodies[i].spin;
   };
   Vec3 velocity;
   Vec3 spin;
@@ -95,10 +149,29 @@ void boundRebound(RigidIsland& island, double most_j) {
   for (std::size_t i = 0; i < island.bodies.size(); ++i) {
     if (island.bodies[i].inverseMass == 0.0) continue;
     changeOf(i, velocity, spin);
-    toLanes(island.bodies[i].velocity + share * velocity, island.movers[i].velocity);
-    toLanes(island.bodies[i].spin + share * spin, island.movers[i].spin);
+    toLanes(island.bodies[i].velocity + share * velocity, island.motions[i].linear);
+    toLanes(island.bodies[i].spin + share * spin, island.motions[i].angular);
   }
 }
+
+namespace {
+
+// The impulses of one pair's points.
+void forgetPair(PackedPoints& packed, const PackedPair& pair, int lane, bool& met) {
+  for (std::int32_t row = pair.first; row < pair.first + pair.rows; ++row) {
+    PackedPoint& p = packed.points[static_cast<std::size_t>(row)];
+    if (!(p.push[lane] > p.before[lane])) continue;
+    met = true;
+    const double left = p.before[lane] / p.push[lane];
+    p.friction.x[lane] *= left;
+    p.friction.y[lane] *= left;
+    p.friction.z[lane] *= left;
+    p.push[lane] = p.before[lane];
+    p.idle[lane] = p.push[lane] == 0.0 ? -1 : 0;
+  }
+}
+
+}  // namespace
 
 void forgetImpact(IslandStep& step, RigidIsland& island) {
   const double least = leastReboundSpeed(step.simulation);
@@ -106,16 +179,14 @@ void forgetImpact(IslandStep& step, RigidIsland& island) {
   const auto isStruck = [&](std::int32_t at) {
     return at != unmovedBody(island) && island.bodies[static_cast<std::size_t>(at)].struck;
   };
-  for (PointList* list : {&island.steady, &island.fast}) {
-    for (const PointGroup& group : list->groups) {
-      const std::span<ContactConstraint> points =
-          std::span(list->points).subspan(static_cast<std::size_t>(group.first), static_cast<std::size_t>(group.count));
-      for (ContactConstraint& p : points) {
-        if (!(p.push > p.before) || (!isStruck(p.upper) && !isStruck(p.lower))) continue;
-        step.engine.scratch.covered[static_cast<std::size_t>(group.pair)] = kCoveredAndMet;
-        p.friction *= p.before / p.push;
-        p.push = p.before;
-        p.idle = p.push == 0.0;
+  for (ActingPoints* list : {&island.steady, &island.fast}) {
+    for (const PackedPair& pair : list->packed.pairs) {
+      for (std::size_t lane = 0; lane < kPackedPairs; ++lane) {
+        if (pair.group[lane] < 0 || (!isStruck(pair.upper[lane]) && !isStruck(pair.lower[lane]))) continue;
+        bool met = false;
+        forgetPair(list->packed, pair, static_cast<int>(lane), met);
+        const PointGroup& group = list->groups[static_cast<std::size_t>(pair.group[lane])];
+        if (met) step.engine.scratch.covered[static_cast<std::size_t>(group.pair)] = kCoveredAndMet;
       }
     }
   }

@@ -11,15 +11,19 @@ namespace springtower {
 // than leastReboundSpeed, they first stop one another, as resting ones do; then they part at the coefficient of restitution
 // times the speed at which they met. Both are solved through all blocks that the impact reaches.
 
-/// Before a substep: the speeds at which blocks meet that meet in it. Bodies move as the movers do; those that no contact pushed
+/// Before a substep: the speeds at which blocks meet that meet in it. Bodies move by island.motions; those that no contact pushed
 /// in the last substep fall by step.gravity until they meet.
 void setImpacts(const IslandStep& step, RigidIsland& island);
 
 /// Fastest impact of points that push, m/s; 0: there is none.
 double fastestImpact(const RigidIsland& island);
 
-/// After the passes: takes back so much of the change from the bodies' velocities to the movers' that their kinetic energy is at
-/// most `most_j` (J). Momentum is conserved, as it is by either.
+/// After passes: marks the bodies that a contact pushes by more than a millionth of their weight; points that do not push have no
+/// impact. Returns whether any body is pushed: where none is, no blocks meet.
+bool markPushedByPoints(const IslandStep& step, RigidIsland& island);
+
+/// After the passes: takes back so much of the change from the bodies' velocities to those of the passes that their kinetic
+/// energy is at most `most_j` (J). Momentum is conserved, as it is by either.
 void boundRebound(RigidIsland& island, double most_j);
 
 /// After an impact: the contacts of blocks whose velocity it has changed start the next substep with the impulses that there were

@@ -5,13 +5,13 @@
 #include "solver/contact/create.h"
 #include "solver/contact/rigid_contacts.h"
 #include "solver/rigid/constraints.h"
+#include "solver/rigid/packs.h"
 #include "solver/rigid/warm_start.h"
 #include "solver/world/checkpoint.h"
 #include "solver/world/driven_blocks.h"
 
 #include <algorithm>
 #include <array>
-#include <limits>
 
 namespace springtower {
 
@@ -72,7 +72,6 @@ void addConstraint(const RigidIsland& island, const PairBodies& of, const NearPo
   } else {
     toLanes(island.bodies[static_cast<std::size_t>(turning)].axes.transpose() * near.normal, p.ownNormal);
   }
-  toLanes(near.normal, p.normal);
   p.gap = near.normal.dot(near.onA - near.onB);
   p.restitution = of.restitution;
 }
@@ -177,14 +176,8 @@ void removeFastFromSteady(RigidIsland& island) {
   for (const std::int32_t pair : island.fastPairs) {
     while (group != island.steady.groups.end() && group->pair < pair) ++group;
     if (group == island.steady.groups.end()) return;
-    if (group->pair != pair) continue;
-    const auto first = island.steady.points.begin() + group->first;
-    std::for_each(first, first + group->count, [](ContactConstraint& p) {
-      p.allowed = std::numeric_limits<double>::max();
-      p.push = 0.0;
-      p.friction = Lanes{0.0, 0.0, 0.0, 0.0};
-      p.idle = true;
-    });
+    if (group->pair != pair || group->count == 0) continue;
+    disablePacked(island.steady.packed, *group);
     group->count = 0;
   }
 }
@@ -237,6 +230,8 @@ void listPoints(IslandStep& step, RigidIsland& island, double substep_s, bool ag
     addGroup(island, of, near, reach, motion, island.steady);
     warmStartLast(step, island, before, substep_s, island.steady);
   }
+  packPoints(step, island, island.steady);
+  packPoints(step, island, island.fast);
 }
 
 void addOutrun(IslandStep& step, RigidIsland& island, double step_s) {
@@ -267,7 +262,8 @@ void addOutrun(IslandStep& step, RigidIsland& island, double step_s) {
 
 void listFastPoints(IslandStep& step, RigidIsland& island, bool firstSubstep) {
   const double h = step.simulation.lengths.blockHeight_m;
-  std::swap(island.fast, island.fastBefore);
+  unpackPoints(island.fast);
+  std::swap(static_cast<PointList&>(island.fast), island.fastBefore);
   clear(island.fast);
   KnownPoints known =
       firstSubstep ? KnownPoints(island.steadyKnown, island.fastKnown) : KnownPoints(island.steady, island.fastBefore);
@@ -275,6 +271,7 @@ void listFastPoints(IslandStep& step, RigidIsland& island, bool firstSubstep) {
   for (const std::int32_t pair : island.fastPairs) {
     const PairBodies of = bodiesOf(step, island, pair);
     const KnownGroup before = known.find(pair);
+    if (before.list == &island.steady) unpackGroup(island.steady, *before.group);
     const double motion = relativeMotion(step, island, of, step.drift_s);
     const double reach = motion + tuning::kNearPointMargin * h;
     findPoints(step, of, reach, false, near);
@@ -283,6 +280,7 @@ void listFastPoints(IslandStep& step, RigidIsland& island, bool firstSubstep) {
     warmStartLast(step, island, before, step.drift_s, island.fast);
   }
   removeFastFromSteady(island);
+  packPoints(step, island, island.fast);
 }
 
 bool hasUncoveredContact(const IslandStep& step) {
@@ -302,19 +300,19 @@ void equaliseMemory(RigidIsland& island) {
   const auto equalise = [](auto&... lists) {
     const std::size_t points = std::max({lists.points.capacity()...});
     const std::size_t groups = std::max({lists.groups.capacity()...});
-    const std::size_t active = std::max({lists.active.capacity()...});
     (lists.points.reserve(points), ...);
     (lists.groups.reserve(groups), ...);
-    (lists.active.reserve(active), ...);
   };
-  equalise(island.steady, island.steadyKnown);
-  equalise(island.fast, island.fastKnown, island.fastBefore);
+  equalise(static_cast<PointList&>(island.steady), island.steadyKnown);
+  equalise(static_cast<PointList&>(island.fast), island.fastKnown, island.fastBefore);
   const std::size_t pairs = std::max(island.fastPairs.capacity(), island.fastPairsBefore.capacity());
   island.fastPairs.reserve(pairs);
   island.fastPairsBefore.reserve(pairs);
 }
 
 void keepPoints(IslandStep& step, RigidIsland& island) {
+  unpackPoints(island.steady);
+  unpackPoints(island.fast);
   for (const PointList* list : {&island.steady, &island.fast}) {
     for (const PointGroup& group : list->groups) {
       const auto first = list->points.begin() + group.first;
@@ -328,8 +326,8 @@ void keepPoints(IslandStep& step, RigidIsland& island) {
     savePair(step.engine, at);
     createTouching(step, at);
   }
-  std::swap(island.steady, island.steadyKnown);
-  std::swap(island.fast, island.fastKnown);
+  std::swap(static_cast<PointList&>(island.steady), island.steadyKnown);
+  std::swap(static_cast<PointList&>(island.fast), island.fastKnown);
   island.knowsManifolds = false;
 }
 

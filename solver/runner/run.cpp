@@ -63,9 +63,8 @@ class Recorder {
     if (firstRest || (!settled_ && ran_s > kSettledTime_s)) settle(simulation);
     if (!unchanged && options_.measureEveryFrame) {
       measure(simulation);
-      if (!resting || !rested_) measureEnergy(energy(simulation));
+      measureEnergy(energy(simulation));
     }
-    rested_ = resting;
     if (settled_) settledPenetration_m_ = std::max(settledPenetration_m_, now_.penetration.depth);
     lastSecond_[(wall_ms_.size() - 1) % lastSecond_.size()] = now_.meanSquareSpeed;
   }
@@ -169,7 +168,6 @@ class Recorder {
   FrameMeasures now_;
   double startPenetration_m_ = 0.0;
   double largestRise_j_ = 0.0;
-  bool rested_ = false;  // whether all blocks were at rest in the frame before
   bool settled_ = false;
   ParticleArray settledPosition_;
   double settledPenetration_m_ = 0.0;

@@ -4,10 +4,12 @@
 #include "core/lanes.h"
 #include "core/vector.h"
 #include "narrowphase/near_points.h"
+#include "solver/world/packed_points.h"
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 #include <vector>
 
 namespace springtower {
@@ -59,46 +61,23 @@ struct RigidContact {
   double restitution = 0.0;          ///< of the pair
 };
 
-/// A body in the passes over the contacts. Vectors fill three of four lanes.
-struct alignas(32) SolverBody {
-  Lanes velocity;           ///< m/s
-  Lanes spin;               ///< rad/s
-  Lanes inverseInertia[3];  ///< 1/(kg m2), columns, world axes
-  double inverseMass;       ///< 1/kg; 0 of what does not move
-  int changed;              ///< the last pass of an impact that changed its velocity
-};
-
-/// One point of two blocks in sequential impulses; `upper` is the pair's first block, or what does not move. Vectors fill three
-/// of four lanes. The point is fixed to its blocks; arms, normal, gap and masses are those at the present poses.
+/// One point of two blocks in sequential impulses, as it lasts from substep to substep; `upper` is the pair's first block, or
+/// what does not move. Vectors fill three of four lanes. The point is fixed to its blocks.
 struct alignas(32) ContactConstraint {
-  Lanes placeUpper;       ///< m, in the body's axes from its centre; in the world on what does not move
-  Lanes placeLower;       ///< m, likewise
-  Lanes ownNormal;        ///< the normal in the axes of the body that it turns with, or in the world's
-  Lanes normal;           ///< unit, from lower to upper
-  Lanes armUpper;         ///< m, from the body's centre to half way between the two places
-  Lanes armLower;         ///< m
-  Lanes leverUpper;       ///< m, arm x normal
-  Lanes leverLower;       ///< m
-  Lanes turnUpper;        ///< rad/s, change of the body's spin by an impulse of 1 N s along the normal
-  Lanes turnLower;        ///< likewise, with opposite sign
-  Lanes friction{};       ///< N s, on upper, tangential
-  Lanes towardsCentre{};  ///< m, from the point to where its friction acts; zero unless all points of the pair slip
-  double push = 0.0;      ///< N s along the normal
-  double normalMass;      ///< kg, effective along the normal
-  double acrossMass;      ///< kg, lower bound of the effective tangential mass
-  double gap;             ///< m at the start of the step; negative where the blocks overlap by more than the allowed depth
-  double rest = 0.0;      ///< m, overlap of springs without force
-  double allowed = 0.0;   ///< m, overlap that is not pushed out: rest depth, and strain of the springs
-  double found = 0.0;     ///< m, overlap as the frame began
-  double coefficient;     ///< of friction: static, or kinetic where all points of the pair slip
-  double restitution;     ///< of the pair
-  double before;          ///< N s, push with which the substep began
-  double impact = 0.0;    ///< m/s, speed at which the blocks meet if they do in the substep; 0: too slow to rebound
-  std::int32_t upper;     ///< index of its body in the island; the last index stands for what does not move
+  Lanes placeUpper;      ///< m, in the body's axes from its centre; in the world on what does not move
+  Lanes placeLower;      ///< m, likewise
+  Lanes ownNormal;       ///< the normal in the axes of the body that it turns with, or in the world's
+  Lanes friction{};      ///< N s, on upper, tangential
+  double push = 0.0;     ///< N s along the normal
+  double gap;            ///< m as it was found; negative where the blocks overlap
+  double rest = 0.0;     ///< m, overlap of springs without force
+  double allowed = 0.0;  ///< m, overlap that is not pushed out: rest depth, and strain of the springs
+  double found = 0.0;    ///< m, overlap as the frame began
+  double restitution;    ///< of the pair
+  std::int32_t upper;    ///< index of its body in the island; the last index stands for what does not move
   std::int32_t lower;
   NormalOf normalOf;     ///< a: upper, b: lower
   bool sliding = false;  ///< whether friction is at its bound
-  bool slips = false;    ///< whether all points of the pair slip
   bool idle = true;      ///< whether its normal and friction impulses are zero so far
 };
 
@@ -107,8 +86,10 @@ struct PointGroup {
   std::int32_t pair;  ///< position in engine.pairs
   std::int32_t first;
   std::int32_t count;
-  double reach_m;  ///< all points have been listed that may touch after relative motion by this
-  double moved_m;  ///< upper bound of the relative motion since
+  double reach_m;          ///< all points have been listed that may touch after relative motion by this
+  double moved_m;          ///< upper bound of the relative motion since
+  std::int32_t pack = -1;  ///< where its points are packed: place in packed.pairs
+  std::int32_t lane = 0;
 };
 
 /// What scratch.covered says of a pair whose blocks have met in the step.
@@ -118,13 +99,16 @@ inline constexpr std::uint8_t kCoveredAndMet = 2;
 struct PointList {
   std::vector<ContactConstraint> points;
   std::vector<PointGroup> groups;
-  std::vector<std::int32_t> active;  ///< points at which the blocks touch in the substep or nearly do, ascending
+};
+
+/// Points on which impulses act.
+struct ActingPoints : PointList {
+  PackedPoints packed;  ///< impulses are those of the packs from packPoints() to unpackPoints()
 };
 
 inline void clear(PointList& list) {
   list.points.clear();
   list.groups.clear();
-  list.active.clear();
 }
 
 /// Working space of the pivoting method: rows are the contacts' normals, then their tangents.
@@ -146,10 +130,13 @@ struct LcpWorkspace {
 struct RigidIsland {
   std::vector<RigidBody> bodies;  ///< [blocks of the island], then the driven blocks near it, whose inverse mass is 0
   std::vector<RigidContact> contacts;
-  std::vector<SolverBody> movers;  ///< those of `bodies`, and one for what does not move
+  // Of `bodies`, and one for what does not move.
+  std::vector<BodyPlace> places;
+  std::vector<BodyMotion> motions;  ///< velocities in the passes; how far they have moved while gaps are moved
+  std::vector<int> changed;         ///< the last pass of an impact that changed a body's velocity
   // Of sequential impulses, in place of `contacts` (solver/rigid/list_points.h).
-  PointList steady;                           ///< points found before a step
-  PointList fast;                             ///< points found before a substep
+  ActingPoints steady;                        ///< points found before a step
+  ActingPoints fast;                          ///< points found before a substep
   PointList steadyKnown;                      ///< the same of the step before,
   PointList fastKnown;                        ///< of its last substep,
   PointList fastBefore;                       ///< and of the substep before
@@ -166,7 +153,13 @@ struct RigidIsland {
 
 template <class Island>
 auto listsOf(Island& island) {
-  return std::array{&island.steady, &island.fast, &island.steadyKnown, &island.fastKnown, &island.fastBefore};
+  using List = std::conditional_t<std::is_const_v<Island>, const PointList, PointList>;
+  return std::array<List*, 5>{&island.steady, &island.fast, &island.steadyKnown, &island.fastKnown, &island.fastBefore};
+}
+
+template <class Island>
+auto packsOf(Island& island) {
+  return std::array{&island.steady.packed, &island.fast.packed};
 }
 
 /// The index that stands for what does not move: the floor, sleeping blocks.

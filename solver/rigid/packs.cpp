@@ -1,0 +1,210 @@
+#include "solver/rigid/packs.h"
+
+#include <algorithm>
+#include <bit>
+#include <limits>
+
+namespace springtower {
+
+namespace {
+
+// Where pairs come to lie in packs: those of a colour side by side, of these first the ones that push, with as many points.
+constexpr std::int32_t kMostPoints = static_cast<std::int32_t>(kMostNearPoints);
+constexpr std::int32_t kSharedColours = 64;  // those beyond are of one pair each
+constexpr std::int32_t kKeysOfColour = 2 * (kMostPoints + 1);
+
+std::size_t packedRow(std::int32_t first, std::int32_t i) {
+  return static_cast<std::size_t>(first) + static_cast<std::size_t>(i);
+}
+
+bool movesByImpulses(const RigidIsland& island, std::int32_t body) {
+  return body != unmovedBody(island) && island.bodies[static_cast<std::size_t>(body)].inverseMass > 0.0;
+}
+
+// The first colour that neither body has; both have it then. Contacts with what does not move come last: what the others leave
+// must not push blocks into the floor. Where all colours are taken, one of its own.
+std::int32_t takeColour(const RigidIsland& island, const ContactConstraint& point,
+                        std::vector<std::array<std::uint64_t, 2>>& taken, std::int32_t& last) {
+  const bool moves[2] = {movesByImpulses(island, point.upper), movesByImpulses(island, point.lower)};
+  const std::size_t kind = moves[0] && moves[1] ? 0 : 1;
+  std::uint64_t colours = 0;
+  if (moves[0]) colours |= taken[static_cast<std::size_t>(point.upper)][kind];
+  if (moves[1]) colours |= taken[static_cast<std::size_t>(point.lower)][kind];
+  const int colour = std::countr_one(colours);
+  if (colour == kSharedColours) return ++last;
+  if (moves[0]) taken[static_cast<std::size_t>(point.upper)][kind] |= std::uint64_t{1} << colour;
+  if (moves[1]) taken[static_cast<std::size_t>(point.lower)][kind] |= std::uint64_t{1} << colour;
+  return static_cast<std::int32_t>(kind) * kSharedColours + colour;
+}
+
+// Sorts the groups that have points by key, and counts the colours' keys.
+void sortGroups(const RigidIsland& island, const PointList& list, PackedPoints& packed) {
+  packed.taken.assign(island.bodies.size(), {0, 0});
+  std::int32_t colours = 2 * kSharedColours - 1;
+  packed.key.resize(list.groups.size());
+  std::int32_t last = -1;
+  for (std::size_t g = 0; g < list.groups.size(); ++g) {
+    const PointGroup& group = list.groups[g];
+    packed.key[g] = -1;
+    if (group.count == 0) continue;
+    const auto first = list.points.begin() + group.first;
+    const std::int32_t colour = takeColour(island, *first, packed.taken, colours);
+    const bool idle = std::all_of(first, first + group.count, [](const ContactConstraint& p) { return p.idle; });
+    packed.key[g] = colour * kKeysOfColour + (idle ? kMostPoints + 1 : 0) + kMostPoints - group.count;
+    last = std::max(last, packed.key[g]);
+  }
+  packed.keyStart.assign(static_cast<std::size_t>(last) + 2, 0);
+  for (const std::int32_t key : packed.key) {
+    if (key >= 0) ++packed.keyStart[static_cast<std::size_t>(key) + 1];
+  }
+  for (std::size_t k = 1; k < packed.keyStart.size(); ++k) packed.keyStart[k] += packed.keyStart[k - 1];
+  packed.order.resize(static_cast<std::size_t>(packed.keyStart.back()));
+  for (std::size_t g = 0; g < list.groups.size(); ++g) {
+    if (packed.key[g] < 0) continue;
+    packed.order[static_cast<std::size_t>(packed.keyStart[static_cast<std::size_t>(packed.key[g])]++)] =
+        static_cast<std::int32_t>(g);
+  }
+}
+
+// A pack without pairs.
+void clearPack(const RigidIsland& island, PackedPair& pair) {
+  pair.upper.fill(unmovedBody(island));
+  pair.lower.fill(unmovedBody(island));
+  pair.group.fill(-1);
+  pair.active.fill(0);
+  pair.rows = pair.pushing = pair.nearby = 0;
+  pair.movesUpper = pair.movesLower = 0;
+  pair.slips = false;
+  pair.staticFriction = pair.kineticFriction = Lanes{0.0, 0.0, 0.0, 0.0};
+}
+
+// Distributes the sorted groups over packs: a colour begins a new one.
+void distribute(const RigidIsland& island, ActingPoints& list) {
+  PackedPoints& packed = list.packed;
+  packed.colourStart.clear();
+  std::size_t used = 0;
+  int lane = kPackedPairs;
+  std::int32_t colour = -1;
+  std::int32_t rows = 0;
+  for (const std::int32_t g : packed.order) {
+    PointGroup& group = list.groups[static_cast<std::size_t>(g)];
+    const std::int32_t own = packed.key[static_cast<std::size_t>(g)] / kKeysOfColour;
+    if (own != colour) packed.colourStart.push_back(static_cast<std::int32_t>(used));
+    if (own != colour || lane == kPackedPairs) {
+      if (packed.pairs.size() == used) packed.pairs.emplace_back();
+      clearPack(island, packed.pairs[used]);
+      packed.pairs[used++].first = rows;
+      lane = 0;
+    }
+    colour = own;
+    PackedPair& pair = packed.pairs[used - 1];
+    pair.group[static_cast<std::size_t>(lane)] = g;
+    rows += std::max(0, group.count - pair.rows);
+    pair.rows = std::max(pair.rows, group.count);
+    group.pack = static_cast<std::int32_t>(used) - 1;
+    group.lane = lane++;
+  }
+  packed.colourStart.push_back(static_cast<std::int32_t>(used));
+  packed.pairs.resize(used);
+  packed.points.resize(static_cast<std::size_t>(rows));
+  packed.places.resize(static_cast<std::size_t>(rows));
+}
+
+void clearRow(PackedPoint& point, PackedPlace& place) {
+  const Lanes zero = {0.0, 0.0, 0.0, 0.0};
+  place = PackedPlace{};
+  place.allowed = zero + std::numeric_limits<double>::max();
+  setZero(point.friction);
+  setZero(point.towardsCentre);
+  point.push = point.normalMass = point.impact = point.before = zero;
+  point.idle = zero == zero;
+  point.sliding = zero != zero;
+}
+
+void fillLane(const ContactConstraint& from, int lane, PackedPoint& point, PackedPlace& place) {
+  setLane(place.upper, lane, from.placeUpper);
+  setLane(place.lower, lane, from.placeLower);
+  setLane(place.normal, lane, from.ownNormal);
+  place.turnsUpper[lane] = from.normalOf == NormalOf::a ? -1 : 0;
+  place.turnsLower[lane] = from.normalOf == NormalOf::b ? -1 : 0;
+  place.allowed[lane] = from.allowed;
+  place.restitution[lane] = from.restitution;
+  setLane(point.friction, lane, from.friction);
+  point.push[lane] = from.push;
+  point.normalMass[lane] = 1.0;
+  point.idle[lane] = from.idle ? -1 : 0;
+  point.sliding[lane] = from.sliding ? -1 : 0;
+}
+
+void fillPack(const IslandStep& step, const RigidIsland& island, ActingPoints& list, PackedPair& pair) {
+  PackedPoints& packed = list.packed;
+  for (std::int32_t row = 0; row < pair.rows; ++row)
+    clearRow(packed.points[packedRow(pair.first, row)], packed.places[packedRow(pair.first, row)]);
+  for (int lane = 0; lane < kPackedPairs; ++lane) {
+    const auto l = static_cast<std::size_t>(lane);
+    if (pair.group[l] < 0) continue;
+    const PointGroup& group = list.groups[static_cast<std::size_t>(pair.group[l])];
+    const ContactConstraint& any = list.points[static_cast<std::size_t>(group.first)];
+    pair.upper[l] = any.upper;
+    pair.lower[l] = any.lower;
+    pair.movesUpper |= static_cast<std::uint8_t>((movesByImpulses(island, any.upper) ? 1U : 0U) << l);
+    pair.movesLower |= static_cast<std::uint8_t>((movesByImpulses(island, any.lower) ? 1U : 0U) << l);
+    const BlockPair& key = step.engine.pairs.key[static_cast<std::size_t>(group.pair)];
+    const Friction friction = step.simulation.friction.of(key.a, key.b);
+    pair.staticFriction[lane] = friction.staticFriction;
+    pair.kineticFriction[lane] = friction.kineticFriction;
+    for (std::int32_t i = 0; i < group.count; ++i)
+      fillLane(list.points[packedRow(group.first, i)], lane, packed.points[packedRow(pair.first, i)],
+               packed.places[packedRow(pair.first, i)]);
+  }
+}
+
+}  // namespace
+
+void packPoints(const IslandStep& step, const RigidIsland& island, ActingPoints& list) {
+  PackedPoints& packed = list.packed;
+  packed.active.clear();
+  packed.activeStart.clear();
+  packed.activePoints = 0;
+  if (list.points.empty()) {
+    packed.pairs.clear();
+    packed.points.clear();
+    packed.places.clear();
+    packed.colourStart.clear();
+    return;
+  }
+  sortGroups(island, list, packed);
+  distribute(island, list);
+  for (PackedPair& pair : packed.pairs) fillPack(step, island, list, pair);
+}
+
+void unpackGroup(ActingPoints& list, const PointGroup& group) {
+  if (group.count == 0) return;
+  const PackedPair& pair = list.packed.pairs[static_cast<std::size_t>(group.pack)];
+  for (std::int32_t i = 0; i < group.count; ++i) {
+    const PackedPoint& from = list.packed.points[packedRow(pair.first, i)];
+    ContactConstraint& to = list.points[packedRow(group.first, i)];
+    getLane(from.friction, group.lane, to.friction);
+    to.push = from.push[group.lane];
+    to.idle = from.idle[group.lane] != 0;
+    to.sliding = from.sliding[group.lane] != 0;
+  }
+}
+
+void unpackPoints(ActingPoints& list) {
+  for (const PointGroup& group : list.groups) unpackGroup(list, group);
+}
+
+void disablePacked(PackedPoints& packed, const PointGroup& group) {
+  const PackedPair& pair = packed.pairs[static_cast<std::size_t>(group.pack)];
+  for (std::int32_t i = 0; i < group.count; ++i) {
+    const auto row = packedRow(pair.first, i);
+    PackedPoint& point = packed.points[row];
+    packed.places[row].allowed[group.lane] = std::numeric_limits<double>::max();
+    point.push[group.lane] = 0.0;
+    point.friction.x[group.lane] = point.friction.y[group.lane] = point.friction.z[group.lane] = 0.0;
+    point.idle[group.lane] = -1;
+  }
+}
+
+}  // namespace springtower

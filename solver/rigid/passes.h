@@ -1,0 +1,44 @@
+#pragma once
+
+#include "solver/world/packed_points.h"
+#include "solver/world/rigid_island.h"
+
+#include <cstddef>
+#include <vector>
+
+namespace springtower {
+
+// Passes of sequential impulses over packed points, colour by colour.
+
+/// A soft constraint: `rate` is the share of the gap closed in a second; `mass` scales the impulse of a rigid constraint, and
+/// `impulse` is the share of the accumulated impulse that is subtracted.
+struct Softness {
+  double rate = 0.0;
+  double mass = 1.0;
+  double impulse = 0.0;
+};
+
+/// Parameters common to all points in a pass.
+struct Pass {
+  double step_s;
+  double most;      ///< m/s, largest push-out speed
+  double rounding;  ///< m: faces placed flush overlap by less, or not at all
+  Softness soft;    ///< of those that overlap
+  bool push;        ///< true: overlapping blocks are pushed apart; false: the push-out is removed from the velocities
+  double near;      ///< m, gap at the end of the step up to which a point is active
+};
+
+/// Adds the impulses with which the points start to the velocities.
+void applyWarmStart(std::vector<BodyMotion>& bodies, const PackedPoints& packed);
+
+/// A pass over all points, which finds those that are active. Returns the number of those that push or have pushed.
+std::size_t solveAll(const Pass& pass, std::vector<BodyMotion>& bodies, PackedPoints& packed);
+
+/// A pass over the active points.
+void solveActive(const Pass& pass, std::vector<BodyMotion>& bodies, PackedPoints& packed);
+
+/// Pass `number` through an impact: over those active points of which a body's velocity has changed since they were solved last,
+/// as `changed` [bodies] has it. Changes of less than `enough` (m/s) count as none. Returns the number of points solved.
+std::size_t solveChanged(const Pass& pass, RigidIsland& island, PackedPoints& packed, int number, double enough);
+
+}  // namespace springtower
