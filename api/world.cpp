@@ -1,12 +1,17 @@
 #include "api/convert.h"
 #include "api/world_impl.h"
+#include "core/byte_stream.h"
 #include "core/hash.h"
 #include "core/limits.h"
+#include "core/scene/scene_fields.h"
 #include "core/version.h"
 #include "solver/block/inertia.h"
 #include "solver/frame/prepare.h"
+#include "solver/hand/hand_fields.h"
+#include "solver/world/snapshot.h"
 
 #include <bit>
+#include <cstring>
 #include <fmt/format.h>
 #include <numeric>
 #include <oneapi/tbb/global_control.h>
@@ -14,6 +19,13 @@
 #include <utility>
 
 namespace springtower::api {
+
+template <class Stream>
+void fieldsOf(Stream& stream, HandLead& lead) {
+  auto& [draw, pulls, target, speed_m_s] = lead;
+  stream(draw, pulls, target, speed_m_s);
+}
+
 namespace {
 
 constexpr Range kThreadRange{1.0, 4096.0, ""};
@@ -148,6 +160,34 @@ std::size_t checkedBlock(int block, std::size_t count, const char* what) {
 double Snapshot::time_s() const {
   if (empty()) throw InputError("snapshot: found an empty one, allowed is one that a world has taken");
   return data_->time_s;
+}
+
+std::vector<std::byte> Snapshot::bytes() const {
+  if (empty()) throw InputError("snapshot: found an empty one, allowed is one that a world has taken");
+  ByteWriter writer;
+  const SnapshotData& data = *data_;
+  writer(data.sceneHash, data.time_s, data.lead, data.passing);
+  writeSnapshot(*data.simulation, writer);
+  const std::string text = sealed(SealKind::world, writer.bytes());
+  std::vector<std::byte> result(text.size());
+  std::memcpy(result.data(), text.data(), text.size());
+  return result;
+}
+
+Snapshot Snapshot::fromBytes(std::span<const std::byte> bytes) {
+  return withPublicErrors([&] {
+    constexpr std::string_view kSource = "snapshot";
+    const Unsealed opened =
+        unsealed(SealKind::world, std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()), kSource);
+    ByteReader reader(opened.payload, kSource);
+    SnapshotData data;
+    reader(data.sceneHash, data.time_s, data.lead, data.passing);
+    data.simulation = readSnapshot(reader);
+    reader.end();
+    Snapshot snapshot;
+    snapshot.data_ = std::make_shared<const SnapshotData>(std::move(data));
+    return snapshot;
+  });
 }
 
 World::World(const Scene& scene) {
@@ -295,6 +335,7 @@ void World::restore(const Snapshot& snapshot) {
   const SnapshotData& data = *snapshot.data_;
   if (data.sceneHash != impl.sceneHash)
     throw InputError("restore: found a snapshot of another scene, allowed is one of a world made of the same scene");
+  withPublicErrors([&] { checkFits(*data.simulation, impl.simulation, "restore"); });
   // Until all is there.
   impl.divergence = {kFloor, data.time_s, "a snapshot could not be restored"};
   restoreSnapshot(impl.simulation, *data.simulation);

@@ -136,7 +136,11 @@ int runProgram(int argc, char** argv) {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return program.exit(error);
-    return complain(std::string(error.what()) + " (try 'ccd_queries --help')", kBadInput);
+    // CLI11 names unknown arguments from the last to the first.
+    const std::vector<std::string> unknown = program.remaining();
+    const std::string what =
+        unknown.empty() ? error.what() : fmt::format("found the unknown arguments {}", fmt::join(unknown, ", "));
+    return complain(what + " (try 'ccd_queries --help')", kBadInput);
   }
   options.kind = kind == "vf" ? QueryKind::pointTriangle : QueryKind::edgeEdge;
   const std::vector<CollisionQuery> queries = readCollisionQueries(options.path);

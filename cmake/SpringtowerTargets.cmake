@@ -8,6 +8,11 @@ set(SPRINGTOWER_COMPILE_OPTIONS
     # Neither changes a value. Without errno a square root is one instruction; without observable floating-point traps a select may
     # evaluate both sides. Loops with either can then be vectorised.
     -fno-math-errno -fno-trapping-math)
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+  # gcc 12 takes fused instructions (vfmaddsub) for pairs of a*b+c and a*b-c whatever -ffp-contract says. These come after what a user
+  # has chosen, such as -march=native; kernels that use AVX2 say so themselves.
+  list(APPEND SPRINGTOWER_COMPILE_OPTIONS -mno-fma -mno-fma4 -mno-avx512f)
+endif()
 
 if(SPRINGTOWER_SANITIZE)
   list(APPEND SPRINGTOWER_COMPILE_OPTIONS -fsanitize=${SPRINGTOWER_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)

@@ -43,6 +43,17 @@ int lockedFile(const std::string& name) {
   }
 }
 
+// Where a link leads that points to a file that is not there yet; any other path as it is. Throws
+// std::filesystem::filesystem_error where it cannot be read.
+std::string withoutDanglingLinks(std::string path) {
+  namespace fs = std::filesystem;
+  constexpr int kMostLinks = 40;  // as Linux follows
+  for (int i = 0; i < kMostLinks && fs::is_symlink(fs::symlink_status(path)) && !fs::exists(path); ++i) {
+    path = (fs::path(path).parent_path() / fs::read_symlink(path)).string();
+  }
+  return path;
+}
+
 }  // namespace
 
 OutputFile::OutputFile(std::string path, std::string option) : path_(std::move(path)), option_(std::move(option)) {
@@ -50,11 +61,14 @@ OutputFile::OutputFile(std::string path, std::string option) : path_(std::move(p
   std::error_code error;
   const fs::file_status status = fs::status(path_, error);
   if (path_.empty()) fail("an empty name");
+  if (status.type() == fs::file_type::none) fail(error.message());  // links that lead round in a circle, for one
   if (fs::is_directory(status)) fail("it is a folder");
   if (fs::exists(status)) {
     if (access(path_.c_str(), W_OK) != 0) fail(std::strerror(errno));
     // A link stays a link: what it points to is replaced.
     if (fs::is_regular_file(status)) path_ = fs::canonical(path_, error).string();
+  } else if (status.type() == fs::file_type::not_found) {
+    path_ = withoutDanglingLinks(std::move(path_));
   }
   flushed_ = std::chrono::steady_clock::now();
   if (!fs::exists(status) || fs::is_regular_file(status)) {

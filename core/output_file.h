@@ -12,7 +12,8 @@ namespace springtower {
 /// NAME.partial, which the destructor removes; a device or pipe is written directly. A process that is killed leaves NAME.partial
 /// as it was last flushed, and the next one that writes to NAME takes its place. Of two processes that write to NAME at the same
 /// time the second one writes NAME.partial-PID, and NAME is in the end that of the one that finishes last. NAME.partial is locked
-/// (flock) while its process lives: that is how the second one distinguishes it from what a killed process has left.
+/// (flock) while its process lives: that is how the second one distinguishes it from what a killed process has left. A link is
+/// followed, whether there is a file at its end yet or not.
 class OutputFile {
  public:
   /// Opens `path`; `option` names the command line option it came from. Throws InputError naming both when it cannot be written.

@@ -1,5 +1,6 @@
 #include "narrowphase/manifold.h"
 
+#include "core/lanes.h"
 #include "core/tuning.h"
 
 #include <algorithm>
@@ -90,6 +91,34 @@ void carryPoint(const PenaltyRow& from, std::size_t lane, double side, PenaltyRo
   to.slipRatio[toLane] = from.slipRatio[lane];
 }
 
+// The corners of a face, three of four lanes each: half the operations of vectors of three.
+struct FaceCorners {
+  Lanes p0, p1, p2, p3;
+};
+
+SPRINGTOWER_INLINE void readCorner(const CornerView& block, int corner, Lanes& to) {
+  to = Lanes{block.x[corner], block.y[corner], block.z[corner], 0.0};
+}
+
+SPRINGTOWER_INLINE FaceCorners cornersOfFace(const CornerView& block, int face) {
+  const auto& corners = kFaceCorners[static_cast<std::size_t>(face)];
+  FaceCorners result;
+  readCorner(block, corners[0], result.p0);
+  readCorner(block, corners[1], result.p1);
+  readCorner(block, corners[2], result.p2);
+  readCorner(block, corners[3], result.p3);
+  return result;
+}
+
+SPRINGTOWER_INLINE Vec3 vectorOf(const Lanes& lanes) {
+  return {lanes[0], lanes[1], lanes[2]};
+}
+
+SPRINGTOWER_INLINE void findSides(const FaceCorners& corners, Vec3& sideU, Vec3& sideV) {
+  sideU = vectorOf(0.5 * (corners.p1 - corners.p0 + corners.p2 - corners.p3));
+  sideV = vectorOf(0.5 * (corners.p3 - corners.p0 + corners.p2 - corners.p1));
+}
+
 }  // namespace
 
 void startManifold(Manifold& manifold, PairPhase phase, int incidentFace, int referenceFace) {
@@ -105,15 +134,10 @@ void startManifold(Manifold& manifold, PairPhase phase, int incidentFace, int re
 }
 
 FaceFrame faceFrame(const CornerView& block, int face) {
-  const auto& corners = kFaceCorners[static_cast<std::size_t>(face)];
-  const Vec3 p0 = block.at(corners[0]);
-  const Vec3 p1 = block.at(corners[1]);
-  const Vec3 p2 = block.at(corners[2]);
-  const Vec3 p3 = block.at(corners[3]);
+  const FaceCorners corners = cornersOfFace(block, face);
   FaceFrame frame;
-  frame.centre = 0.25 * (p0 + p1 + p2 + p3);
-  frame.sideU = 0.5 * (p1 - p0 + p2 - p3);
-  frame.sideV = 0.5 * (p3 - p0 + p2 - p1);
+  frame.centre = vectorOf(0.25 * (corners.p0 + corners.p1 + corners.p2 + corners.p3));
+  findSides(corners, frame.sideU, frame.sideV);
   frame.normal = frame.sideU.cross(frame.sideV).normalized();
   return frame;
 }
@@ -122,7 +146,10 @@ int incidentFaceOf(const CornerView& block, const Vec3& normal) {
   int best = 0;
   double least = std::numeric_limits<double>::infinity();
   for (int face = 0; face < static_cast<int>(kFaces); ++face) {
-    const double along = faceFrame(block, face).normal.dot(normal);
+    Vec3 sideU;
+    Vec3 sideV;
+    findSides(cornersOfFace(block, face), sideU, sideV);
+    const double along = sideU.cross(sideV).normalized().dot(normal);
     if (along < least) {
       least = along;
       best = face;

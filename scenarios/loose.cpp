@@ -1,6 +1,8 @@
 #include "scenarios/loose.h"
 
+#include "core/elementary.h"
 #include "core/random.h"
+#include "core/rotation_vector.h"
 
 #include <cmath>
 
@@ -65,7 +67,7 @@ Scene thrownPairScene() {
     const double side = i == 0 ? -1.0 : 1.0;
     block.centre = Vec3(0.1 * side, 0.004 * side, 0.15);
     block.velocity.x() = -kThrown_m_s * side;
-    block.orientation = Eigen::AngleAxisd(0.3 + 0.4 * i, Vec3::UnitZ()) * Eigen::AngleAxisd(0.2, Vec3::UnitX());
+    block.orientation = rotationAbout(Vec3::UnitZ(), 0.3 + 0.4 * i) * rotationAbout(Vec3::UnitX(), 0.2);
     scene.blocks.push_back(block);
   }
   return scene;
@@ -110,8 +112,8 @@ Scene askewPileScene(int blocks) {
   Scene scene;
   for (int i = 0; i < blocks; ++i) {
     BlockSpec block;
-    block.centre = Vec3(0.02 * std::cos(2.0 * i), 0.02 * std::sin(2.0 * i), 0.04 + 0.04 * i);
-    block.orientation = Eigen::AngleAxisd(1.1 * i, Vec3::UnitZ()) * Eigen::AngleAxisd(0.15 + 0.05 * i, Vec3::UnitY());
+    block.centre = Vec3(0.02 * elementary::cos(2.0 * i), 0.02 * elementary::sin(2.0 * i), 0.04 + 0.04 * i);
+    block.orientation = rotationAbout(Vec3::UnitZ(), 1.1 * i) * rotationAbout(Vec3::UnitY(), 0.15 + 0.05 * i);
     scene.blocks.push_back(block);
   }
   return scene;

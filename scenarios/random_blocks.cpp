@@ -1,5 +1,6 @@
 #include "scenarios/random_blocks.h"
 
+#include "core/elementary.h"
 #include "core/geometry/oriented_box.h"
 #include "core/scene/rotation.h"
 #include "scenarios/random_scene.h"
@@ -107,8 +108,8 @@ std::vector<BlockSpec> drawRows(RandomDraw& draw, const BlockManner& manner, std
 double addLane(RandomDraw& draw, const BlockManner& manner, double y, std::vector<BlockSpec>& blocks) {
   const double length = std::min(kMaxRandomSide_m, std::max(0.01, manner.side_m) * draw.between(1.5, 3.0));
   const double angle_deg = wholeThousandths(draw.between(20.0, 75.0));
-  const double sine = std::sin(kRadians * angle_deg);
-  const double cosine = std::cos(kRadians * angle_deg);
+  const double sine = elementary::sin(kRadians * angle_deg);
+  const double cosine = elementary::cos(kRadians * angle_deg);
   const double share = draw.between(0.4, 0.95);  // of the plank's length, at which the edge touches it
   const double height = share * length * sine;
   const int boxes = std::min(draw.whole(1, 3), static_cast<int>(height / kMinRandomSide_m));

@@ -1,5 +1,7 @@
 #include "scenarios/towers.h"
 
+#include "core/elementary.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -77,7 +79,7 @@ Scene towerWithHolesScene(const TowerOptions& options) {
 }
 
 double collapseTilt_deg(int rows) {
-  const double standing = std::atan(kBlockLength_m / (rows * kBlockHeight_m)) * 180.0 / std::numbers::pi;
+  const double standing = elementary::atan(kBlockLength_m / (rows * kBlockHeight_m)) * 180.0 / std::numbers::pi;
   return std::min(standing + kBeyondStanding_deg, kMaxTilt_deg);
 }
 

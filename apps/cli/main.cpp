@@ -7,6 +7,7 @@
 #include "apps/commands/statics/command.h"
 #include "apps/commands/validate/command.h"
 #include "apps/commands/verdict/verdict.h"
+#include "apps/common/arguments.h"
 #include "apps/common/program.h"
 #include "core/version.h"
 
@@ -34,10 +35,14 @@ ended by SIGINT (Ctrl-C) and SIGTERM: what was done is kept, and a second signal
 int complainAboutArguments(const CLI::App& program, const CLI::ParseError& error) {
   std::string hint = "springtower --help";
   for (const CLI::App* command : program.get_subcommands()) hint = fmt::format("springtower {} --help", command->get_name());
+  const std::string commands = "run, verdict, profile, statics, chart, validate, scenes and settings";
   const bool noCommand = program.get_subcommands().empty() && error.get_name() == "RequiredError";
-  complain("springtower",
-           noCommand ? "found no command, allowed are run, verdict, profile, statics, chart, validate, scenes and settings"
-                     : error.what());
+  std::string complaint = complaintAbout(program, error);
+  if (noCommand) {
+    complaint = program.remaining().empty() ? fmt::format("found no command, allowed are {}", commands)
+                                            : fmt::format("{}; commands are {}", complaint, commands);
+  }
+  complain("springtower", complaint);
   fmt::print(stderr, "Try '{}'.\n", hint);
   return kBadInput;
 }

@@ -256,6 +256,7 @@ void writePicture(std::ostream& stream, const ParticleArray& position, bool floo
                                           frame.height, 4 * frame.width),
       cairo_surface_destroy);
   const cairo_status_t status = cairo_surface_write_to_png_stream(surface.get(), toStream, &stream);
+  if (status == CAIRO_STATUS_WRITE_ERROR) return;  // the stream has failed: whoever has opened it can name the file
   if (status != CAIRO_STATUS_SUCCESS) {
     throw InputError(std::string("the picture cannot be written: ") + cairo_status_to_string(status));
   }

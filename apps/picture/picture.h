@@ -14,8 +14,8 @@ struct PictureOptions {
 };
 
 /// Draws the blocks as a PNG: in perspective, in the colours of wood, lit from the upper left with shadows, and with a floor
-/// marked in squares of 2 cm (or as many times that as the scene needs). Blocks far from all others may lie outside. Throws
-/// InputError when the stream takes no more. Precondition: at least one block, finite positions.
+/// marked in squares of 2 cm (or as many times that as the scene needs). Blocks far from all others may lie outside. A stream
+/// that takes no more is left failed. Precondition: at least one block, finite positions.
 void writePicture(std::ostream& stream, const ParticleArray& position, bool floor, const PictureOptions& options = {});
 
 }  // namespace springtower

@@ -286,7 +286,8 @@ class Drawing {
 using Surface = std::unique_ptr<cairo_surface_t, decltype(&cairo_surface_destroy)>;
 
 void check(cairo_status_t status) {
-  if (status == CAIRO_STATUS_SUCCESS) return;
+  // Where the stream has failed whoever has opened it can name the file.
+  if (status == CAIRO_STATUS_SUCCESS || status == CAIRO_STATUS_WRITE_ERROR) return;
   throw InputError(std::string("the chart cannot be written: ") + cairo_status_to_string(status));
 }
 
@@ -339,7 +340,6 @@ void writeSvg(std::ostream& stream, const Plot& plot) {
   // cairo numbers the surfaces of a process; the same chart shall be the same file.
   static const std::regex kSurfaceName("id=\"surface[0-9]+\"");
   stream << std::regex_replace(text.str(), kSurfaceName, "id=\"chart\"");
-  if (!stream) check(CAIRO_STATUS_WRITE_ERROR);
 }
 
 void writePdf(std::ostream& stream, const Plot& plot) {
@@ -352,7 +352,6 @@ void writePdf(std::ostream& stream, const Plot& plot) {
   drawOn(surface.get(), plot, 1.0);
   cairo_surface_finish(surface.get());
   check(cairo_surface_status(surface.get()));
-  if (!stream) check(CAIRO_STATUS_WRITE_ERROR);
 }
 
 void writePng(std::ostream& stream, const Plot& plot) {

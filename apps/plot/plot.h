@@ -75,8 +75,8 @@ struct Plot {
 PlotBars histogram(const std::string& name, const std::vector<double>& values, std::size_t bins);
 
 /// Writes a chart as SVG (letters as outlines, so that it looks the same everywhere), as PNG (three pixels a point) and as PDF.
-/// The same chart gives the same bytes; so a PDF says nothing of when it was made. Throws InputError when the stream takes no
-/// more.
+/// The same chart gives the same bytes; so a PDF says nothing of when it was made. A stream that takes no more is left
+/// failed.
 void writeSvg(std::ostream& stream, const Plot& plot);
 void writePng(std::ostream& stream, const Plot& plot);
 void writePdf(std::ostream& stream, const Plot& plot);

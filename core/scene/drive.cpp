@@ -1,19 +1,13 @@
 #include "core/scene/drive.h"
 
+#include "core/elementary.h"
+#include "core/rotation_vector.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 namespace springtower {
-namespace {
-
-Eigen::Quaterniond rotationBy(const Vec3& angle) {
-  const double size = angle.norm();
-  if (size == 0.0) return Eigen::Quaterniond::Identity();
-  return Eigen::Quaterniond(Eigen::AngleAxisd(size, angle / size));
-}
-
-}  // namespace
 
 double Drive::mostSpeed_m_s(double radius_m) const {
   return velocity.norm() + radius_m * spin.norm() + 2.0 * std::numbers::pi * frequency_hz * amplitude.norm();
@@ -27,12 +21,12 @@ DrivenPose drivenPose(std::span<const Drive> drives, int block, const Vec3& cent
     const double passed_s = std::clamp(time_s, drive.start_s, drive.end_s) - drive.start_s;
     const bool acts = drive.start_s <= time_s && time_s < drive.end_s;
     const double rate = 2.0 * std::numbers::pi * drive.frequency_hz;
-    const Eigen::Quaterniond turn = rotationBy(passed_s * drive.spin);
-    pose.centre += passed_s * drive.velocity + (1.0 - std::cos(rate * passed_s)) * drive.amplitude;
+    const Eigen::Quaterniond turn = rotation(passed_s * drive.spin);
+    pose.centre += passed_s * drive.velocity + (1.0 - elementary::cos(rate * passed_s)) * drive.amplitude;
     pose.turn = turn * pose.turn;
     pose.spin = turn * pose.spin;
     if (acts) {
-      pose.velocity += drive.velocity + rate * std::sin(rate * passed_s) * drive.amplitude;
+      pose.velocity += drive.velocity + rate * elementary::sin(rate * passed_s) * drive.amplitude;
       pose.spin += drive.spin;
     }
     pose.travel_m += passed_s * drive.mostSpeed_m_s(radius_m);

@@ -19,6 +19,9 @@ void checkGravity(const Gravity& gravity, std::string_view source);
 /// naming `source`, the number, what was found and what is allowed.
 void checkForce(const UserForce& force, std::span<const Vec3> dimensions, std::string_view source);
 
+/// Checks that a block, counted from 0, is one of `blocks`. Throws InputError naming `source`, the number and what is allowed.
+void requireBlock(std::size_t block, std::size_t blocks, std::string_view source);
+
 /// Checks that a block is not fixed, so that it may be pushed, kicked or held. Precondition: it is one of the scene's. Throws
 /// InputError naming `source`, the block, and what is allowed.
 void requireMovable(const Scene& scene, std::size_t block, std::string_view source);

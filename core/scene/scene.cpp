@@ -1,8 +1,10 @@
 #include "core/scene/scene.h"
 
+#include "core/elementary.h"
 #include "core/error.h"
 #include "core/limits.h"
 #include "core/random.h"
+#include "core/rotation_vector.h"
 
 #include <algorithm>
 #include <array>
@@ -145,7 +147,7 @@ Scene sceneOfRows(std::vector<Row> rows, const TowerOptions& options, std::strin
   scene.name = name;
   RandomStream heights(options.seed.value_or(1), 0);
   RandomStream masses(options.seed.value_or(1), 1);
-  const Eigen::Quaterniond quarterTurn(Eigen::AngleAxisd(0.5 * std::numbers::pi, Vec3::UnitZ()));
+  const Eigen::Quaterniond quarterTurn = rotationAbout(Vec3::UnitZ(), 0.5 * std::numbers::pi);
   double bottom = 0.0;
   for (std::size_t r = 0; r < rows.size(); ++r) {
     double top = 0.0;
@@ -178,9 +180,10 @@ Scene sceneOfRows(std::vector<Row> rows, const TowerOptions& options, std::strin
 
 Vec3 Gravity::at(double time_s) const {
   constexpr double kRadians = std::numbers::pi / 180.0;
-  const double lean = kRadians * (tilt_deg + sway_deg * std::sin(2.0 * std::numbers::pi * sway_hz * time_s));
+  const double lean = kRadians * (tilt_deg + sway_deg * elementary::sin(2.0 * std::numbers::pi * sway_hz * time_s));
   const double direction = kRadians * direction_deg;
-  return magnitude * Vec3(std::sin(lean) * std::cos(direction), std::sin(lean) * std::sin(direction), -std::cos(lean));
+  return magnitude * Vec3(elementary::sin(lean) * elementary::cos(direction), elementary::sin(lean) * elementary::sin(direction),
+                          -elementary::cos(lean));
 }
 
 double blockHeightOf(const Scene& scene) {

@@ -252,6 +252,12 @@ void checkForce(const UserForce& force, std::span<const Vec3> dimensions, std::s
   requireInRange(force.end_s, {force.start_s, kTimeRange.most, kTimeRange.unit}, where + ": end");
 }
 
+void requireBlock(std::size_t block, std::size_t blocks, std::string_view source) {
+  if (block < blocks) return;
+  throw InputError(fmt::format("{}: found block {}, allowed are those of the scene, from 0 to {}", source, block,
+                               static_cast<std::int64_t>(blocks) - 1));
+}
+
 void requireMovable(const Scene& scene, std::size_t block, std::string_view source) {
   if (!scene.blocks[block].fixed) return;
   throw InputError(fmt::format("{}: found {}, which is fixed, allowed is a block that moves", source, nameOfBlock(scene, block)));

@@ -146,7 +146,9 @@ class Table {
   }
   [[nodiscard]] double number(const toml::node& node, const std::string& name, const Range& range) const {
     if (!node.is_number()) fail(node, name, "a number from " + describe(range));
-    const double value = *node.value<double>();
+    // toml++ gives no double for a whole number beyond 2^53 that is none exactly.
+    const auto* whole = node.as_integer();
+    const double value = whole != nullptr ? static_cast<double>(whole->get()) : node.as_floating_point()->get();
     if (!isInside(value, range)) fail(node, name, describe(range));
     return value;
   }

@@ -11,6 +11,7 @@
 #include <springtower/scene.h>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace springtower::api {
 
@@ -91,6 +92,12 @@ class Snapshot {
   [[nodiscard]] bool empty() const { return data_ == nullptr; }
   /// Simulated time when it was taken, s. Throws InputError for an empty one.
   [[nodiscard]] double time_s() const;
+  /// As bytes for a file or another process: some ten kilobytes a block, with version and checksum. Throws InputError for an
+  /// empty one.
+  [[nodiscard]] std::vector<std::byte> bytes() const;
+  /// A snapshot from such bytes. A world of the same scene, in any process of the same version on any x86-64, goes on from it bit
+  /// for bit. Throws InputError for bytes that are cut off, changed, of another version or of another kind.
+  [[nodiscard]] static Snapshot fromBytes(std::span<const std::byte> bytes);
 
  private:
   friend class World;
@@ -103,8 +110,9 @@ class Snapshot {
 /// number may read it, that is, call const functions and those of query.h. Different worlds may be used on different threads at
 /// the same time.
 ///
-/// Determinism: the same scene, the same calls between the same steps and the same build give the same bits, on any number of
-/// threads. That holds for one compiler, one set of flags and one C library; see buildInfo.
+/// Determinism: the same scene, the same calls between the same steps and the same version give the same bits, on any number of
+/// threads, x86-64 processor and C library, whether gcc or clang has compiled it, with AVX2 and FMA or without (but for
+/// -ffast-math and its like, and -ffp-contract, which the build sets).
 ///
 /// Errors: bad arguments throw InputError and change nothing. A simulation that fails is no exception but a value (Divergence);
 /// what that leaves is of no use: until an older snapshot is restored, functions that read the state throw InputError.

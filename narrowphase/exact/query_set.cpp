@@ -1,11 +1,12 @@
 #include "narrowphase/exact/query_set.h"
 
 #include "core/error.h"
+#include "core/limits.h"
+#include "core/line_input.h"
 
 #include <charconv>
 #include <cmath>
 #include <fmt/format.h>
-#include <fstream>
 #include <string_view>
 
 namespace springtower {
@@ -26,14 +27,11 @@ std::array<std::string, kColumns> columnNames() {
   return names;
 }
 
-/// The current line of the file, for messages.
-struct Place {
-  const std::string& path;
-  std::size_t line;
-};
+/// The file at its current line, for messages.
+using Place = LineInput;
 
 [[noreturn]] void fail(const Place& place, const std::string& what) {
-  throw InputError(fmt::format("{}, line {}: {}", place.path, place.line, what));
+  throw InputError(fmt::format("{}: {}", place.where(), what));
 }
 
 Row splitRow(const Place& place, std::string_view line) {
@@ -53,7 +51,7 @@ double readNumber(const Place& place, const std::string& column, std::string_vie
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc{} || end != text.data() + text.size() || !(value >= lowest && value <= highest))
-    fail(place, fmt::format("found '{}' in column {}, allowed are numbers from {} to {}", text, column, lowest, highest));
+    fail(place, fmt::format("found {} in column {}, allowed are numbers from {} to {}", inQuotes(text), column, lowest, highest));
   return value;
 }
 
@@ -63,10 +61,11 @@ CollisionQuery readQuery(const Place& place, const Row& row, const std::array<st
   query.id = row[kIdColumn];
   query.scene = row[kSetColumn];
   if (row[kHitColumn] != "0" && row[kHitColumn] != "1")
-    fail(place, fmt::format("found '{}' in column {}, allowed are 0 and 1", row[kHitColumn], names[kHitColumn]));
+    fail(place, fmt::format("found {} in column {}, allowed are 0 and 1", inQuotes(row[kHitColumn]), names[kHitColumn]));
   const bool hit = row[kHitColumn] == "1";
   if (!hit && !row[kTimeColumn].empty())
-    fail(place, fmt::format("found '{}' in column {}, allowed is nothing where gt is 0", row[kTimeColumn], names[kTimeColumn]));
+    fail(place,
+         fmt::format("found {} in column {}, allowed is nothing where gt is 0", inQuotes(row[kTimeColumn]), names[kTimeColumn]));
   query.exact = {hit, hit ? readNumber(place, names[kTimeColumn], row[kTimeColumn], 0.0, 1.0) : 1.0};
   query.smallestDistance = readNumber(place, names[kDistanceColumn], row[kDistanceColumn], 0.0, kLargest);
   std::size_t column = kFirstCoordinate;
@@ -80,24 +79,22 @@ CollisionQuery readQuery(const Place& place, const Row& row, const std::array<st
 }  // namespace
 
 std::vector<CollisionQuery> readCollisionQueries(const std::string& path) {
-  std::ifstream file(path);
-  if (!file) throw InputError(fmt::format("{}: cannot be opened for reading, allowed is a readable file", path));
+  LineInput file(path);
   const std::array<std::string, kColumns> names = columnNames();
   std::vector<CollisionQuery> queries;
   std::string line;
-  for (Place place{path, 1}; std::getline(file, line); ++place.line) {
-    const Row row = splitRow(place, line);
-    if (place.line > 1) {
-      queries.push_back(readQuery(place, row, names));
+  while (file.next(line)) {
+    const Row row = splitRow(file, line);
+    if (file.number() > 1) {
+      queries.push_back(readQuery(file, row, names));
       continue;
     }
     for (std::size_t i = 0; i < kColumns; ++i)
       if (row[i] != names[i])
-        fail(place, fmt::format("found '{}' as name of column {}, allowed is '{}'", row[i], i + 1, names[i]));
+        fail(file, fmt::format("found {} as name of column {}, allowed is '{}'", inQuotes(row[i]), i + 1, names[i]));
   }
-  if (file.bad()) throw InputError(fmt::format("{}: cannot be read to its end, allowed is a readable file", path));
   if (queries.empty())
-    throw InputError(fmt::format("{}: found no queries, allowed are a header line and at least one query", path));
+    throw InputError(fmt::format("{}: found no queries, allowed are a header line and at least one query", onOneLine(path)));
   return queries;
 }
 

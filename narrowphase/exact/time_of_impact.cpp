@@ -184,6 +184,18 @@ Refined refine(BernsteinCubic cubic, const MovingPolygon<Vertices>& polygon) {
   return {Outcome::undecided, time.from};
 }
 
+/// Whether all coordinates are numbers. NaN gets lost in comparisons, so a miss that was found with one proves nothing.
+bool areFinite(const MovingPoint& a, const MovingPoint& b, const MovingPoint& c, const MovingPoint& d) {
+  for (const MovingPoint* point : {&a, &b, &c, &d})
+    if (!point->start.allFinite() || !point->end.allFinite()) return false;
+  return true;
+}
+
+/// The result of a cull that excludes a hit, or that of coordinates with which nothing is excluded.
+TimeOfImpact missIfFinite(const MovingPoint& a, const MovingPoint& b, const MovingPoint& c, const MovingPoint& d) {
+  return areFinite(a, b, c, d) ? TimeOfImpact{false, 1.0} : TimeOfImpact{true, 0.0};
+}
+
 }  // namespace
 
 TimeOfImpact pointTriangleTimeOfImpact(const MovingPoint& point, const MovingPoint& a, const MovingPoint& b, const MovingPoint& c,
@@ -191,11 +203,12 @@ TimeOfImpact pointTriangleTimeOfImpact(const MovingPoint& point, const MovingPoi
   DecidedBy ignored;
   DecidedBy& stage = decidedBy != nullptr ? *decidedBy : ignored;
   stage = DecidedBy::boxes;
-  if (!pointTriangleBoxesOverlap(point, a, b, c)) return {false, 1.0};
+  if (!pointTriangleBoxesOverlap(point, a, b, c)) return missIfFinite(point, a, b, c);
   stage = DecidedBy::cubic;
   const BernsteinCubic cubic = coplanarityCubic(point, a, b, c);
-  if (!mayVanish(cubic)) return {false, 1.0};
+  if (!mayVanish(cubic)) return missIfFinite(point, a, b, c);
   stage = DecidedBy::refinement;
+  if (!areFinite(point, a, b, c)) return {true, 0.0};
   const Refined refined = refine<3>(cubic, differences<3>({&a, &b, &c}, {&point, &point, &point}));
   if (refined.outcome != Outcome::undecided) return {refined.outcome == Outcome::hit, refined.time};
   stage = DecidedBy::exact;
@@ -207,11 +220,12 @@ TimeOfImpact edgeEdgeTimeOfImpact(const MovingPoint& a, const MovingPoint& b, co
   DecidedBy ignored;
   DecidedBy& stage = decidedBy != nullptr ? *decidedBy : ignored;
   stage = DecidedBy::boxes;
-  if (!edgeEdgeBoxesOverlap(a, b, c, d)) return {false, 1.0};
+  if (!edgeEdgeBoxesOverlap(a, b, c, d)) return missIfFinite(a, b, c, d);
   stage = DecidedBy::cubic;
   const BernsteinCubic cubic = coplanarityCubic(a, b, c, d);
-  if (!mayVanish(cubic)) return {false, 1.0};
+  if (!mayVanish(cubic)) return missIfFinite(a, b, c, d);
   stage = DecidedBy::refinement;
+  if (!areFinite(a, b, c, d)) return {true, 0.0};
   const Refined refined = refine<4>(cubic, differences<4>({&c, &d, &d, &c}, {&a, &a, &b, &b}));
   if (refined.outcome != Outcome::undecided) return {refined.outcome == Outcome::hit, refined.time};
   stage = DecidedBy::exact;

@@ -28,8 +28,8 @@ constexpr double kContactError = 1e-10;
 /// - Never misses: touching counts, and so do degenerate triangles, coplanar motion, zero motion, contact at t = 0 and t = 1.
 /// - Never late: `time` is not after the exact time, and earlier by at most the time in which the features move by kContactError.
 /// - Does not depend on the order of a, b, c, apart from an error of that size in `time`.
-/// Coordinates must be finite (if one is not, the result is a hit at 0, or a miss if the boxes of other coordinates prove it),
-/// and the rounding mode must be to nearest. Takes no locks, allocates nothing, has no state. Method: the culls; then the cubic's
+/// Coordinates may be any numbers; if one of them is not finite, nothing can be excluded and the result is a hit at 0. The
+/// rounding mode must be to nearest. Takes no locks, allocates nothing, has no state. Method: the culls; then the cubic's
 /// roots are isolated by Bezier clipping and bisection, and each part of the step is discarded if a fixed axis separates the
 /// features throughout; a certified simple crossing is a hit; cases that doubles cannot decide go to exact arithmetic.
 /// `decidedBy` may be null.

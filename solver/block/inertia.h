@@ -75,11 +75,4 @@ struct RigidMotion {
 };
 RigidMotion rigidMotion(const MotionState& state, std::size_t block);
 
-/// The rotation by a rotation vector (rad).
-inline Eigen::Quaterniond rotation(const Vec3& angle) {
-  const double size = angle.norm();
-  if (size == 0.0) return Eigen::Quaterniond::Identity();
-  return Eigen::Quaterniond(Eigen::AngleAxisd(size, angle / size));
-}
-
 }  // namespace springtower

@@ -1,5 +1,6 @@
 #include "solver/contact/create.h"
 
+#include "core/elementary.h"
 #include "core/tuning.h"
 #include "narrowphase/turning_face.h"
 #include "solver/contact/persistence.h"
@@ -275,7 +276,7 @@ void createAhead(IslandStep& step, std::size_t at, double reach_m) {
     return;
   }
   const Separation apart = findSeparation(a, cornersOf(position, static_cast<std::size_t>(pair.b)));
-  if (apart.best() > reach_m || 2.0 * std::pow(apart.bestNormal().dot(step.gravity.normalized()), 2) < 1.0) return;
+  if (apart.best() > reach_m || 2.0 * elementary::square(apart.bestNormal().dot(step.gravity.normalized())) < 1.0) return;
   storeManifoldNow(step, at);
 }
 

@@ -1,5 +1,6 @@
 #include "solver/explicit/stable_step.h"
 
+#include "core/elementary.h"
 #include "core/hash.h"
 #include "solver/block/inertia.h"
 #include "solver/block/springs.h"
@@ -133,7 +134,7 @@ std::uint64_t contactSignature(const Engine& engine, std::span<const std::int32_
     hash.word(static_cast<std::uint64_t>(m.count) + 16U * static_cast<std::uint64_t>(m.incidentFace) +
               256U * static_cast<std::uint64_t>(m.referenceFace));
     for (std::size_t p = 0; p < static_cast<std::size_t>(m.count); ++p)
-      hash.word(static_cast<std::uint64_t>(16.0 * std::log2(m.penalty(p).stiffening[laneOf(p)])));
+      hash.word(static_cast<std::uint64_t>(16.0 * elementary::log2(m.penalty(p).stiffening[laneOf(p)])));
   }
   return hash.value();
 }

@@ -23,6 +23,7 @@ void wakeAll(Simulation& simulation) {
 }  // namespace
 
 UserForce forceForOneFrame(const Simulation& simulation, std::size_t block, const Vec3& force) {
+  requireBlock(block, simulation.model.blockCount(), "force: block");
   const double end_s = static_cast<double>(simulation.frame + 1) * simulation.scene.settings.frame_s;  // as stepFrame has it
   return {static_cast<int>(block), -1, force, simulation.time_s, end_s};
 }
@@ -63,6 +64,7 @@ void setSleep(Simulation& simulation, Sleep sleep) {
 }
 
 void kick(Simulation& simulation, std::size_t block, const Vec3& velocity) {
+  requireBlock(block, simulation.model.blockCount(), "kick: block");
   for (std::size_t c = 0; c < kCorners; ++c) simulation.state.velocity.add(block, c, velocity);
   simulation.engine->memo.blockHistory[block].lastImplicitStep_s = 0.0;
   simulation.engine->memo.islandHistory[block].implicitSteps = tuning::kStepsAfterKick;

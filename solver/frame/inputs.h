@@ -11,7 +11,7 @@ namespace springtower {
 // InputError, with nothing changed, naming what was found and what is allowed.
 
 /// A force at a block's centre through the coming frame. Who pushes again in the next frame replaces it (setOnlyForce).
-/// Precondition: there is such a block.
+/// Throws InputError for a number that is no block's.
 UserForce forceForOneFrame(const Simulation& simulation, std::size_t block, const Vec3& force);
 
 /// Adds a force to those that act on the scene; forces that ended before the last frame began are dropped.

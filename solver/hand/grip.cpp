@@ -1,5 +1,8 @@
 #include "solver/hand/grip.h"
 
+#include "core/elementary.h"
+#include "core/rotation_vector.h"
+#include "core/scene/input_check.h"
 #include "core/tuning.h"
 #include "solver/block/inertia.h"
 
@@ -63,10 +66,9 @@ double unsupportedShare(std::span<const ContactForce> contacts, const Support& s
 void moveOrientation(const Eigen::Quaterniond& target, double time_s, Grip& grip) {
   Eigen::Quaterniond off = grip.turn * target.conjugate();
   if (off.w() < 0.0) off.coeffs() *= -1.0;  // the shorter rotation
-  const Eigen::AngleAxisd angle(off);
-  const Vec3 start = angle.angle() * angle.axis();
+  const Vec3 start = rotationVector(off);
   const Vec3 slope = grip.spin + tuning::kFollowFrequency_rad_s * start;
-  const double fade = std::exp(-tuning::kFollowFrequency_rad_s * time_s);
+  const double fade = elementary::exp(-tuning::kFollowFrequency_rad_s * time_s);
   const Vec3 left = fade * (start + time_s * slope);
   grip.spin = fade * (slope - tuning::kFollowFrequency_rad_s * (start + time_s * slope));
   grip.turn = (rotation(left) * target).normalized();
@@ -75,7 +77,7 @@ void moveOrientation(const Eigen::Quaterniond& target, double time_s, Grip& grip
 }  // namespace
 
 double followCourse(double rate_rad_s, double time_s) {
-  return (1.0 + rate_rad_s * time_s) * std::exp(-rate_rad_s * time_s);
+  return (1.0 + rate_rad_s * time_s) * elementary::exp(-rate_rad_s * time_s);
 }
 
 Eigen::Quaterniond orientationOf(const ParticleArray& position, std::size_t block) {
@@ -103,20 +105,19 @@ void hold(const Hand& hand, std::span<const ContactForce> contacts, Grip& grip, 
   if (grip.block != hand.block) {
     grip = {hand.block, unsupported, orientationOf(simulation.state.position, b), Vec3::Zero()};
   } else {
-    grip.carried += (1.0 - std::exp(-frame_s / tuning::kWeightTransferTime_s)) * (unsupported - grip.carried);
+    grip.carried += (1.0 - elementary::exp(-frame_s / tuning::kWeightTransferTime_s)) * (unsupported - grip.carried);
   }
   const Eigen::Quaterniond before = grip.turn;
   moveOrientation(hand.turn, frame_s, grip);
   Eigen::Quaterniond way = grip.turn * before.conjugate();
   if (way.w() < 0.0) way.coeffs() *= -1.0;
-  const Eigen::AngleAxisd turned(way);
 
   Tether& tether = simulation.tether;
   tether.block = hand.block;
   tether.place = hand.place;
   tether.velocity = hand.velocity;
   tether.turn = grip.turn;
-  tether.spin = turned.angle() / frame_s * turned.axis();
+  tether.spin = rotationVector(way) / frame_s;
   tether.time_s = simulation.time_s + frame_s;
   // Critically damped, both: a free mass on a spring, and the rotation of a block held by its corners.
   const double cornerMass = mass / inverseMass(simulation.scene.settings.inertia).own;
@@ -170,7 +171,7 @@ void advancePull(Draw& draw, std::span<const ContactForce> contacts, Simulation&
   draw.drawn_s += frame_s;
   hand.velocity = (ahead < reach ? std::min(draw.speed_m_s, gained) : 0.0) * hand.line;
   hand.place += frame_s * hand.velocity;
-  const double give = (1.0 - draw.grip.carried) * (1.0 - std::exp(-frame_s / tuning::kHeightFollowTime_s));
+  const double give = (1.0 - draw.grip.carried) * (1.0 - elementary::exp(-frame_s / tuning::kHeightFollowTime_s));
   hand.place.z() += give * (centre(simulation.state.position, b).z() - hand.place.z());
   hold(hand, contacts, draw.grip, simulation);
 }
@@ -184,6 +185,7 @@ Draw drawingFrom(const Simulation& simulation, BlockId block, const Vec3& direct
 
 Hand handOn(const Simulation& simulation, BlockId block, double limit_n) {
   const std::size_t b = index(block);
+  requireBlock(b, simulation.model.blockCount(), "hand: block");
   Hand hand;
   hand.block = block;
   hand.place = centre(simulation.state.position, b);

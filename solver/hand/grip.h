@@ -68,11 +68,12 @@ struct Draw {
 /// the block. Precondition: the hand holds a block.
 void advancePull(Draw& draw, std::span<const ContactForce> contacts, Simulation& simulation);
 
-/// A hand that will draw a block along a line from its present position, at a speed.
+/// A hand that will draw a block along a line from its present position, at a speed. Throws InputError for a number that is no
+/// block's.
 Draw drawingFrom(const Simulation& simulation, BlockId block, const Vec3& direction, double speed_m_s,
                  double limit_n = tuning::kGripForce_n);
 
-/// A hand that grips a block in its present pose.
+/// A hand that grips a block in its present pose. Throws InputError for a number that is no block's.
 Hand handOn(const Simulation& simulation, BlockId block, double limit_n = tuning::kGripForce_n);
 
 /// Whether the block is free, sticks at its contacts, or slips: it slips when more than half of the normal force on it acts at

@@ -1,5 +1,6 @@
 #include "solver/hand/moves.h"
 
+#include "core/rotation_vector.h"
 #include "core/tuning.h"
 #include "solver/block/inertia.h"
 #include "solver/metrics/measures.h"
@@ -146,8 +147,8 @@ void aim(MoveRun& run, const Simulation& simulation, const Move& move) {
     if (across) angle = 0.5 * std::numbers::pi;
     if (across) std::swap(half.x(), half.y());
   }
-  run.placeTurn = Eigen::AngleAxisd(angle, Vec3::UnitZ());
-  const Eigen::Quaterniond other = Eigen::AngleAxisd(angle + std::numbers::pi, Vec3::UnitZ()) * Eigen::Quaterniond::Identity();
+  run.placeTurn = rotationAbout(Vec3::UnitZ(), angle);
+  const Eigen::Quaterniond other = rotationAbout(Vec3::UnitZ(), angle + std::numbers::pi);
   if (std::abs(other.dot(turn)) > std::abs(run.placeTurn.dot(turn))) run.placeTurn = other;
   run.goalTurn = Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), ground.up) * run.placeTurn;
   if (move.kind == MoveKind::put) makeRoom(run, simulation, move, half);
@@ -291,9 +292,9 @@ void follow(MoveRun& run, const Simulation& simulation, std::span<const ContactF
       break;
     }
     case MovePhase::carry: {
-      const double left = hand.turn.angularDistance(run.goalTurn);
+      const double left = angleBetween(hand.turn, run.goalTurn);
       hand.turn = left > tuning::kCarryTurnRate_rad_s * frame_s
-                      ? hand.turn.slerp(tuning::kCarryTurnRate_rad_s * frame_s / left, run.goalTurn)
+                      ? orientationBetween(hand.turn, run.goalTurn, tuning::kCarryTurnRate_rad_s * frame_s / left)
                       : run.goalTurn;
       const Vec3 over{run.goal.x(), run.goal.y(), hand.place.z()};
       if (moveTowards(hand, over, tuning::kCarrySpeed_m_s, frame_s) && left <= tuning::kCarryTurnRate_rad_s * frame_s &&

@@ -1,5 +1,6 @@
 #include "solver/implicit/gmres.h"
 
+#include "core/elementary.h"
 #include "core/lanes.h"
 #include "core/tuning.h"
 #include "solver/implicit/friction_tangent.h"
@@ -129,7 +130,7 @@ struct LeastSquares {
       h[k + 1] = cosine[k] * h[k + 1] - sine[k] * h[k];
       h[k] = turned;
     }
-    const double length = std::hypot(h[j], h[j + 1]);
+    const double length = elementary::hypot(h[j], h[j + 1]);
     cosine[j] = h[j] / length;
     sine[j] = h[j + 1] / length;
     h[j] = length;

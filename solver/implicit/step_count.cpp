@@ -1,5 +1,6 @@
 #include "solver/implicit/step_count.h"
 
+#include "core/elementary.h"
 #include "core/lanes.h"
 #include "core/tuning.h"
 #include "solver/world/over_island.h"
@@ -17,7 +18,7 @@ double fourthPower(double value) {
 }
 
 int stepsFor(double angle4, double damping) {
-  const double steps = std::cbrt(angle4 / (4.0 * damping));
+  const double steps = elementary::cbrt(angle4 / (4.0 * damping));
   return static_cast<int>(std::ceil(std::clamp(steps, 1.0, static_cast<double>(tuning::kMaxFrequencySteps))));
 }
 

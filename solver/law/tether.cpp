@@ -1,5 +1,6 @@
 #include "solver/law/tether.h"
 
+#include "core/rotation_vector.h"
 #include "solver/block/inertia.h"
 
 namespace springtower {

@@ -1,5 +1,7 @@
 #include "solver/metrics/measures.h"
 
+#include "core/elementary.h"
+
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -67,7 +69,7 @@ std::vector<FittedBox> fittedBoxes(const ParticleArray& position) {
 
 Standing standing(const BlockModel& model, std::span<const FittedBox> start, const ParticleArray& position,
                   std::span<const std::uint8_t> leftOut) {
-  static const double leastTrace = 1.0 + 2.0 * std::cos(kFallTurn_deg / kDegreesPerRadian);
+  static const double leastTrace = 1.0 + 2.0 * elementary::cos(kFallTurn_deg / kDegreesPerRadian);
   for (std::size_t b = 0; b < position.blockCount(); ++b) {
     if (model.isFixed(b) || (!leftOut.empty() && leftOut[b] != 0)) continue;
     const FittedBox box = fittedBox(position, b);
@@ -75,11 +77,11 @@ Standing standing(const BlockModel& model, std::span<const FittedBox> start, con
     // Written so that a value that is not finite counts as fallen.
     const Sides sides = sidesOf(model.dimensions[b]);
     if (!(-move.z() <= kFallDropInLeastSides * sides.least)) return {false, blockId(b), Fall::lower, -move.z()};
-    const double shift = std::hypot(move.x(), move.y());
+    const double shift = elementary::hypot(move.x(), move.y());
     if (!(shift <= kFallShiftInMiddleSides * sides.middle)) return {false, blockId(b), Fall::sideways, shift};
     const double trace = turnTrace(start[b], box);
     if (!(trace >= leastTrace)) {
-      const double angle = std::acos(std::clamp(0.5 * (trace - 1.0), -1.0, 1.0));
+      const double angle = elementary::acos(std::clamp(0.5 * (trace - 1.0), -1.0, 1.0));
       return {false, blockId(b), Fall::turned, angle * kDegreesPerRadian};
     }
   }

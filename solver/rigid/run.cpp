@@ -1,6 +1,7 @@
 #include "solver/rigid/run.h"
 
 #include "core/lanes.h"
+#include "core/rotation_vector.h"
 #include "core/tuning.h"
 #include "solver/block/affine.h"
 #include "solver/block/inertia.h"
@@ -52,11 +53,10 @@ void driveBodies(IslandStep& step, double at_s, double step_s) {
     RigidBody& body = island.bodies[static_cast<std::size_t>(step.engine.scratch.nodeOf[b])];
     const DrivenPose now = poseAt(step.simulation, driven.b, at_s);
     const DrivenPose next = poseAt(step.simulation, driven.b, at_s + step_s);
-    const Eigen::AngleAxisd turn(next.turn * now.turn.conjugate());
     body.place = now.centre;
     body.axes = (now.turn * step.simulation.scene.blocks[b].orientation).toRotationMatrix();
     body.velocity = (next.centre - now.centre) / step_s;
-    body.spin = turn.angle() / step_s * turn.axis();
+    body.spin = rotationVector(next.turn * now.turn.conjugate()) / step_s;
   }
 }
 

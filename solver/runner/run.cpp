@@ -15,6 +15,12 @@ double secondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
+// How much energy there is, J. The total is no measure of that: it is relative to the floor, so that what falls from there or
+// hangs below it may have any total, and zero in all of its motion.
+double magnitudeOf(const Energy& energy) {
+  return energy.kinetic + std::abs(energy.gravity) + energy.springs + energy.contacts;
+}
+
 // Measures of one frame.
 struct FrameMeasures {
   Penetration penetration;
@@ -25,20 +31,27 @@ struct FrameMeasures {
 // Everything about a run that accumulates from frame to frame.
 class Recorder {
  public:
-  Recorder(const Simulation& simulation, const RunOptions& options)
-      : options_(options),
-        startTime_s_(simulation.time_s),
-        startPosition_(simulation.state.position),
-        startStages_(simulation.stageTimes) {
+  // `start`: positions at the start of the scene, m.
+  Recorder(const Simulation& simulation, const ParticleArray& start, const RunOptions& options)
+      : options_(options), startTime_s_(simulation.time_s), startPosition_(start), startStages_(simulation.stageTimes) {
     for (const BlockSpec& block : simulation.scene.blocks) row_.push_back(block.row);
     closed_ = stackedReference(startPosition_, row_, simulation.scene.floor);
-    reference_ = fittedBoxes(closed_);
+    if (options.resumed != nullptr) {
+      const RunProgress& before = options.resumed->progress;
+      reference_ = before.reference;
+      laid_ = before.laid;
+      result_.standing = before.standing;
+      result_.fallTime_s = before.fallTime_s;
+    } else {
+      reference_ = fittedBoxes(closed_);
+    }
     const long framesInASecond = std::lround(1.0 / simulation.scene.settings.frame_s);
     lastSecond_.assign(static_cast<std::size_t>(std::max(1L, framesInASecond)), 0.0);
     measure(simulation);
     startPenetration_m_ = now_.penetration.depth;
     result_.energyStart = energy(simulation);
     now_.energy = result_.energyStart;
+    mostEnergy_j_ = magnitudeOf(now_.energy);
   }
 
   // After the search for the equilibrium. What starts with the overlaps or the strain of a rest state has no contacts yet when it
@@ -88,8 +101,7 @@ class Recorder {
     result_.topHeightError_m = topHeightError(closed_, simulation.state.position);
     result_.energyEnd = energy(simulation);
     measureEnergy(result_.energyEnd);
-    const double scale_j = std::abs(result_.energyStart.total());
-    if (options_.measureEveryFrame && scale_j > 0.0) result_.maxEnergyRise = largestRise_j_ / scale_j;
+    if (options_.measureEveryFrame && mostEnergy_j_ > 0.0) result_.maxEnergyRise = largestRise_j_ / mostEnergy_j_;
     const std::vector<ContactForce> contacts = contactForces(simulation);
     result_.imbalance = largestImbalance(imbalances(simulation, contacts));
     result_.outsideCone_n = farthestOutsideCone(simulation, contacts);
@@ -98,6 +110,10 @@ class Recorder {
     result_.asleepBlocks = static_cast<std::size_t>(sleeping - fixed);
     result_.awakeBlocks = simulation.asleep.size() - static_cast<std::size_t>(sleeping);
     result_.stateHash = stateHash(simulation);
+    result_.progress.reference = reference_;
+    result_.progress.laid = laid_;
+    result_.progress.standing = result_.standing;
+    result_.progress.fallTime_s = result_.fallTime_s;
     return std::move(result_);
   }
 
@@ -128,6 +144,7 @@ class Recorder {
 
   void measureEnergy(Energy energy) {
     largestRise_j_ = std::max(largestRise_j_, energyRise(now_.energy, energy));
+    mostEnergy_j_ = std::max(mostEnergy_j_, magnitudeOf(energy));
     now_.energy = std::move(energy);
   }
 
@@ -168,6 +185,7 @@ class Recorder {
   FrameMeasures now_;
   double startPenetration_m_ = 0.0;
   double largestRise_j_ = 0.0;
+  double mostEnergy_j_ = 0.0;  // that was there, or put in, so far
   bool settled_ = false;
   ParticleArray settledPosition_;
   double settledPenetration_m_ = 0.0;
@@ -187,12 +205,20 @@ PrepareResult prepareFor(Simulation& simulation, const RunOptions& options) {
   return prepare(simulation, how);
 }
 
+// Brings a simulation that has just been made to where a run was saved.
+void resume(Simulation& simulation, const SavedRun& saved) {
+  checkFits(*saved.snapshot, simulation, "saved run");
+  restoreSnapshot(simulation, *saved.snapshot);
+}
+
 }  // namespace
 
 RunResult runScene(Simulation& simulation, const RunOptions& options, const FrameCallback& afterFrame) {
   const Clock::time_point start = Clock::now();
-  Recorder recorder(simulation, options);
-  MoveRun moves = beginMoves(simulation);
+  const ParticleArray placed = simulation.state.position;
+  if (options.resumed != nullptr) resume(simulation, *options.resumed);
+  Recorder recorder(simulation, placed, options);
+  MoveRun moves = options.resumed != nullptr ? options.resumed->progress.moves : beginMoves(simulation);
   if (afterFrame) afterFrame(simulation);
   const long frames = std::max(1L, std::lround(options.seconds / simulation.scene.settings.frame_s));
   const PrepareResult prepared = prepareFor(simulation, options);
@@ -223,7 +249,9 @@ RunResult runScene(Simulation& simulation, const RunOptions& options, const Fram
   RunResult result = recorder.finish(simulation);
   result.interrupted = interrupted;
   result.prepared = prepared;
-  result.moves = std::move(moves.results);
+  if (options.resumed != nullptr) result.resumedAt_s = options.resumed->snapshot->time_s;
+  result.moves = moves.results;
+  result.progress.moves = std::move(moves);
   result.wall_s = secondsSince(start);
   return result;
 }

@@ -5,6 +5,7 @@
 #include "solver/metrics/balance.h"
 #include "solver/metrics/measures.h"
 #include "solver/metrics/penetration.h"
+#include "solver/runner/run_state.h"
 #include "solver/world/simulation.h"
 
 #include <array>
@@ -30,6 +31,9 @@ struct RunOptions {
   PrepareOptions prepare;             ///< of the search for the equilibrium before the first frame; its `goesOn` may be empty
   /// Called after every frame and, on any thread, during that search: true ends the run with it, as `interrupted`; or empty.
   std::function<bool()> shouldStop;
+  /// A run that was saved, to go on with: `seconds` are then those beyond it, and penetration, rest, energy and times are
+  /// measured from there on. Null: the run begins. Precondition: the simulation is made of its scene, and has not been prepared.
+  const SavedRun* resumed = nullptr;
 };
 
 /// Times of the frames, ms: stepFrame only, without measures and output. CPU time is that of the whole process, over all threads;
@@ -49,6 +53,7 @@ struct RunResult {
   bool interrupted = false;                ///< ended by `shouldStop` with frames left to do
   std::uint64_t frames = 0;                ///< of this run
   PrepareResult prepared;                  ///< zeros where the simulation was prepared before
+  std::optional<double> resumedAt_s;       ///< simulated time at which it went on with a run that was saved
   int substeps = 0;                        ///< steps of the last frame in which a block was awake
   double simulated_s = 0.0;                ///< simulated time of this run
   double wall_s = 0.0;                     ///< whole run, measures and callback included
@@ -66,13 +71,16 @@ struct RunResult {
   double topHeightError_m = 0.0;           ///< at the end, relative to rigid blocks without gaps
   Energy energyStart;
   Energy energyEnd;
-  std::optional<double> maxEnergyRise;  ///< largest rise of the total energy in a frame, over the magnitude of the initial total
-  Imbalance imbalance;                  ///< largest at the end
-  double outsideCone_n = 0.0;           ///< N, of the worst contact point at the end
-  std::size_t asleepBlocks = 0;         ///< at the end, without fixed ones
-  std::size_t awakeBlocks = 0;          ///< at the end
-  std::uint64_t stateHash = 0;          ///< at the end
-  std::vector<MoveResult> moves;        ///< of the scene's moves that have ended
+  /// Largest rise of the total energy in a frame, over the most energy that there was in the run, what forces, hand and drives
+  /// have put in included: kinetic, of springs and contacts, and the magnitude of the potential. Empty where there was none.
+  std::optional<double> maxEnergyRise;
+  Imbalance imbalance;            ///< largest at the end
+  double outsideCone_n = 0.0;     ///< N, of the worst contact point at the end
+  std::size_t asleepBlocks = 0;   ///< at the end, without fixed ones
+  std::size_t awakeBlocks = 0;    ///< at the end
+  std::uint64_t stateHash = 0;    ///< at the end
+  std::vector<MoveResult> moves;  ///< of the scene's moves that have ended
+  RunProgress progress;           ///< what another run needs to go on with, beside the scene and a snapshot
 };
 
 /// Called once before the scene is prepared and after every frame.
@@ -83,8 +91,9 @@ using FrameCallback = std::function<void(const Simulation&)>;
 /// because nothing has changed. While all blocks are at rest the energy is not measured in every frame, as that would cost more
 /// than the frame; a rise over such a period counts as one. A scene with moves is run until the last of them has ended or it has
 /// fallen; blocks in the hand and those put aside are left out of `standing`, blocks in a new place are compared with that place,
-/// and creep is not measured. Throws DivergenceError from the frame that diverges; the simulation is then left as that frame left
-/// it.
+/// and creep is not measured. A run that goes on (`options.resumed`) is bit for bit what one run would have been that did
+/// not stop. Throws InputError where what was saved does not fit the simulation, and DivergenceError from the frame that
+/// diverges; the simulation is then left as that frame left it.
 RunResult runScene(Simulation& simulation, const RunOptions& options, const FrameCallback& afterFrame = {});
 
 /// The q-quantile (0 < q <= 1) of some values by nearest rank: the least value that at least a share q of them does not exceed. 0

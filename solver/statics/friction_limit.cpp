@@ -1,5 +1,6 @@
 #include "solver/statics/friction_limit.h"
 
+#include "core/elementary.h"
 #include "core/state.h"
 #include "core/tuning.h"
 #include "solver/statics/lp_columns.h"
@@ -34,7 +35,7 @@ double frictionLimit_n(const Simulation& simulation, std::span<const ContactForc
     const double most = staticFrictionOf(simulation, contact) * contact.normalForce / force_n;
     for (int side = 0; side < tuning::kFrictionLimitSides; ++side) {
       const double angle = 2.0 * std::numbers::pi * side / tuning::kFrictionLimitSides;
-      const std::array<double, 2> friction = {most * std::cos(angle), most * std::sin(angle)};
+      const std::array<double, 2> friction = {most * elementary::cos(angle), most * elementary::sin(angle)};
       const auto push = [&](BlockId on, double sign, const Vec3& place) {
         if (on == kFloor || simulation.model.isFixed(index(on))) return;
         const int first = kRows * static_cast<int>(index(on));

@@ -1,5 +1,6 @@
 #include "solver/statics/linear_program.h"
 
+#include "core/elementary.h"
 #include "core/tuning.h"
 #include "solver/statics/lp_columns.h"
 
@@ -71,7 +72,7 @@ struct EquilibriumProgram::Solver {
   // Unit force along an edge of a point's pyramid: normal component 1.
   [[nodiscard]] Vec3 edgeForce(const Edge& edge) const {
     const double friction = model.points[usable[edge.point]].friction;
-    return {1.0, friction * std::cos(angleOf(edge.side)), friction * std::sin(angleOf(edge.side))};
+    return {1.0, friction * elementary::cos(angleOf(edge.side)), friction * elementary::sin(angleOf(edge.side))};
   }
 
   void addEdges(const std::vector<Edge>& fresh) {
@@ -105,7 +106,7 @@ struct EquilibriumProgram::Solver {
       if (point.lower >= 0) gain += model.wrench(point, false).transpose() * price.segment<6>(6 * point.lower);
       if (!seekingBalance && !pointCosts.empty()) gain[0] -= pointCosts[p];
       // Without friction a pyramid is its axis, and one edge is enough.
-      const double turns = point.friction > 0.0 ? std::atan2(gain[2], gain[1]) / (2.0 * std::numbers::pi) : 0.0;
+      const double turns = point.friction > 0.0 ? elementary::atan2(gain[2], gain[1]) / (2.0 * std::numbers::pi) : 0.0;
       const int side = (static_cast<int>(std::lround(turns * tuning::kConeSides)) + tuning::kConeSides) % tuning::kConeSides;
       if (edgeForce({p, side}).dot(gain) <= tuning::kLpPriceTolerance || present[p].test(static_cast<std::size_t>(side)))
         continue;

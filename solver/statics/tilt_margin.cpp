@@ -1,5 +1,6 @@
 #include "solver/statics/tilt_margin.h"
 
+#include "core/elementary.h"
 #include "core/geometry/polygon.h"
 #include "core/tuning.h"
 #include "solver/statics/tilt_limits.h"
@@ -15,7 +16,7 @@ namespace springtower {
 namespace {
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
-const double kMaxSlope = std::tan(89.0 / kDegrees);
+const double kMaxSlope = elementary::tan(89.0 / kDegrees);
 
 // Point of a hull nearest to the origin. For an origin inside: the outward normal of the nearest edge and its distance; for one
 // outside: the direction from the nearest point to the origin, and minus its distance.
@@ -93,13 +94,14 @@ class BalancedGravities {
 // by at least `slack`.
 std::vector<Vec2> polygonWithin(const std::vector<GravityLimit>& limits, double radius, double slack, const Vec2& first,
                                 double friction) {
-  const double widest = std::acos(std::min(1.0, radius / friction));
+  const double widest = elementary::acos(std::min(1.0, radius / friction));
   const double sides = std::max(4.0, std::ceil(std::numbers::pi / widest + 1e-6));
   if (!(sides <= tuning::kMaxTiltPolygonSides)) return {};
   std::vector<Vec2> polygon;
   for (int i = 0; i < static_cast<int>(sides); ++i) {
-    const double angle = std::atan2(first.y(), first.x()) + std::numbers::pi * (2 * i + 1) / sides;
-    polygon.emplace_back(radius / std::cos(std::numbers::pi / sides) * Vec2(std::cos(angle), std::sin(angle)));
+    const double angle = elementary::atan2(first.y(), first.x()) + std::numbers::pi * (2 * i + 1) / sides;
+    polygon.emplace_back(radius / elementary::cos(std::numbers::pi / sides) *
+                         Vec2(elementary::cos(angle), elementary::sin(angle)));
   }
   for (const GravityLimit& limit : limits) polygon = keepTo(polygon, {limit.direction, limit.bound - 0.5 * slack});
   return polygon;
@@ -121,7 +123,7 @@ std::optional<StabilityMargin> tiltMargin(const StaticsModel& model, const std::
       // Among limits that are equal within rounding, the first.
       if (limit.bound < best.distance - tuning::kTiltSameSlope) best = {limit.direction, limit.bound};
     }
-    const double radius = std::tan(std::atan(best.distance) - 0.9 * tolerance);
+    const double radius = elementary::tan(elementary::atan(best.distance) - 0.9 * tolerance);
     if (std::isfinite(best.distance) && radius > 0.0) {
       for (const Vec2& corner : polygonWithin(limits, radius, best.distance - radius, best.direction, model.friction)) {
         if (!balanced.isSurelyIn(corner)) break;
@@ -138,7 +140,7 @@ std::optional<StabilityMargin> tiltMargin(const StaticsModel& model, const std::
   for (int question = 0; question < tuning::kMaxTiltPrograms; ++question) {
     hull = convexHull(std::move(hull), tuning::kTiltSameSlope);
     const Nearest nearest = nearestTo(hull);
-    if (std::isfinite(best.distance) && std::atan(best.distance) - std::atan(nearest.distance) <= tolerance) break;
+    if (std::isfinite(best.distance) && elementary::atan(best.distance) - elementary::atan(nearest.distance) <= tolerance) break;
     // If sliding sets the margin, the set is round, and its hull has many points: most are found by the cheaper test.
     const Vec2 guess = nearest.direction * best.distance;
     if (prepared && nearest.distance >= 0.0 && balanced.isSurelyIn(guess)) {
@@ -155,18 +157,18 @@ std::optional<StabilityMargin> tiltMargin(const StaticsModel& model, const std::
   }
   const double sign = best.distance < 0.0 ? -1.0 : 1.0;
   const Vec3 towards = sign * (balanced.towards(best.direction) - gravity);
-  double direction_deg = kDegrees * std::atan2(towards.y(), towards.x());
+  double direction_deg = kDegrees * elementary::atan2(towards.y(), towards.x());
   if (direction_deg < -1e-9) direction_deg += 360.0;
-  return StabilityMargin{kDegrees * std::atan(best.distance), std::max(0.0, direction_deg)};
+  return StabilityMargin{kDegrees * elementary::atan(best.distance), std::max(0.0, direction_deg)};
 }
 
 std::optional<double> tiltTowards(const StaticsModel& model, const std::vector<std::size_t>& usable, double direction_deg) {
   EquilibriumProgram program(model, usable, model.gravityLoad(-Vec3::UnitZ()));
   const double direction = direction_deg / kDegrees;
-  program.addVariableLoad(model.gravityLoad(Vec3(std::cos(direction), std::sin(direction), 0.0)));
+  program.addVariableLoad(model.gravityLoad(Vec3(elementary::cos(direction), elementary::sin(direction), 0.0)));
   if (!program.isFeasible()) return {};
   program.setBounds(0, 0.0, kMaxSlope);
-  return kDegrees * std::atan(program.maximise(std::array{1.0}));
+  return kDegrees * elementary::atan(program.maximise(std::array{1.0}));
 }
 
 }  // namespace springtower

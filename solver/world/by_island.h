@@ -77,6 +77,13 @@ class ByIsland {
     return records_[static_cast<std::size_t>(place_[static_cast<std::size_t>(first)])];
   }
 
+  /// As bytes (core/byte_stream.h): every record in its place.
+  template <class Stream>
+  void transfer(Stream& stream) {
+    stream(records_, owner_, place_, free_);
+    if constexpr (Stream::kReads) free_.reserve(records_.size());
+  }
+
   std::span<Record> all() { return records_; }
   [[nodiscard]] std::span<const Record> all() const { return records_; }
   /// Bytes of the indices by which records are found.

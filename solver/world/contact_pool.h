@@ -157,6 +157,7 @@ class ContactPool {
   }
   /// Relative pose of the blocks when rigid steps last refreshed the manifold; zeros where they have not.
   [[nodiscard]] RelativePose& pose(std::int32_t contact) { return first_.page(contact).pose[Pool::slot(contact)]; }
+  [[nodiscard]] const RelativePose& pose(std::int32_t contact) const { return first_.page(contact).pose[Pool::slot(contact)]; }
   /// Forces of the pair, for the sums of a wide island. Precondition: reserved as wide.
   [[nodiscard]] PairForce& pairForce(std::int32_t contact) { return (*first_.page(contact).pairForce)[Pool::slot(contact)]; }
 

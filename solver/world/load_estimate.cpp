@@ -1,6 +1,7 @@
 #include "solver/world/load_estimate.h"
 
 #include "broadphase/islands.h"
+#include "core/elementary.h"
 #include "core/geometry/oriented_box.h"
 #include "core/geometry/polygon.h"
 #include "core/geometry/sweep.h"
@@ -354,7 +355,7 @@ double swayStiffness(const std::vector<LevelMoments>& levels, const StackSums& o
 double concentrationOf(const Gravity& gravity, const StackSums& of) {
   const double lean_deg = std::min(std::abs(gravity.tilt_deg) + std::abs(gravity.sway_deg), 45.0);
   const double narrow_m = 0.5 * leastWidth(convexHull(of.corners));
-  const double lever_m = 0.5 * (of.upper_m - of.lower_m) * std::tan(lean_deg * std::numbers::pi / 180.0);
+  const double lever_m = 0.5 * (of.upper_m - of.lower_m) * elementary::tan(lean_deg * std::numbers::pi / 180.0);
   const double lever = std::min(1.0, lever_m / std::max(narrow_m, 1e-12));
   return (1.0 + lever) * (of.anyUneven ? tuning::kUnevenLoad : 1.0);
 }

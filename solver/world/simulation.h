@@ -52,7 +52,7 @@ struct Simulation {
 void stepFrame(Simulation& simulation);
 
 /// Adds to the velocity of a block (m/s), as an instantaneous impact would, and wakes it. Methods with a history drop it for this
-/// block; do not change velocities in `state` without this function.
+/// block; do not change velocities in `state` without this function. Throws InputError for a number that is no block's.
 void kick(Simulation& simulation, std::size_t block, const Vec3& velocity);
 
 /// Whether a block sleeps; the floor, numbered -1, always does.

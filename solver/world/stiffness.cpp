@@ -1,5 +1,6 @@
 #include "solver/world/stiffness.h"
 
+#include "core/elementary.h"
 #include "core/tuning.h"
 
 #include <algorithm>
@@ -22,7 +23,7 @@ BlockStiffness stiffnessForTolerance(const LoadEstimate& loads, double tolerance
 double stableStep(Method method, double spectralRadius, double dampingTime_s, double margin) {
   const double limit = 4.0 * margin * margin / spectralRadius;
   const double step = std::sqrt(dampingTime_s * dampingTime_s + limit) - dampingTime_s;
-  return method == Method::midpoint ? std::min(step, margin * std::cbrt(4.0 * dampingTime_s / spectralRadius)) : step;
+  return method == Method::midpoint ? std::min(step, margin * elementary::cbrt(4.0 * dampingTime_s / spectralRadius)) : step;
 }
 
 double stableSpectralRadius(Method method, double step_s, double dampingTime_s, double margin) {

@@ -159,6 +159,49 @@ TEST(Snapshots, BringInputsAndHandBack) {
   EXPECT_EQ(other.stateHash(), hash);
 }
 
+// Into another world, as of another process: through bytes, with a hand under way, a force that is to come and one for the next
+// frame.
+TEST(Snapshots, GoOnFromBytes) {
+  Scene scene = towerScene(4, {.heightsSigma_m = 0.0001, .seed = 5});
+  World world(scene);
+  world.prepare();
+  pull(world, 7, {0.0, 1.0, 0.0}, 0.05);
+  ASSERT_FALSE(world.step(20));
+  applyForce(world, {10, -1, {0.1, 0.0, 0.0}, 0.4, 0.5});
+  pushThroughFrame(world, 9, {0.0, 0.0, -0.2});
+  setGravity(world, {.magnitude_m_s2 = 9.0, .tilt_deg = 1.0, .direction_deg = 30.0});
+  const std::vector<std::byte> bytes = world.snapshot().bytes();
+  World other(scene);
+  other.restore(Snapshot::fromBytes(bytes));
+  EXPECT_EQ(other.time_s(), world.time_s());
+  EXPECT_EQ(other.snapshot().bytes(), bytes);
+  for (int frame = 0; frame < 30; ++frame) {
+    ASSERT_FALSE(world.step());
+    ASSERT_FALSE(other.step());
+    ASSERT_EQ(other.stateHash(), world.stateHash()) << frame;
+  }
+  EXPECT_EQ(other.counters(), world.counters());
+  EXPECT_EQ(handState(other).force_n.y, handState(world).force_n.y);
+}
+
+TEST(Snapshots, OfBytesThatAreCutOrChangedAreRefused) {
+  World world(towerScene(1));
+  world.prepare();
+  const std::vector<std::byte> bytes = world.snapshot().bytes();
+  for (std::size_t size = 0; size < bytes.size(); size += 1 + size / 8)
+    EXPECT_THROW(static_cast<void>(Snapshot::fromBytes(std::span(bytes).first(size))), InputError) << size;
+  for (std::size_t at = 0; at < bytes.size(); at += 1 + at / 8) {
+    std::vector<std::byte> changed = bytes;
+    changed[at] ^= std::byte{4};
+    EXPECT_THROW(static_cast<void>(Snapshot::fromBytes(changed)), InputError) << at;
+  }
+  EXPECT_THAT([&] { static_cast<void>(Snapshot::fromBytes({})); },
+              ThrowsMessage<InputError>(HasSubstr("snapshot: found nothing")));
+  EXPECT_THAT([&] { static_cast<void>(Snapshot().bytes()); }, ThrowsMessage<InputError>(HasSubstr("empty")));
+  World larger(towerScene(2));
+  EXPECT_THAT([&] { larger.restore(Snapshot::fromBytes(bytes)); }, ThrowsMessage<InputError>(HasSubstr("another scene")));
+}
+
 TEST(Snapshots, OfAnotherSceneAndEmptyOnesAreRefused) {
   World world(towerScene(2));
   Scene heavier = towerScene(2);

@@ -34,6 +34,30 @@ TEST(OutputFile, HasItsNameWhenItIsWhole) {
   EXPECT_EQ(filesIn(scratch), 1);
 }
 
+// A link stays one, whether what it leads to is there yet or not.
+TEST(OutputFile, FollowsLinks) {
+  const ScratchFolder scratch;
+  std::filesystem::create_directory(scratch.file("folder"));
+  std::ofstream(scratch.file("folder/old")) << "old";
+  std::filesystem::create_symlink("folder/old", scratch.file("to-old"));
+  std::filesystem::create_symlink("folder/new", scratch.file("to-new"));
+  std::filesystem::create_symlink(scratch.file("to-new"), scratch.file("to-link"));
+  std::filesystem::create_symlink("nowhere/new", scratch.file("to-nowhere"));
+  std::filesystem::create_symlink("loop", scratch.file("loop"));
+  for (const char* name : {"to-old", "to-link"}) {
+    OutputFile file(scratch.file(name), "--out");
+    file.stream() << "new";
+    file.commit();
+    EXPECT_TRUE(std::filesystem::is_symlink(scratch.file(name))) << name;
+    EXPECT_EQ(contentOf(scratch.file(name)), "new") << name;
+  }
+  EXPECT_TRUE(std::filesystem::is_symlink(scratch.file("to-new")));
+  EXPECT_EQ(contentOf(scratch.file("folder/new")), "new");
+  EXPECT_THROW(OutputFile(scratch.file("to-nowhere"), "--out"), InputError);
+  EXPECT_THROW(OutputFile(scratch.file("loop"), "--out"), InputError);
+  EXPECT_EQ(filesIn(scratch), 6) << "nothing is left behind";
+}
+
 TEST(OutputFile, IsFlushedAfterASecond) {
   const ScratchFolder scratch;
   OutputFile file(scratch.file("a"), "--out");

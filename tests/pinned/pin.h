@@ -24,9 +24,12 @@ using Pins = std::map<std::string, Pin, std::less<>>;
 /// The frame after which a hash of a scene was taken.
 int frameOfHash(std::size_t hash, int frames);
 
-/// Plays a scene on so many threads, also where the machine has fewer cores. `poisoned`: with what no frame may read before it
-/// writes it filled with NaN as each begins. Throws DivergenceError.
-Pin pinOf(const PinnedScene& scene, int threads, bool poisoned = false);
+/// How a scene is played: in one go; with what no frame may read before it writes it filled with NaN as each begins; or saved as
+/// bytes after every kFramesAPin frames and gone on with from these in a simulation that has never been stepped.
+enum class Played { atOnce, poisoned, savedAndResumed };
+
+/// Plays a scene on so many threads, also where the machine has fewer cores. Throws DivergenceError.
+Pin pinOf(const PinnedScene& scene, int threads, Played how = Played::atOnce);
 
 /// A counter and how the file of pins calls it.
 struct NamedCounter {

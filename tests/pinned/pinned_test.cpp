@@ -39,19 +39,24 @@ std::string difference(const Pin& expected, const Pin& found, int frames) {
 
 class PinnedTest : public ::testing::TestWithParam<PinnedScene> {};
 
-void expectPinned(const PinnedScene& scene, int threads, bool poisoned) {
+void expectPinned(const PinnedScene& scene, int threads, Played how) {
   const auto pinned = pinsOfFile().find(scene.name);
   ASSERT_NE(pinned, pinsOfFile().end()) << "not pinned yet; springtower_pinned_tests --update FILE pins all";
-  EXPECT_EQ(difference(pinned->second, pinOf(scene, threads, poisoned), scene.frames), "");
+  EXPECT_EQ(difference(pinned->second, pinOf(scene, threads, how), scene.frames), "");
 }
 
 TEST_P(PinnedTest, OneThread) {
-  expectPinned(GetParam(), 1, false);
+  expectPinned(GetParam(), 1, Played::atOnce);
 }
 
 // At the same time nothing is read from frame to frame but what is of the state or the memo: all else is NaN as a frame begins.
 TEST_P(PinnedTest, FourThreadsWithScratchOfNaN) {
-  expectPinned(GetParam(), 4, true);
+  expectPinned(GetParam(), 4, Played::poisoned);
+}
+
+// A snapshot written as bytes and read again holds all that the next frames depend on, whatever the method and the scene.
+TEST_P(PinnedTest, TwoThreadsSavedAndResumed) {
+  expectPinned(GetParam(), 2, Played::savedAndResumed);
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, PinnedTest, ::testing::ValuesIn(pinnedScenes()),

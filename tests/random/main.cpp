@@ -1,4 +1,5 @@
 // Random scenes, judged by what must hold in every one of them (tests/random/judge.h). docs/random-scenes.md says more.
+#include "apps/common/arguments.h"
 #include "apps/common/interruption.h"
 #include "apps/common/options.h"
 #include "apps/common/program.h"
@@ -242,7 +243,7 @@ int runProgram(int argc, char** argv) {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return program.exit(error);
-    throw InputError(std::string(error.what()) + " (try 'random_scenes --help')");
+    throw InputError(complaintAbout(program, error) + " (try 'random_scenes --help')");
   }
   if (options.fault) faultFromName(*options.fault, "--fault");
   if (options.shrink && !std::filesystem::is_directory(*options.shrink)) {

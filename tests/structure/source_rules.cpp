@@ -8,6 +8,7 @@
 #include <initializer_list>
 #include <iterator>
 #include <map>
+#include <regex>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
@@ -218,6 +219,26 @@ bool usesSharedFolder(std::string_view path, std::string_view text) {
   return false;
 }
 
+// The folders in which states are decided: see core/elementary.h.
+constexpr std::string_view kDeciding[] = {"core", "broadphase", "narrowphase", "solver", "scenarios", "api"};
+
+// What in a line of code has other last bits on another machine: elementary functions of the C library, by whatever spelling,
+// what calls them in Eigen, and distributions of the standard library. Empty where there is nothing. A comment is no code.
+std::string_view machineDependent(std::string_view line) {
+  static const std::regex kPattern(
+      R"((\bstd::|[^\w:.>]::|__builtin_)(a?(sin|cos|tan)h?|atan2|exp2?|expm1|log(2|10|1p)?|pow|cbrt|hypot|[tl]gamma|erfc?|fma)[fl]?\()"
+      R"(|\bstd::(complex|polar)\b|\bstd::\w+_distribution\b|\bAngleAxis[df]?\b|\.(slerp|angularDistance|computeDirect)\()"
+      R"(|\.(sin|cos|tan|exp|log|pow|tanh|cube_root)\(\))");
+  line = line.substr(0, line.find("//"));
+  std::match_results<std::string_view::const_iterator> found;
+  if (!std::regex_search(line.begin(), line.end(), found, kPattern)) return {};
+  return line.substr(static_cast<size_t>(found.position()), static_cast<size_t>(found.length()));
+}
+
+bool decidesStates(std::string_view path) {
+  return std::find(std::begin(kDeciding), std::end(kDeciding), topOf(path)) != std::end(kDeciding);
+}
+
 }  // namespace
 
 std::vector<std::string> brokenRules(std::string_view path, std::string_view text) {
@@ -236,6 +257,11 @@ std::vector<std::string> brokenRules(std::string_view path, std::string_view tex
     if (length > kMaxFunctionLines) {
       broken.push_back(std::string(path) + ":" + std::to_string(lineNumber) + ": ends a function of " + std::to_string(length) +
                        " lines, more than " + std::to_string(kMaxFunctionLines));
+    }
+    const std::string_view inexact = decidesStates(path) ? machineDependent(line) : std::string_view{};
+    if (!inexact.empty()) {
+      broken.push_back(std::string(path) + ":" + std::to_string(lineNumber) + ": found " + std::string(inexact) +
+                       ", whose last bits depend on the machine; core/elementary.h and core/rotation_vector.h have others");
     }
     const Include include = parseInclude(line);
     if (include.target.empty()) continue;

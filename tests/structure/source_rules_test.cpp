@@ -173,6 +173,21 @@ TEST(SourceRules, ATestHasItsFilesInAFolderOfItsOwn) {
   EXPECT_THAT(brokenRules("core/a.cpp", shared), IsEmpty());
 }
 
+TEST(SourceRules, NoStateDependsOnTheMachinesMathematics) {
+  const std::string call = std::string("const double a = std::") + "sin(b);\n";
+  for (const std::string folder : {"core", "broadphase", "narrowphase/exact", "solver/hand", "scenarios", "api"})
+    EXPECT_THAT(brokenRules(folder + "/a.cpp", call), ElementsAre(HasSubstr("a.cpp:1: found std::sin("))) << folder;
+  for (const std::string folder : {"apps/plot", "bench", "tests/core"})
+    EXPECT_THAT(brokenRules(folder + "/a.cpp", call), IsEmpty()) << folder;
+  for (const std::string found : {"std::pow(a, 2)", "std::exp(a)", "std::atan2(a, b)", "std::hypot(a, b)", "std::fma(a, b, c)",
+                                  "std::log1p(a)", "std::cbrtf(a)", "__builtin_cos(a)", " ::tanh(a)", "Eigen::AngleAxisd(a, b)",
+                                  "a.slerp(b, c)", "a.angularDistance(b)", "a.array().exp()", "std::normal_distribution<> a"})
+    EXPECT_THAT(brokenRules("core/a.cpp", "x = " + found + ";\n"), ElementsAre(HasSubstr("depend on the machine"))) << found;
+  for (const std::string found : {"std::sqrt(a)", "std::floor(a)", "std::lround(a)", "std::ldexp(a, 2)", "elementary::sin(a)",
+                                  "std::expected(a)", "f(a);  // not std::sin(a)", "a.exponential()"})
+    EXPECT_THAT(brokenRules("core/a.cpp", "x = " + found + ";\n"), IsEmpty()) << found;
+}
+
 TEST(SourceRules, AHeaderIncludesWhatItUsesOfTheStandardLibrary) {
   const std::string head = "#pragma once\n";
   EXPECT_THAT(brokenRules("core/a.h", head + "std::vector<int> a;\n"), ElementsAre("core/a.h: std::vector needs <vector>"));

@@ -3,11 +3,11 @@
 #include "apps/common/options.h"
 #include "core/error.h"
 #include "core/limits.h"
+#include "core/line_input.h"
 
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-#include <fstream>
 #include <map>
 #include <optional>
 #include <span>
@@ -108,10 +108,9 @@ double drawnTime_ms(const Chart& chart, const PeerResult& peer) {
 }
 
 std::vector<PeerResult> readPeers(const std::string& path, const ChartLimits& limits) {
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) throw InputError(fmt::format("--peers: cannot read {}", inQuotes(path)));
+  LineInput input(path, "--peers");
   std::string text;
-  std::getline(stream, text);
+  input.next(text);
   std::map<std::string, std::size_t> column;
   const std::vector<std::string> names = fieldsOf(text);
   for (std::size_t i = 0; i < names.size(); ++i) column[names[i]] = i;
@@ -121,11 +120,11 @@ std::vector<PeerResult> readPeers(const std::string& path, const ChartLimits& li
     if (!column.contains(needed)) throw InputError(fmt::format("{}: found no column {}", onOneLine(path), inQuotes(needed)));
   }
   std::vector<PeerResult> peers;
-  for (int number = 2; std::getline(stream, text); ++number) {
+  while (input.next(text)) {
     const std::vector<std::string> fields = fieldsOf(text);
     if (fields.size() != names.size()) {
       throw InputError(
-          fmt::format("{}:{}: found {} fields, allowed are {}", onOneLine(path), number, fields.size(), names.size()));
+          fmt::format("{}:{}: found {} fields, allowed are {}", onOneLine(path), input.number(), fields.size(), names.size()));
     }
     const TableLine line(column, fields);
     if (line.value("threads") != 1.0) continue;

@@ -6,13 +6,18 @@
 #include "apps/common/json_values.h"
 #include "apps/common/output_file.h"
 #include "apps/common/poses.h"
+#include "apps/common/program.h"
 #include "apps/common/progress.h"
 #include "apps/picture/picture.h"
 #include "core/error.h"
+#include "core/version.h"
 #include "scenarios/registry.h"
 #include "solver/runner/run.h"
+#include "solver/runner/run_state.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
 #include <fmt/format.h>
 #include <initializer_list>
 #include <memory>
@@ -31,6 +36,8 @@ constexpr std::string_view kRunExamples = R"help(examples:
   springtower run "(010)-(010)-(011)" --picture a.png    a bit code: rows from the bottom, 1 present, 0 absent, L loose
   springtower run tower:18 --gravity-tilt 14.5 --report collapse.json --poses collapse.csv --poses-every 0.05
   springtower run tower:18 --heights-sigma 0.0002 --seed 3
+  springtower run scenes/moves.toml --save half.run      keeps the end, or where Ctrl-C ended it, in a file
+  springtower run --resume half.run --seconds 5          goes on from there for 5 s, bit for bit as if it had not stopped
   springtower run tower:18 --method semi-implicit-euler --substeps 50
                                                          prints the tolerance that 50 steps a frame allow)help";
 
@@ -49,6 +56,11 @@ Gravity withOptions(Gravity gravity, const RunCommand& command) {
   gravity.sway_deg = *degrees;
   gravity.sway_hz = *hertz;
   return gravity;
+}
+
+Scene withSeconds(Scene scene, const RunCommand& command) {
+  if (command.seconds) scene.seconds = *command.seconds;
+  return scene;
 }
 
 // Two outputs of one name would overwrite each other, and so would one and what another is until it is whole.
@@ -75,6 +87,48 @@ std::unique_ptr<OutputFile> open(const std::optional<std::string>& path, const s
   return path ? std::make_unique<OutputFile>(*path, option) : nullptr;
 }
 
+void writeReport(OutputFile& file, const Simulation& simulation, const RunResult& result, int threads, bool withForces) {
+  nlohmann::ordered_json json = reportJson(simulation, result, threads);
+  if (withForces) json["forces"] = forcesJson(simulation);
+  file.stream() << jsonText(json, 2) << '\n';
+  file.commit();
+}
+
+// Scene and settings are in the file: whatever would change them is refused beside it. (CLI11's own exclusion would list all of
+// these options in the help.)
+void addResume(CLI::App& run, std::optional<std::string>& file) {
+  static constexpr std::array<std::string_view, 9> kFitting = {"--help",  "--seconds",     "--threads", "--report", "--forces",
+                                                               "--poses", "--poses-every", "--picture", "--save"};
+  const std::vector<CLI::Option*> others = run.get_options();
+  CLI::Option* const resume =
+      run.add_option("--resume", file,
+                     "goes on with a run that --save has written, in place of SCENE, with its scene and settings, on any number "
+                     "of threads")
+          ->type_name("FILE");
+  run.parse_complete_callback([resume, others] {
+    if (resume->count() == 0) return;
+    for (const CLI::Option* const other : others) {
+      const auto fits = [&](std::string_view name) { return other->check_name(std::string(name)); };
+      if (other->count() > 0 && std::none_of(kFitting.begin(), kFitting.end(), fits))
+        throw CLI::ExcludesError(resume->get_name(), other->get_name());
+    }
+  });
+}
+
+// A run to go on with, if one is named. Throws InputError for a command line without any scene.
+std::optional<SavedRun> savedRunOf(const RunCommand& command) {
+  if (!command.resume) {
+    if (command.scene.empty()) throw InputError("run: found no SCENE and no --resume, allowed is one of them");
+    return std::nullopt;
+  }
+  LoadedRun loaded = readRun(*command.resume, fmt::format("--resume {}", inQuotes(*command.resume)));
+  if (loaded.commit != kGitCommit) {
+    complain("springtower", fmt::format("--resume {}: was saved by commit {}, this is {}: it may go on otherwise than there",
+                                        inQuotes(*command.resume), loaded.commit, kGitCommit));
+  }
+  return std::move(loaded.run);
+}
+
 }  // namespace
 
 CLI::App* defineRun(CLI::App& program, RunCommand& command) {
@@ -82,9 +136,9 @@ CLI::App* defineRun(CLI::App& program, RunCommand& command) {
   run->add_option("SCENE", command.scene,
                   "NAME or NAME:SIZE as springtower scenes lists them, such as tower:18 or wall:20x12; a bit code such as "
                   "(010)-(010)-(011); or a .toml file")
-      ->type_name("")
-      ->required();
-  addNumber(*run, "--seconds", command.seconds, kSecondsRange, "S", "simulated time (default 10, or what the scene file says)");
+      ->type_name("");
+  addNumber(*run, "--seconds", command.seconds, kSecondsRange, "S",
+            "simulated time (default 10, or what the scene file says); with --resume beyond what was saved");
   addPhysicsOptions(*run, command.physics);
   addNumber(
       *run, "--prepare-budget", command.prepareBudget_s, kPrepareBudgetRange, "S",
@@ -106,6 +160,10 @@ CLI::App* defineRun(CLI::App& program, RunCommand& command) {
   addNumber(*run, "--poses-every", command.posesEvery_s, kPosesEveryRange, "S", "time between poses (default: every frame)")
       ->needs("--poses");
   run->add_option("--picture", command.picture, "draws the last frame")->type_name("FILE.png");
+  run->add_option("--save", command.save,
+                  "writes all that decides how the run goes on, at its end or where a signal ends it; --resume goes on with it")
+      ->type_name("FILE");
+  addResume(*run, command.resume);
   wrapDescriptions(*run);
   run->footer(std::string(kRunExamples));
   return run;
@@ -117,8 +175,7 @@ Scene sceneOf(const RunCommand& command) {
   options.massSigma_kg = command.massSigma_kg;
   if (command.seed) options.seed = static_cast<std::uint64_t>(*command.seed);
   options.startGap_m = command.startGap_m;
-  Scene scene = sceneNamed(command.scene, options);
-  if (command.seconds) scene.seconds = *command.seconds;
+  Scene scene = withSeconds(sceneNamed(command.scene, options), command);
   scene.gravity = withOptions(scene.gravity, command);
   applyPhysicsOptions(command.physics, scene.settings);
   return scene;
@@ -128,11 +185,14 @@ int executeRun(const RunCommand& command) {
   if (command.picture && !command.picture->ends_with(".png")) {
     throw InputError(fmt::format("--picture: found {}, allowed is a name that ends with .png", inQuotes(*command.picture)));
   }
-  checkNames({{"--report", &command.report}, {"--poses", &command.poses}, {"--picture", &command.picture}});
-  const Scene scene = sceneOf(command);
+  checkNames(
+      {{"--report", &command.report}, {"--poses", &command.poses}, {"--picture", &command.picture}, {"--save", &command.save}});
+  const std::optional<SavedRun> resumed = savedRunOf(command);
+  const Scene scene = resumed ? withSeconds(resumed->scene, command) : sceneOf(command);
   const auto report = open(command.report, "--report");
   const auto poses = open(command.poses, "--poses");
   const auto picture = open(command.picture, "--picture");
+  const auto save = open(command.save, "--save");
   const int threads = threadCount(command.physics);
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
 
@@ -140,6 +200,7 @@ int executeRun(const RunCommand& command) {
   RunOptions options;
   options.seconds = scene.seconds;
   options.shouldStop = interrupted;
+  if (resumed) options.resumed = &*resumed;
   std::optional<PoseWriter> writer;
   if (poses) writer.emplace(poses->stream(), command.posesEvery_s.value_or(scene.settings.frame_s), scene.settings.frame_s);
   Progress preparing(static_cast<double>(scene.blocks.size()), "blocks in equilibrium or left as placed");
@@ -148,7 +209,7 @@ int executeRun(const RunCommand& command) {
     preparing.update(static_cast<double>(now.blocksDone), fmt::format("{} iterations", now.iterations));
     return true;
   };
-  Progress progress(scene.seconds, "s simulated");
+  Progress progress(scene.seconds + (resumed ? resumed->snapshot->time_s : 0.0), "s simulated");
   RunResult result;
   try {
     result = runScene(simulation, options, [&](const Simulation& now) {
@@ -166,11 +227,10 @@ int executeRun(const RunCommand& command) {
   preparing.clear();
   progress.clear();
   if (poses) poses->commit();
-  if (report) {
-    nlohmann::ordered_json json = reportJson(simulation, result, threads);
-    if (command.forces) json["forces"] = forcesJson(simulation);
-    report->stream() << jsonText(json, 2) << '\n';
-    report->commit();
+  if (report) writeReport(*report, simulation, result, threads, command.forces);
+  if (save) {
+    writeRun({scene, takeSnapshot(simulation), result.progress}, save->stream());
+    save->commit();
   }
   if (picture) {
     writePicture(picture->stream(), simulation.state.position, scene.floor);

@@ -31,6 +31,8 @@ struct RunCommand {
   std::optional<std::string> poses;
   std::optional<double> posesEvery_s;
   std::optional<std::string> picture;
+  std::optional<std::string> save;
+  std::optional<std::string> resume;
 };
 
 /// Adds the command to the program.
@@ -39,9 +41,10 @@ CLI::App* defineRun(CLI::App& program, RunCommand& command);
 /// The scene with what the command line says put over it. Throws InputError.
 Scene sceneOf(const RunCommand& command);
 
-/// Simulates, writes the files that are named and prints a table. Returns the exit code; a signal ends the run with the next
-/// frame, of which all files are written, and the report says so. Throws InputError for what is wrong with the input or the names
-/// of the files, before anything is simulated, and DivergenceError; poses up to then are kept.
+/// Simulates a scene or goes on with a run that was saved, writes the files that are named and prints a table. Returns the exit
+/// code; a signal ends the run with the next frame, of which all files are written, and the report says so. Throws InputError for
+/// what is wrong with the input or the names of the files, before anything is simulated, and DivergenceError; poses up to then
+/// are kept.
 int executeRun(const RunCommand& command);
 
 }  // namespace springtower

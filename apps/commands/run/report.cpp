@@ -43,7 +43,9 @@ Json prepareJson(const PrepareResult& prepared) {
 }
 
 // How the scene starts, in words.
-std::string startInWords(const PrepareResult& prepared) {
+std::string startInWords(const RunResult& result) {
+  if (result.resumedAt_s) return fmt::format("as saved at {:.4g} s", *result.resumedAt_s);
+  const PrepareResult& prepared = result.prepared;
   std::string text = fmt::format("{} of {} blocks in equilibrium, found in {:.3g} ms", prepared.blocksInBalance, prepared.blocks,
                                  1e3 * prepared.wall_s);
   if (prepared.end == PrepareEnd::outOfTime) text += "; out of time, the others as placed";
@@ -127,6 +129,7 @@ Json reportJson(const Simulation& simulation, const RunResult& result, int threa
   report["fall_time_s"] = orNull(result.fallTime_s);
   report["t_rest_s"] = orNull(result.restTime_s);
   report["interrupted"] = result.interrupted;
+  report["resumed_at_s"] = orNull(result.resumedAt_s);
   report["simulated_s"] = result.simulated_s;
   report["wall_s"] = result.wall_s;
   report["prepare"] = prepareJson(result.prepared);
@@ -171,7 +174,7 @@ void printResult(const Simulation& simulation, const RunResult& result, int thre
   row("tolerance", fmt::format("{:.4g} mm{}", kMillimetres * simulation.tolerance_m,
                                simulation.fixedSubsteps > 0 && !settings.tolerance_m ? ", as the substeps allow" : ""));
   row("contact stiffness", fmt::format("{:.4g} kN/m", 1e-3 * largestStiffness(simulation.stiffness)));
-  row("start", startInWords(result.prepared));
+  row("start", startInWords(result));
   row("substeps", fmt::format("{} in the last awake frame, {} in all", result.substeps, result.counters.steps));
   if (result.standing.stands) {
     row("stands", "yes");
@@ -192,7 +195,7 @@ void printResult(const Simulation& simulation, const RunResult& result, int thre
   row("jitter, last second", fmt::format("{:.3g} mm/s", kMillimetres * result.jitter_m_s));
   row("height error against rigid stack", fmt::format("{:+.3g} mm", kMillimetres * result.topHeightError_m));
   row("max energy gain in a frame",
-      result.maxEnergyRise ? fmt::format("{:.2g} of the energy at the start", *result.maxEnergyRise) : "unknown");
+      result.maxEnergyRise ? fmt::format("{:.2g} of the most energy there was", *result.maxEnergyRise) : "unknown");
   row("simulated",
       fmt::format("{:.4g} s in {:.3g} s, {} thread{}", result.simulated_s, result.wall_s, threads, threads == 1 ? "" : "s"));
   if (result.interrupted) row("interrupted", "yes, by a signal: all figures are of the time until then");

@@ -2,11 +2,11 @@
 #include "apps/commands/validate/frames.h"
 #include "apps/commands/validate/validate.h"
 #include "core/error.h"
+#include "core/line_input.h"
 #include "solver/statics/statics.h"
 
 #include <algorithm>
 #include <fmt/format.h>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
@@ -153,10 +153,9 @@ bool holdsTooHard(const Scene& scene, BlockId block, const Vec3& towards) {
 
 std::vector<RemovalSequence> removalSequences(const ValidationPlan& plan) {
   const std::string path = plan.oracle + "/removal.jsonl";
-  std::ifstream file(path);
-  if (!file) throw InputError(fmt::format("--oracle: found no file {}, allowed is the folder of the reference sets", path));
+  LineInput file(path, "--oracle");
   std::vector<RemovalSequence> sequences;
-  for (std::string text; std::getline(file, text);) {
+  for (std::string text; file.next(text);) {
     if (text.empty()) continue;
     const nlohmann::json line = nlohmann::json::parse(text);
     RemovalSequence sequence;

@@ -2,6 +2,7 @@
 #include "apps/commands/validate/validate.h"
 #include "apps/commands/verdict/verdict.h"
 #include "core/error.h"
+#include "core/line_input.h"
 #include "solver/runner/run.h"
 #include "solver/statics/statics.h"
 
@@ -159,8 +160,7 @@ void addClaims(const OracleSet& set, const Counts& counts, ValidationSection& se
 // Every state of the sequences of removals, each as a tower of its own.
 void addRemovalStatics(const ValidationPlan& plan, ValidationSection& section) {
   const std::string path = plan.oracle + "/removal.jsonl";
-  std::ifstream file(path);
-  if (!file) throw InputError(fmt::format("--oracle: found no file {}, allowed is the folder of the reference sets", path));
+  LineInput file(path, "--oracle");
   struct State {
     std::string id;
     Scene scene;
@@ -168,7 +168,7 @@ void addRemovalStatics(const ValidationPlan& plan, ValidationSection& section) {
   };
   std::vector<State> states;
   std::size_t sequences = 0;
-  for (std::string text; std::getline(file, text);) {
+  for (std::string text; file.next(text);) {
     if (text.empty()) continue;
     if (!plan.longForm && sequences == 1) break;
     ++sequences;

@@ -1,6 +1,7 @@
 #include "apps/commands/verdict/json.h"
 #include "apps/commands/verdict/verdict.h"
 #include "core/error.h"
+#include "core/line_input.h"
 
 #include <cmath>
 #include <fmt/format.h>
@@ -138,9 +139,10 @@ std::vector<VerdictLine> readVerdictLines(std::istream& input, const std::string
   std::vector<VerdictLine> lines;
   std::set<std::string> ids;
   std::string text;
-  for (std::size_t number = 1; std::getline(input, text); ++number) {
-    if (isBlankLine(text)) continue;
-    lines.push_back(readVerdictLine(text, number, fmt::format("{}: line {}", source, number), ids));
+  for (std::size_t number = 1;; ++number) {
+    const std::string where = fmt::format("{}: line {}", source, number);
+    if (!readLine(input, text, where)) break;
+    if (!isBlankLine(text)) lines.push_back(readVerdictLine(text, number, where, ids));
   }
   if (input.bad()) throw InputError(fmt::format("{}: reading failed", source));
   return lines;

@@ -27,7 +27,8 @@ void runHeadless(Viewer& viewer, const ViewerFiles& files, const Viewport& size,
     advance(viewer, 0.0);
     if (files.recorder != nullptr) files.recorder->follow(viewer.choice, viewer.session);
     viewer.watch.interrupted = i < run.frames && interrupted();
-    const bool last = i == run.frames || viewer.watch.interrupted;
+    const bool refused = viewer.replay && !viewer.replay->refused.empty();
+    const bool last = i == run.frames || viewer.watch.interrupted || refused;
     if ((i % run.every == 0 || last) && (run.folder || film)) {
       frame.bind();
       renderer.draw(pictureOf(viewer), viewer.controls.camera, size);

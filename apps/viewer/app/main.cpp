@@ -1,5 +1,6 @@
 // The viewer: a window with the tower, a hand, and panels; or, with --headless, pictures of a scene. Exit codes are those of
 // apps/common/program.h, and 1 where a replay differs; divergence counts without a window only.
+#include "apps/common/arguments.h"
 #include "apps/common/interruption.h"
 #include "apps/common/options.h"
 #include "apps/common/output_file.h"
@@ -181,6 +182,10 @@ std::unique_ptr<OutputFile> opened(const std::optional<std::string>& path, const
 // The exit code, said in words where it is none of done.
 int outcomeOf(const Viewer& viewer, bool headless) {
   if (viewer.watch.interrupted) return interruptionExitCode();
+  if (viewer.replay && !viewer.replay->refused.empty()) {
+    complain("springtower-viewer", viewer.replay->refused);
+    return kBadInput;
+  }
   if (viewer.replay && viewer.replay->differs) {
     fmt::print("the replay differs first in frame {}\n", *viewer.replay->differs);
     return kReplayDiffers;
@@ -273,7 +278,7 @@ int run(int argc, char** argv, std::chrono::steady_clock::time_point started) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);
-    complain("springtower-viewer", error.what());
+    complain("springtower-viewer", complaintAbout(app, error));
     fmt::print(stderr, "Try 'springtower-viewer --help'.\n");
     return kBadInput;
   }

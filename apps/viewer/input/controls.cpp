@@ -1,5 +1,7 @@
 #include "apps/viewer/input/controls.h"
 
+#include "core/limits.h"
+
 namespace springtower {
 namespace {
 
@@ -37,6 +39,8 @@ void pointerMoved(Controls& controls, const Session& session, double x, double y
     } else {
       controls.hand.place += scale * (dx * frame.right - dy * frame.up);
     }
+    // What is drawn away from the camera goes ever faster; a recording holds no places beyond these.
+    controls.hand.place = controls.hand.place.cwiseMax(kPlaceRange.least).cwiseMin(kPlaceRange.most);
   }
   updateHover(controls, session);
 }

@@ -3,14 +3,19 @@
 #include "apps/common/json_values.h"
 #include "core/error.h"
 #include "core/limits.h"
+#include "core/line_input.h"
+#include "core/scene/input_check.h"
 #include "core/version.h"
 #include "scenarios/registry.h"
 
+#include <array>
 #include <charconv>
+#include <cstdint>
 #include <fmt/format.h>
-#include <fstream>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <ostream>
+#include <stdexcept>
 
 namespace springtower {
 namespace {
@@ -18,6 +23,9 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr int kFormat = 1;
+constexpr double kTurnError = 1e-9;        // of the length of a unit quaternion
+constexpr std::int64_t kMostBytes = 4096;  // of a file's name
+constexpr std::int64_t kMostWhole = std::numeric_limits<std::int64_t>::max();
 
 Json json(const Tuning& tuning) {
   return {{"method", nameOf(tuning.method)},
@@ -26,13 +34,70 @@ Json json(const Tuning& tuning) {
           {"friction", tuning.friction}};
 }
 
+// A value as messages name it. Arrays and objects are not printed: they may be as deep as they like.
+std::string shown(const Json& value) {
+  if (value.is_structured()) return fmt::format("an {}", value.type_name());
+  if (value.is_number()) return value.dump();
+  return inQuotes(value.dump(-1, ' ', true, Json::error_handler_t::replace));
+}
+
+// The value of a key. Every number is checked here: a cast of one that is out of its type's range is undefined.
+const Json& valueOf(const Json& json, const char* key, const std::string& where) {
+  if (!json.is_object()) throw InputError(fmt::format("{}: found {}, allowed is an object", where, shown(json)));
+  if (!json.contains(key)) throw InputError(fmt::format("{}: found no {}, which is required", where, key));
+  return json.at(key);
+}
+
+double numberOf(const Json& value, const Range& range, const std::string& where) {
+  if (!value.is_number() || !isInside(value.get<double>(), range))
+    throw InputError(fmt::format("{}: found {}, allowed is a number, {}", where, shown(value), describe(range)));
+  return value.get<double>();
+}
+
+double number(const Json& json, const char* key, const Range& range, const std::string& where) {
+  return numberOf(valueOf(json, key, where), range, fmt::format("{}: {}", where, key));
+}
+
+std::int64_t wholeNumberOf(const Json& value, std::int64_t most, const std::string& where) {
+  const bool isWhole = value.is_number_unsigned() || (value.is_number_integer() && value.get<std::int64_t>() >= 0);
+  if (!isWhole || value.get<std::uint64_t>() > static_cast<std::uint64_t>(most))
+    throw InputError(fmt::format("{}: found {}, allowed 0 to {}, a whole number", where, shown(value), most));
+  return value.get<std::int64_t>();
+}
+
+std::int64_t wholeNumber(const Json& json, const char* key, std::int64_t most, const std::string& where) {
+  return wholeNumberOf(valueOf(json, key, where), most, fmt::format("{}: {}", where, key));
+}
+
+std::string text(const Json& json, const char* key, const std::string& where) {
+  const Json& value = valueOf(json, key, where);
+  if (!value.is_string()) throw InputError(fmt::format("{}: {}: found {}, allowed is a text", where, key, shown(value)));
+  return value.get<std::string>();
+}
+
+template <std::size_t kCount>
+std::array<double, kCount> numbers(const Json& json, const char* key, const Range& range, const std::string& where) {
+  const Json& values = valueOf(json, key, where);
+  if (!values.is_array() || values.size() != kCount)
+    throw InputError(fmt::format("{}: {}: found {}, allowed are {} numbers", where, key, shown(values), kCount));
+  std::array<double, kCount> read{};
+  for (std::size_t i = 0; i < kCount; ++i) read[i] = numberOf(values[i], range, fmt::format("{}: {}[{}]", where, key, i));
+  return read;
+}
+
+Range rangeOfTolerance() {
+  for (const SettingRow& row : settingTable()) {
+    if (row.key == "tolerance_m") return {row.least, row.most, row.unit};
+  }
+  throw std::logic_error("no setting tolerance_m");
+}
+
 Tuning tuningFrom(const Json& json, const std::string& where) {
   Tuning tuning;
-  tuning.method = methodFromName(json.at("method").get<std::string>(), where);
-  tuning.sleep = sleepFromName(json.at("sleep").get<std::string>(), where);
-  tuning.tolerance_m = json.at("tolerance_m").get<double>();
-  tuning.friction = json.at("friction").get<double>();
-  requireInRange(tuning.friction, kFrictionRange, where + ": friction");
+  tuning.method = methodFromName(text(json, "method", where), where);
+  tuning.sleep = sleepFromName(text(json, "sleep", where), where);
+  tuning.tolerance_m = number(json, "tolerance_m", rangeOfTolerance(), where);
+  tuning.friction = number(json, "friction", kFrictionRange, where);
   return tuning;
 }
 
@@ -44,18 +109,18 @@ Json json(const Hand& hand) {
           {"limit_n", hand.limit_n}};
 }
 
-Hand handFrom(const Json& json, std::size_t blocks, const std::string& where) {
+Hand handFrom(const Json& json, const Scene& scene, const std::string& where) {
   Hand hand;
-  const auto block = json.at("block").get<std::int64_t>();
-  if (block < 0 || block >= static_cast<std::int64_t>(blocks)) {
-    throw InputError(fmt::format("{}: block: found {}, allowed 0 to {}", where, block, blocks - 1));
-  }
-  hand.block = blockId(static_cast<std::size_t>(block));
-  const auto place = json.at("place").get<std::array<double, 3>>();
-  const auto turn = json.at("turn").get<std::array<double, 4>>();
+  const auto last = static_cast<std::int64_t>(scene.blocks.size()) - 1;
+  const auto block = static_cast<std::size_t>(wholeNumber(json, "block", last, where));
+  requireMovable(scene, block, where + ": block");
+  hand.block = blockId(block);
+  const auto place = numbers<3>(json, "place", kPlaceRange, where);
+  const auto turn = numbers<4>(json, "turn", {-1.0 - kTurnError, 1.0 + kTurnError, ""}, where);
   hand.place = {place[0], place[1], place[2]};
   hand.turn = {turn[0], turn[1], turn[2], turn[3]};
-  hand.limit_n = json.at("limit_n").get<double>();
+  requireInRange(hand.turn.norm(), {1.0 - kTurnError, 1.0 + kTurnError, ""}, where + ": turn: length of the quaternion");
+  hand.limit_n = number(json, "limit_n", kHandForceRange, where);
   return hand;
 }
 
@@ -64,9 +129,8 @@ void put(Json& json, const char* key, const std::optional<T>& value) {
   if (value) json[key] = *value;
 }
 
-template <class T>
-std::optional<T> maybe(const Json& json, const char* key) {
-  return json.contains(key) ? std::optional<T>(json.at(key).get<T>()) : std::nullopt;
+void readIfThere(const Json& json, const char* key, const Range& range, const std::string& where, std::optional<double>& target) {
+  if (json.contains(key)) target = number(json, key, range, where);
 }
 
 Json json(const SceneChoice& choice) {
@@ -81,18 +145,24 @@ Json json(const SceneChoice& choice) {
 }
 
 SceneChoice choiceFrom(const Json& json, const std::string& where) {
-  if (json.value("springtower_recording", 0) != kFormat) throw InputError(where + ": this is no recording of the viewer");
+  if (!json.is_object() || !json.contains("springtower_recording") || json.at("springtower_recording") != kFormat)
+    throw InputError(where + ": this is no recording of the viewer");
   SceneChoice choice;
-  choice.name = json.at("scene").get<std::string>();
+  choice.name = text(json, "scene", where);
   if (json.contains("scene_bytes")) {
-    const auto bytes = json.at("scene_bytes").get<std::vector<std::uint8_t>>();
-    choice.name.assign(bytes.begin(), bytes.end());
+    const Json& bytes = json.at("scene_bytes");
+    if (!bytes.is_array() || bytes.size() > static_cast<std::size_t>(kMostBytes))
+      throw InputError(
+          fmt::format("{}: scene_bytes: found {}, allowed are up to {} whole numbers", where, shown(bytes), kMostBytes));
+    choice.name.clear();
+    for (const Json& byte : bytes)
+      choice.name += static_cast<char>(static_cast<unsigned char>(wholeNumberOf(byte, 255, where + ": scene_bytes")));
   }
-  choice.players = json.at("players").get<int>();
-  choice.options.heightsSigma_m = maybe<double>(json, "heights_sigma_m");
-  choice.options.massSigma_kg = maybe<double>(json, "mass_sigma_kg");
-  choice.options.seed = maybe<std::uint64_t>(json, "seed");
-  choice.options.startGap_m = maybe<double>(json, "start_gap_m");
+  choice.players = static_cast<int>(wholeNumber(json, "players", kMaxPlayers, where));
+  readIfThere(json, "heights_sigma_m", kHeightsSigmaRange, where, choice.options.heightsSigma_m);
+  readIfThere(json, "mass_sigma_kg", kMassSigmaRange, where, choice.options.massSigma_kg);
+  if (json.contains("seed")) choice.options.seed = static_cast<std::uint64_t>(wholeNumber(json, "seed", kMostWhole, where));
+  readIfThere(json, "start_gap_m", kStartGapRange, where, choice.options.startGap_m);
   return choice;
 }
 
@@ -116,6 +186,23 @@ std::string frameLine(const std::vector<LoggedFrame>& frames, std::size_t i) {
   if (i == 0 || !(frames[i - 1].input.tuning == frame.input.tuning)) line["tuning"] = json(frame.input.tuning);
   if (frame.input.hand.block != kFloor) line["hand"] = json(frame.input.hand);
   return jsonText(line) + '\n';
+}
+
+// As the header of a recording has it. Throws InputError naming where it stands.
+Scene sceneOf(const SceneChoice& choice, const std::string& where) {
+  try {
+    return sceneOf(choice);
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: scene: {}", where, error.what()));
+  }
+}
+
+LoggedFrame frameFrom(const Json& line, const Scene& scene, const Tuning& before, const std::string& where) {
+  LoggedFrame frame;
+  frame.hash = hashFrom(text(line, "hash", where), where);
+  frame.input.tuning = line.contains("tuning") ? tuningFrom(line.at("tuning"), where) : before;
+  if (line.contains("hand")) frame.input.hand = handFrom(line.at("hand"), scene, where);
+  return frame;
 }
 
 }  // namespace
@@ -168,31 +255,25 @@ void RecordingWriter::finish(const SceneChoice& choice, Session& session) {
 }
 
 Recording readRecording(const std::string& path) {
-  std::ifstream stream(path);
-  if (!stream) throw InputError(fmt::format("{}: cannot be read", inQuotes(path)));
+  LineInput input(path);
   Recording recording;
-  std::size_t number = 0;
-  std::size_t blocks = 0;
+  std::optional<Scene> scene;
   Tuning tuning;
-  for (std::string text; std::getline(stream, text);) {
-    ++number;
-    const std::string where = fmt::format("{}, line {}", onOneLine(path), number);
+  for (std::string text; input.next(text);) {
+    const std::string where = input.where();
     try {
       const Json line = Json::parse(text);
-      if (number == 1) {
+      if (!scene) {
         recording.choice = choiceFrom(line, where);
-        blocks = sceneOf(recording.choice).blocks.size();
+        scene = sceneOf(recording.choice, where);
+        tuning = tuningOf(*scene);
         continue;
       }
-      if (line.contains("tuning")) tuning = tuningFrom(line.at("tuning"), where);
-      LoggedFrame frame;
-      frame.input.tuning = tuning;
-      frame.hash = hashFrom(line.at("hash").get<std::string>(), where);
-      if (line.contains("hand")) frame.input.hand = handFrom(line.at("hand"), blocks, where);
-      recording.frames.push_back(frame);
+      recording.frames.push_back(frameFrom(line, *scene, tuning, where));
+      tuning = recording.frames.back().input.tuning;
     } catch (const Json::parse_error& error) {
       // No end of line, and JSON that lacks its end: the text stops where it was last written.
-      const bool brokenOff = stream.eof() && number > 1 && error.byte > text.size();
+      const bool brokenOff = input.endedWithFile() && scene && error.byte > text.size();
       if (!brokenOff) throw InputError(fmt::format("{}: {}", where, onOneLine(error.what())));
       recording.missing =
           fmt::format("{}: the line is cut off; the {} frames before it are played", where, recording.frames.size());
@@ -200,7 +281,7 @@ Recording readRecording(const std::string& path) {
       throw InputError(fmt::format("{}: {}", where, onOneLine(error.what())));
     }
   }
-  if (number == 0) throw InputError(fmt::format("{}: found an empty file, allowed is a recording", inQuotes(path)));
+  if (!scene) throw InputError(fmt::format("{}: found an empty file, allowed is a recording", onOneLine(path)));
   return recording;
 }
 

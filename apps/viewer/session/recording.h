@@ -59,13 +59,15 @@ class RecordingWriter {
 };
 
 /// Reads one. Of a file that was broken off in the middle of a line, as a process that is killed leaves it, the whole lines are
-/// read, and `missing` says so. Throws InputError naming the file and the line.
+/// read, and `missing` says so. Throws InputError naming the file, the line and the key, what was found and what is allowed:
+/// every number is within the limits of what it sets, blocks are the scene's and may move, orientations are unit quaternions.
 Recording readRecording(const std::string& path);
 
 /// Steps a session through a recording, frame by frame.
 struct Replay {
   Recording recording;
   std::optional<std::uint64_t> differs;  ///< the first frame (from 1, as the session counts) whose state was another
+  std::string refused = {};              ///< why its next frame cannot be played; empty while it can
 };
 
 /// The input of the session's next frame, or empty at the recording's end.

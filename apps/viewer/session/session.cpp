@@ -3,17 +3,17 @@
 #include "core/error.h"
 #include "solver/frame/inputs.h"
 #include "solver/frame/prepare.h"
+#include "solver/world/memory_use.h"
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 
 namespace springtower {
 namespace {
 
-constexpr std::uint64_t kKeyEvery = 30;    // frames between keyframes
-constexpr std::uint64_t kKeyDense = 1800;  // of the last frames that keep all of theirs
-constexpr std::uint64_t kKeySparse = 180;  // frames between keyframes before
+constexpr std::uint64_t kKeyEvery = 30;  // frames between keyframes
 constexpr double kPictureTime_s = 0.1;
 constexpr double kPaceMemory_s = 1.0;
 constexpr double kKept = 0.95;
@@ -41,17 +41,34 @@ void tune(Session& session, const Tuning& tuning) {
   session.tuning = tuning;
 }
 
-void keep(Session& session, bool turnStart) {
-  // After going back, frames that have their keyframe already are stepped again.
-  if (!session.keyframes.empty() && session.keyframes.back().frame >= session.frame) {
-    if (session.keyframes.back().frame == session.frame && turnStart) session.keyframes.back().turnStart = true;
-    return;
+// Removes the keyframe whose neighbours are nearest to each other, over how long ago they were, until all fit into their bytes.
+void thinOut(Session& session) {
+  std::deque<Keyframe>& keys = session.keyframes;
+  std::size_t bytes = 0;
+  for (const Keyframe& key : keys) bytes += key.bytes;
+  while (bytes > kKeyframeBytes && keys.size() > kLeastKeyframes) {
+    std::size_t best = 1;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 1; i + 1 < keys.size(); ++i) {
+      const auto gap = static_cast<double>(keys[i + 1].frame - keys[i - 1].frame);
+      const double share = gap / static_cast<double>(session.frame - keys[i - 1].frame);
+      if (share >= least) continue;
+      least = share;
+      best = i;
+    }
+    bytes -= keys[best].bytes;
+    keys.erase(keys.begin() + static_cast<std::ptrdiff_t>(best));
   }
+}
+
+void keep(Session& session) {
+  // After going back, frames that have their keyframe already are stepped again.
+  if (!session.keyframes.empty() && session.keyframes.back().frame >= session.frame) return;
+  // A snapshot is a part of what the simulation holds.
+  const std::size_t bytes = memoryUse(session.simulation).total();
   session.keyframes.push_back(
-      {session.frame, session.tuning, session.grip, session.game, turnStart, takeSnapshot(session.simulation)});
-  std::erase_if(session.keyframes, [&](const Keyframe& key) {
-    return !key.turnStart && key.frame + kKeyDense < session.frame && key.frame % kKeySparse != 0;
-  });
+      {session.frame, session.tuning, session.grip, session.game, bytes, takeSnapshot(session.simulation)});
+  thinOut(session);
 }
 
 // One frame of physics and game, without the past.
@@ -75,7 +92,8 @@ void advance(Session& session, const FrameInput& input) {
   ++session.frame;
   const bool turnEnded = followGame(session.game, simulation, held, session.frame);
   session.frame_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-  if (turnEnded || session.frame % kKeyEvery == 0) keep(session, turnEnded);
+  if (turnEnded && session.turns.back() < session.frame) session.turns.push_back(session.frame);
+  if (turnEnded || session.frame % kKeyEvery == 0) keep(session);
 }
 
 // The last keyframe at or before a frame; the first one is of frame 0.
@@ -106,8 +124,9 @@ Session::Session(const Scene& given, int players)
       simulation(withTuning(given, tuning)),
       before(simulation.state.position),
       contacts(contactForces(simulation)),
-      game(newGame(simulation, players, 0)) {
-  keep(*this, true);
+      game(newGame(simulation, players, 0)),
+      turns{0} {
+  keep(*this);
 }
 
 Tuning tuningOf(const Scene& scene) {
@@ -133,6 +152,7 @@ Scene withTuning(Scene scene, const Tuning& tuning) {
 void step(Session& session, const FrameInput& input) {
   if (!session.failure.empty()) return;
   while (session.keyframes.back().frame > session.frame) session.keyframes.pop_back();
+  while (session.turns.back() > session.frame) session.turns.pop_back();
   try {
     advance(session, input);
   } catch (const DivergenceError& error) {
@@ -157,10 +177,9 @@ std::optional<std::uint64_t> undoFrame(const Session& session) {
   if (game.players == 0) return {};
   const bool begun = game.phase != Phase::choose;
   if (begun) return game.turnFrame;
-  for (auto key = session.keyframes.rbegin(); key != session.keyframes.rend(); ++key) {
-    if (key->turnStart && key->frame < game.turnFrame && key->game.players > 0) return key->frame;
-  }
-  return {};
+  const auto thisTurn = std::lower_bound(session.turns.begin(), session.turns.end(), game.turnFrame);
+  if (thisTurn == session.turns.begin()) return {};
+  return *(thisTurn - 1);
 }
 
 void between(const Session& session, double share, ParticleArray& position) {

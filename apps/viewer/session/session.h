@@ -4,6 +4,7 @@
 #include "solver/hand/grip.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <memory>
@@ -40,9 +41,14 @@ struct Keyframe {
   Tuning tuning;
   Grip grip;
   Game game;
-  bool turnStart = false;  ///< the first state of a turn of the game; never thinned out
+  std::size_t bytes = 0;  ///< of its snapshot, at most
   std::shared_ptr<const Snapshot> snapshot;
 };
+
+/// The most that all keyframes take together, bytes, but for kLeastKeyframes that are kept whatever their size. Where it is
+/// reached they are thinned out, the older they are the more, so that going back takes frames in proportion to how far it is.
+inline constexpr std::size_t kKeyframeBytes = std::size_t{64} << 20U;
+inline constexpr std::size_t kLeastKeyframes = 8;
 
 /// A running scene with its past. Frame by frame it is a function of the scene and the inputs alone, so going back is to restore
 /// the last keyframe before and to step the logged inputs again; undo, history, recording and replay all are that.
@@ -59,11 +65,12 @@ struct Session {
   GripForce gripForce;  ///< of the last frame
   Hold hold = Hold::none;
   Game game;
-  std::vector<LoggedFrame> log;    ///< [frame]; longer than `frame` after going back
-  std::uint64_t logKept = 0;       ///< so many of its frames are as they were when this was last set: by who writes it down
-  std::deque<Keyframe> keyframes;  ///< ascending
-  double frame_ms = 0.0;           ///< what the last frame took
-  std::string failure;             ///< why the simulation ended; empty while it goes on
+  std::vector<LoggedFrame> log;      ///< [frame]; longer than `frame` after going back
+  std::uint64_t logKept = 0;         ///< so many of its frames are as they were when this was last set: by who writes it down
+  std::deque<Keyframe> keyframes;    ///< ascending; the first is of frame 0
+  std::vector<std::uint64_t> turns;  ///< frames in which turns of the game began, ascending; the first is 0
+  double frame_ms = 0.0;             ///< what the last frame took
+  std::string failure;               ///< why the simulation ended; empty while it goes on
 };
 
 /// The tuning that a scene starts with.

@@ -52,6 +52,10 @@ void stepOnce(Viewer& viewer) {
     step(session, input);
   } catch (const InputError& error) {  // a tuning that does not fit the scene
     viewer.message = error.what();
+    if (viewer.replay) {
+      viewer.replay->refused = fmt::format("frame {} of the recording cannot be played: {}", session.frame + 1, error.what());
+      viewer.message = viewer.replay->refused;
+    }
     viewer.tuning = session.tuning;
     viewer.paused = true;
     return;
@@ -196,6 +200,7 @@ void writeViewerReport(std::ostream& stream, const Viewer& viewer) {
                  {"field_of_view", camera.fieldOfView}}},
                {"state_hash", fmt::format("{:016x}", stateHash(session.simulation))}};
   json["replay_differs_in_frame"] = viewer.replay && viewer.replay->differs ? Json(*viewer.replay->differs) : Json(nullptr);
+  json["replay_refused"] = viewer.replay && !viewer.replay->refused.empty() ? Json(viewer.replay->refused) : Json(nullptr);
   stream << jsonText(json, 2) << '\n';
 }
 

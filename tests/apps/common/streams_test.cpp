@@ -66,6 +66,26 @@ TEST(Streams, AClosedOneIsNotMistakenForAFile) {
   EXPECT_TRUE(Json::accept(contentOf(scratch.file("r"))));
 }
 
+TEST(Streams, AClosedInputIsNoEmptyList) {
+  RunningProgram verdict("springtower", {"verdict", "-"}, {.input = std::string(kClosed)});
+  const ProgramResult result = verdict.wait();
+  EXPECT_EQ(result.exitCode, 2);
+  EXPECT_THAT(result.error, ::testing::HasSubstr("standard input: cannot be read"));
+}
+
+// /dev/full takes what is written to it as a full disk does.
+TEST(Streams, AFullDiskIsNamedWithTheFileThatFoundItSo) {
+  const ScratchFolder scratch;
+  const std::string picture = scratch.file("a.png");
+  std::filesystem::create_symlink(kFull, picture);
+  for (const auto& [option, file] :
+       {std::pair<std::string, std::string>{"--picture", picture}, {"--report", kFull}, {"--poses", kFull}}) {
+    const ProgramResult result = runProgram("springtower", {"run", "(010)", "--seconds", "0.1", option, file});
+    EXPECT_EQ(result.exitCode, 2);
+    EXPECT_THAT(result.error, ::testing::HasSubstr(option + ": cannot write '" + file + "': writing failed"));
+  }
+}
+
 TEST(Streams, NamesThatAreNoTextAreNamesAllTheSame) {
   const ScratchFolder scratch;
   const std::string scene = scratch.file("bad\xff.toml");

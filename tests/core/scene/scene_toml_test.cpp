@@ -242,6 +242,16 @@ TEST(SceneFile, FixesAndDrivesBlocks) {
                   testing::HasSubstr("force 0: block: found block 0, which is fixed, allowed is a block that moves")));
 }
 
+// toml++ has no double for them, and what it gave instead was read all the same.
+TEST(BadSceneFile, WholeNumbersThatNoDoubleIsAreNumbersOutOfRange) {
+  for (const std::string number : {"9007199254740993", "15027880428509895", "-9223372036854775807"}) {
+    EXPECT_THAT(
+        [&] { fromText("[[block]]\ncentre_m = [0, 0, 1]\nrotation_deg = [0, " + number + ", 0]\n"); },
+        testing::ThrowsMessage<InputError>(testing::HasSubstr("rotation_deg[1]: found " + number + ", allowed -360 to 360")))
+        << number;
+  }
+}
+
 TEST(BadSceneFile, UnknownSettingListsTheKnownOnes) {
   const std::string path = kData + "unknown_setting.toml";
   std::string known = "method, inertia, sleep";

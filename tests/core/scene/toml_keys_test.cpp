@@ -1,6 +1,7 @@
 #include "core/scene/toml_keys.h"
 
 #include "core/error.h"
+#include "core/processor_time.h"
 #include "core/scene/scene.h"
 #include "tests/support/program.h"
 
@@ -94,6 +95,22 @@ TEST(LongKeys, AreNoneWhereDotsMakeNoKey) {
   }
   EXPECT_EQ(complaintAbout("x = [1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0]\n"), "none");
   EXPECT_EQ(complaintAbout(""), "none");
+}
+
+// toml++ takes more than ten seconds of processor time to find out what is wrong with so much.
+TEST(LongKeys, OfOneHugeWordTextOrLineAreRefusedFast) {
+  constexpr std::size_t kHuge = std::size_t{128} << 20U;
+  const double begin_s = processorTime_s();
+  EXPECT_THAT(complaintOfTheReader(std::string(kHuge, 'a')), HasSubstr(":1:1: found a line of more than 16 MB, 'aaaa"));
+  EXPECT_LT(processorTime_s() - begin_s, 4.0) << "most of it for the file itself";
+  EXPECT_THAT(complaintOfTheReader("x = 1\n  " + std::string(1001, 'a') + " = 1"),
+              HasSubstr(":2:3: found a word of more than 1000 characters, 'aaaa"));
+  EXPECT_THAT(complaintOfTheReader("x = " + std::string(2000, '1')), HasSubstr(":1:5: found a word of more than 1000"));
+  EXPECT_THAT(complaintOfTheReader("name = \"" + std::string(2 << 20, 'a') + "\"\n"),
+              HasSubstr(":1:8: found a text of more than 1 MB, '\"aaaa"));
+  EXPECT_THAT(complaintOfTheReader("# " + std::string(17 << 20, 'a') + "\n"), HasSubstr("found a line of more than 16 MB"));
+  EXPECT_EQ(complaintAbout("# " + std::string(2 << 20, 'a') + "\nname = '" + std::string(1 << 19, 'a') + "'\n"), "none");
+  EXPECT_EQ(complaintAbout(std::string(1000, 'a') + "." + std::string(1000, 'a') + " = 1"), "none");
 }
 
 // The deepest that passes: a header, and in it inline tables, as many as toml++ allows within each other.

@@ -206,6 +206,32 @@ struct Sampled {
   std::optional<double> meetUntil;  ///< the features certainly touch no later than this
 };
 
+// Each of the 24 coordinates, of queries that miss by their boxes, by their cubic, by the refinement and of one that hits.
+TEST(TimeOfImpact, WhatIsNotFiniteIsAHitWhateverElseThereIs) {
+  const std::array<std::array<MovingPoint, 4>, 5> queries = {
+      {{still(0.25, 0.25, 5), still(0, 0, 0), still(1, 0, 0), still(0, 1, 0)},
+       {moving({0.25, 0.25, 1}, {0.25, 0.25, 0.5}), still(0, 0, 0), still(1, 0, 1), still(0, 1, 0)},
+       {moving({0.9, 0.9, 1}, {0.9, 0.9, -1}), still(0, 0, 0), still(1, 0, 0), still(0, 1, 0)},
+       {moving({0.25, 0.25, 1}, {0.25, 0.25, -1}), still(0, 0, 0), still(1, 0, 0), still(0, 1, 0)},
+       {still(0, 0, 0), still(0, 0, 0), still(0, 0, 0), still(0, 0, 0)}}};
+  const double infinity = std::numeric_limits<double>::infinity();
+  for (const std::array<MovingPoint, 4>& query : queries) {
+    for (std::size_t coordinate = 0; coordinate < 24; ++coordinate) {
+      for (const double bad : {std::nan(""), -std::nan(""), infinity, -infinity}) {
+        std::array<MovingPoint, 4> broken = query;
+        MovingPoint& point = broken[coordinate / 6];
+        const auto axis = static_cast<Eigen::Index>(coordinate % 3);
+        (coordinate % 6 < 3 ? point.start : point.end)[axis] = bad;
+        const auto& [a, b, c, d] = broken;
+        for (const TimeOfImpact& found : {pointTriangleTimeOfImpact(a, b, c, d), edgeEdgeTimeOfImpact(a, b, c, d)}) {
+          EXPECT_TRUE(found.hit) << coordinate << ", " << bad;
+          EXPECT_EQ(found.time, 0.0) << coordinate << ", " << bad;
+        }
+      }
+    }
+  }
+}
+
 /// The determinant of the corners, whether the origin lies well inside their polygon seen along its normal, and the polygon's
 /// smallest height.
 struct FeatureCrossing {

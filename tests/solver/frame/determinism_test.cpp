@@ -181,12 +181,12 @@ struct Resting {
 class RestingTest : public ::testing::TestWithParam<Resting> {};
 
 // A scene at rest is stepped implicitly in every frame, while gravity sways it twice a second: too little to open contacts,
-// enough to bend it.
+// enough to bend it. (At 0.1 degrees two of the towers that touch meet at speed in a frame of 40: impulses are for that.)
 TEST_P(RestingTest, ALargeIslandIsTheSameOnAnyThreads) {
   Scene scene = GetParam().scene;
   ASSERT_EQ(scene.settings.method, Method::implicit);
   scene.settings.sleep = Sleep::off;
-  scene.gravity.sway_deg = 0.1;
+  scene.gravity.sway_deg = 0.07;
   scene.gravity.sway_hz = 2.0;
   const Counters counters = sameInOneLargeIsland(scene, GetParam().frames);
   EXPECT_GE(counters.implicitSteps, counters.frames);

@@ -3,6 +3,7 @@
 
 #include "core/error.h"
 #include "scenarios/loose.h"
+#include "solver/hand/grip.h"
 #include "tests/support/block_scenes.h"
 #include "tests/support/prepare_and_step.h"
 
@@ -21,6 +22,18 @@ using testing::ThrowsMessage;
 double laggingSpeed(const Simulation& simulation, double force_n) {
   const double step_s = simulation.scene.settings.frame_s / simulation.substeps;
   return 0.5 * step_s * force_n / simulation.model.mass[0] * (1.0 + 1e-9);
+}
+
+// A number beyond the blocks would be a write beyond their arrays.
+TEST(Inputs, BlocksThatAreNotThereAreRefused) {
+  Simulation simulation(oneBlockScene(false));
+  for (const std::size_t block : {std::size_t{1}, std::numeric_limits<std::size_t>::max()}) {
+    const auto message = ThrowsMessage<InputError>(HasSubstr("allowed are those of the scene, from 0 to 0"));
+    EXPECT_THAT([&] { kick(simulation, block, Vec3::UnitX()); }, message);
+    EXPECT_THAT([&] { forceForOneFrame(simulation, block, Vec3::UnitX()); }, message);
+    EXPECT_THAT([&] { handOn(simulation, blockId(block)); }, message);
+    EXPECT_THAT([&] { drawingFrom(simulation, blockId(block), Vec3::UnitX(), 0.04); }, message);
+  }
 }
 
 TEST(Inputs, AForceForOneFrameActsInThatFrameAlone) {

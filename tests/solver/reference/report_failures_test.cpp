@@ -125,32 +125,34 @@ TEST(ReportFailure, SoftSpringsSquashAFullTower) {
 }
 
 // "All collisions are guaranteed to be solved within just a couple of iterations" (report 6.2.2 and its abstract). They are in
-// most steps, but not in all: when a tower of four rows is released, all steps of a frame take more than ten passes each. The
-// default method does not resolve collisions one by one: all contact forces of an island are in one system of equations, which is
-// solved a couple of times in every step here.
+// most steps, but not in all: when some towers of four to eight rows are released (which ones is a matter of rounding), all steps
+// of a frame take more than ten passes each. The default method does not resolve collisions one by one: all contact forces of an
+// island are in one system of equations, which is solved a couple of times in every step here.
 TEST(ReportFailure, CollisionsTakeMoreThanACoupleOfIterations) {
-  Scene scene = towerScene(4);
-  scene.settings.sleep = Sleep::off;
-  Scene passes = asReported(scene);
-  passes.settings.reportIterations = 1000;
-  Simulation reported(passes);
-  Simulation ours(scene);
   double most = 0.0;
-  double mostOfOurs = 0.0;
-  for (int frame = 0; frame < 60; ++frame) {
-    const Counters before = reported.counters;
-    prepareAndStep(reported);
-    most = std::max(most, static_cast<double>(reported.counters.responseIterations - before.responseIterations) /
-                              static_cast<double>(reported.counters.steps - before.steps));
-    const Counters ourBefore = ours.counters;
-    prepareAndStep(ours);
-    ASSERT_GT(ours.counters.implicitSteps, ourBefore.implicitSteps);
-    mostOfOurs = std::max(mostOfOurs, static_cast<double>(ours.counters.implicitIterations - ourBefore.implicitIterations) /
-                                          static_cast<double>(ours.counters.implicitSteps - ourBefore.implicitSteps));
+  for (const int rows : {4, 5, 6, 8}) {
+    Scene scene = towerScene(rows);
+    scene.settings.sleep = Sleep::off;
+    Scene passes = asReported(scene);
+    passes.settings.reportIterations = 1000;
+    Simulation reported(passes);
+    Simulation ours(scene);
+    double mostOfOurs = 0.0;
+    for (int frame = 0; frame < 60; ++frame) {
+      const Counters before = reported.counters;
+      prepareAndStep(reported);
+      most = std::max(most, static_cast<double>(reported.counters.responseIterations - before.responseIterations) /
+                                static_cast<double>(reported.counters.steps - before.steps));
+      const Counters ourBefore = ours.counters;
+      prepareAndStep(ours);
+      ASSERT_GT(ours.counters.implicitSteps, ourBefore.implicitSteps);
+      mostOfOurs = std::max(mostOfOurs, static_cast<double>(ours.counters.implicitIterations - ourBefore.implicitIterations) /
+                                            static_cast<double>(ours.counters.implicitSteps - ourBefore.implicitSteps));
+    }
+    EXPECT_LT(mostOfOurs, 3.0);
+    EXPECT_EQ(ours.counters.newtonFailures, 0U) << "a step that did not converge";
   }
   EXPECT_GT(most, 10.0);
-  EXPECT_LT(mostOfOurs, 3.0);
-  EXPECT_EQ(ours.counters.newtonFailures, 0U) << "a step that did not converge";
 }
 
 // Largest horizontal displacement of the blocks of the top row, m.

@@ -186,6 +186,33 @@ TEST(RunScene, MeasuresWhatItsCallbackSees) {
   }
 }
 
+// In space at rest there is no energy at the start; the force puts some in, by which its rise is measured.
+TEST(RunScene, EnergyThatIsPutInIsWhatItsRiseIsOver) {
+  Scene scene = blockAt(1.0);
+  scene.floor = false;
+  scene.gravity.magnitude = 0.0;
+  scene.forces.push_back({0, -1, Vec3(0.1, 0.0, 0.0), 0.0, 1.0});
+  Simulation simulation(scene);
+  RunOptions options;
+  options.seconds = 1.0;
+  const RunResult result = runScene(simulation, options);
+  EXPECT_LT(result.energyStart.total(), 1e-20) << "rounding of the blocks' springs";
+  ASSERT_TRUE(result.maxEnergyRise);
+  EXPECT_NEAR(*result.maxEnergyRise, 2.0 / 60.0, 2e-3) << "t^2 rises most at its end";
+}
+
+// What falls past the floor's height has a total energy that may be zero: motion and potential cancel.
+TEST(RunScene, EnergyIsNoneOfItsMagnitudeWhereItsPartsCancel) {
+  Scene scene = blockAt(-0.5 * kBlockHeight_m);
+  scene.floor = false;
+  Simulation simulation(scene);
+  RunOptions options;
+  options.seconds = 1.0;
+  const RunResult result = runScene(simulation, options);
+  ASSERT_TRUE(result.maxEnergyRise);
+  EXPECT_LT(*result.maxEnergyRise, 1e-9);
+}
+
 TEST(RunScene, MeasuresTheEndOnlyWhenAskedTo) {
   Simulation every(towerScene(2));
   Simulation end(towerScene(2));

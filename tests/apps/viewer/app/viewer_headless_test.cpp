@@ -112,6 +112,30 @@ TEST(ViewerHeadless, SaysThatFfmpegIsMissing) {
   EXPECT_THAT(result.error, HasSubstr("ffmpeg is not installed"));
 }
 
+// A tolerance that no scene may have, and one that this scene cannot be stepped with: two steps a frame are fine with the
+// implicit method of its file, but not with the explicit one of the recording.
+TEST(ViewerHeadless, ARecordingThatCannotBePlayedSaysSoAndFails) {
+  const ScratchFolder scratch;
+  const std::string scene = scratch.file("scene.toml");
+  const std::string recording = scratch.file("r.jsonl");
+  std::ofstream(scene) << "[[block]]\ncentre_m = [0, 0, 0.0091]\n[settings]\ntolerance_m = 1e-5\nsubsteps = 2\n";
+  const auto write = [&](const std::string& tolerance_m) {
+    std::ofstream(recording) << R"({"springtower_recording":1,"scene":")" << scene << R"(","players":0})" << '\n'
+                             << R"({"hash":"aa","tuning":{"method":"semi-implicit-euler","sleep":"on","tolerance_m":)"
+                             << tolerance_m << R"(,"friction":0.4}})" << '\n';
+  };
+  write("-1");
+  const ProgramResult bad = runProgram("springtower-viewer", {"--headless", "--replay", recording});
+  EXPECT_EQ(bad.exitCode, 2);
+  EXPECT_THAT(bad.error, HasSubstr("r.jsonl, line 2: tolerance_m: found -1, allowed"));
+  write("1e-5");
+  const std::string report = scratch.file("report.json");
+  const ProgramResult refused = runProgram("springtower-viewer", {"--headless", "--replay", recording, "--report", report});
+  EXPECT_EQ(refused.exitCode, 2);
+  EXPECT_THAT(refused.error, HasSubstr("frame 1 of the recording cannot be played: settings: found tolerance_m = 1e-05 with"));
+  EXPECT_THAT(nlohmann::json::parse(contentOf(report)).at("replay_refused").get<std::string>(), HasSubstr("cannot be played"));
+}
+
 TEST(ViewerHeadless, AReplayThatDiffersNamesTheFrame) {
   const ScratchFolder scratch;
   const std::string recording = scratch.file("r.jsonl");

@@ -1,0 +1,127 @@
+#include "core/byte_stream.h"
+
+#include "core/error.h"
+#include "core/hash.h"
+#include "core/version.h"
+
+#include <fmt/format.h>
+#include <fstream>
+#include <iterator>
+
+namespace springtower {
+namespace {
+
+// Changes with whatever is written or read otherwise.
+constexpr std::uint32_t kFormat = 1;
+
+constexpr std::size_t kLetters = 16;
+
+struct Kind {
+  std::string_view letters;  // the first of the file
+  std::string_view name;
+  std::string_view origin;
+};
+constexpr std::array<Kind, 2> kKinds = {
+    {{"springtower-run\n", "saved run", "springtower run --save"}, {"springtower-wld\n", "world's snapshot", "Snapshot::bytes"}}};
+static_assert(kKinds[0].letters.size() == kLetters && kKinds[1].letters.size() == kLetters);
+
+const Kind& kindOf(SealKind kind) {
+  return kKinds[static_cast<std::size_t>(kind)];
+}
+
+std::uint64_t checksumOf(std::string_view bytes) {
+  Hash hash;
+  hash.bytes(bytes.data(), bytes.size());
+  return hash.value();
+}
+
+[[noreturn]] void refuseSeal(std::string_view source, std::string_view found, std::string_view allowed) {
+  throw InputError(fmt::format("{}: found {}, allowed is {}", source, found, allowed));
+}
+
+void checkLetters(SealKind kind, std::string_view bytes, std::string_view source) {
+  const Kind& expected = kindOf(kind);
+  const std::string allowed = fmt::format("a {}, as {} writes it", expected.name, expected.origin);
+  if (bytes.starts_with(expected.letters)) return;
+  if (bytes.empty()) refuseSeal(source, "nothing", allowed);
+  for (const Kind& other : kKinds) {
+    if (bytes.starts_with(other.letters)) refuseSeal(source, fmt::format("a {}", other.name), allowed);
+    if (other.letters.starts_with(bytes)) refuseSeal(source, "a beginning that is cut off", allowed);
+  }
+  refuseSeal(source, "another kind of file", allowed);
+}
+
+}  // namespace
+
+void ByteReader::raw(void* into, std::size_t size) {
+  if (size > left_.size()) refuse("an end before all was read", "a file that is whole");
+  std::memcpy(into, left_.data(), size);
+  left_.remove_prefix(size);
+}
+
+std::size_t ByteReader::count() {
+  std::uint64_t size = 0;
+  raw(&size, sizeof size);
+  if (size > left_.size()) refuse(fmt::format("a list of {}", size), fmt::format("one that fits in {} bytes", left_.size()));
+  return size;
+}
+
+void ByteReader::refuse(std::string_view found, std::string_view allowed) const {
+  refuseSeal(source_, found, allowed);
+}
+
+void ByteReader::end() const {
+  if (!left_.empty()) refuse(fmt::format("{} bytes behind the end", left_.size()), "none");
+}
+
+std::string sealed(SealKind kind, std::string_view payload) {
+  ByteWriter writer;
+  writer.raw(kindOf(kind).letters.data(), kLetters);
+  writer(kFormat, std::string(kVersion), std::string(kGitCommit), static_cast<std::uint64_t>(payload.size()));
+  writer.raw(payload.data(), payload.size());
+  writer(checksumOf(writer.bytes()));
+  return writer.bytes();
+}
+
+Unsealed unsealed(SealKind kind, std::string_view bytes, std::string_view source) {
+  checkLetters(kind, bytes, source);
+  ByteReader reader(bytes.substr(kLetters), source);
+  std::uint32_t format = 0;
+  reader(format);
+  if (format != kFormat) refuseSeal(source, fmt::format("format {}", format), fmt::format("{}", kFormat));
+  std::string version;
+  Unsealed result;
+  std::uint64_t size = 0;
+  reader(version, result.commit, size);
+  // Counted as it was written: letters, format, two texts with their lengths, length.
+  const std::uint64_t head = kLetters + sizeof format + 3 * sizeof size + version.size() + result.commit.size();
+  constexpr std::uint64_t kChecksumBytes = sizeof(std::uint64_t);
+  const std::uint64_t room = bytes.size() - head;
+  if (room < kChecksumBytes || size > room - kChecksumBytes)
+    refuseSeal(source, fmt::format("{} bytes, cut off", bytes.size()), "a file that is whole");
+  if (size < room - kChecksumBytes)
+    refuseSeal(source, fmt::format("{} bytes behind the end", room - kChecksumBytes - size), "none");
+  std::uint64_t checksum = 0;
+  std::memcpy(&checksum, bytes.data() + head + size, sizeof checksum);
+  if (checksum != checksumOf(bytes.substr(0, head + size)))
+    refuseSeal(source, "other bytes than were written (their checksum differs)", "a file as it was written");
+  if (version != kVersion)
+    refuseSeal(source, fmt::format("one of version {}", version), fmt::format("one of version {}", kVersion));
+  result.payload = bytes.substr(head, size);
+  return result;
+}
+
+Unsealed unsealedFile(SealKind kind, const std::string& path, std::string_view source) {
+  std::ifstream file(path, std::ios::binary);
+  std::string bytes(kLetters, '\0');
+  if (file) file.read(bytes.data(), kLetters);
+  if (!file && file.gcount() == 0 && !file.eof())
+    refuseSeal(source, "no file that can be read", "one that springtower has written");
+  bytes.resize(static_cast<std::size_t>(file.gcount()));
+  checkLetters(kind, bytes, source);
+  bytes.append(std::istreambuf_iterator<char>(file), {});
+  if (file.bad()) refuseSeal(source, "a file that cannot be read to its end", "one that springtower has written");
+  return unsealed(kind, bytes, source);
+}
+
+}  // namespace springtower
