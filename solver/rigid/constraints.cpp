@@ -117,8 +117,7 @@ void moveGapsOf(const BodyMotion* moved, PackedPoints& packed, std::size_t first
     const PackedPair& pair = packed.pairs[i];
     PackMotion motion;
     gather(moved, pair, motion);
-    for (std::int32_t row = pair.first; row < pair.first + pair.rows; ++row) {
-      PackedPoint& p = packed.points[static_cast<std::size_t>(row)];
+    for (PackedPoint& p : pointsOf(packed, pair)) {
       LaneVector relative;
       relativeAt(motion, p, relative);
       Lanes opening;

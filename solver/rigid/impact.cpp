@@ -30,8 +30,7 @@ void setImpactsOf(const RigidIsland& island, const Vec3& gravity, double least, 
     gather(island.motions.data(), pair, motion);
     Lanes flying;
     for (int lane = 0; lane < kPackedPairs; ++lane) flying[lane] = -2.0 * (flies(pair.upper, lane) - flies(pair.lower, lane));
-    for (std::int32_t row = pair.first; row < pair.first + pair.rows; ++row) {
-      PackedPoint& p = packed.points[static_cast<std::size_t>(row)];
+    for (PackedPoint& p : pointsOf(packed, pair)) {
       LaneVector relative;
       relativeAt(motion, p, relative);
       Lanes opening, along, open, size, speed;
@@ -44,8 +43,7 @@ void setImpactsOf(const RigidIsland& island, const Vec3& gravity, double least, 
       squareRoot(meets ? squared : zero, speed);
       p.before = p.push;
       p.impact = speed;
-      p.rebound =
-          meets ? packed.places[static_cast<std::size_t>(row)].restitution * speed : zero + std::numeric_limits<double>::lowest();
+      p.rebound = meets ? pair.restitution * speed : zero + std::numeric_limits<double>::lowest();
     }
   }
 }
@@ -72,8 +70,7 @@ double fastestImpact(const RigidIsland& island) {
   for (const PackedPoints* packed : packsOf(island)) {
     for (const std::int32_t i : packed->active) {
       const PackedPair& pair = packed->pairs[static_cast<std::size_t>(i)];
-      for (std::int32_t row = pair.first; row < pair.first + pair.rows; ++row) {
-        const PackedPoint& p = packed->points[static_cast<std::size_t>(row)];
+      for (const PackedPoint& p : pointsOf(*packed, pair)) {
         for (int lane = 0; lane < kPackedPairs; ++lane)
           if (p.push[lane] > 0.0) fastest = std::max(fastest, p.impact[lane]);
       }
@@ -98,8 +95,7 @@ bool markPushedByPoints(const IslandStep& step, RigidIsland& island) {
     for (const std::int32_t i : packed->active) {
       const PackedPair& pair = packed->pairs[static_cast<std::size_t>(i)];
       Lanes most = zero;
-      for (std::int32_t row = pair.first; row < pair.first + pair.rows; ++row) {
-        PackedPoint& p = packed->points[static_cast<std::size_t>(row)];
+      for (PackedPoint& p : pointsOf(*packed, pair)) {
         const LaneMask pushes = p.push > zero;
         p.impact = pushes ? p.impact : zero;
         p.rebound = pushes ? p.rebound : zero + std::numeric_limits<double>::lowest();
@@ -158,8 +154,7 @@ namespace {
 
 // The impulses of one pair's points.
 void forgetPair(PackedPoints& packed, const PackedPair& pair, int lane, bool& met) {
-  for (std::int32_t row = pair.first; row < pair.first + pair.rows; ++row) {
-    PackedPoint& p = packed.points[static_cast<std::size_t>(row)];
+  for (PackedPoint& p : pointsOf(packed, pair)) {
     if (!(p.push[lane] > p.before[lane])) continue;
     met = true;
     const double left = p.before[lane] / p.push[lane];

@@ -10,7 +10,7 @@ namespace {
 
 // Where pairs come to lie in packs: those of a colour side by side, of these first the ones that push, with as many points.
 constexpr std::int32_t kMostPoints = static_cast<std::int32_t>(kMostNearPoints);
-constexpr std::int32_t kSharedColours = 64;  // those beyond are of one pair each
+constexpr int kSharedColours = 64;  // of each kind; pairs beyond have one of their own
 constexpr std::int32_t kKeysOfColour = 2 * (kMostPoints + 1);
 
 std::size_t packedRow(std::int32_t first, std::int32_t i) {
@@ -21,38 +21,53 @@ bool movesByImpulses(const RigidIsland& island, std::int32_t body) {
   return body != unmovedBody(island) && island.bodies[static_cast<std::size_t>(body)].inverseMass > 0.0;
 }
 
-// The first colour that neither body has; both have it then. Contacts with what does not move come last: what the others leave
-// must not push blocks into the floor. Where all colours are taken, one of its own.
-std::int32_t takeColour(const RigidIsland& island, const ContactConstraint& point,
-                        std::vector<std::array<std::uint64_t, 2>>& taken, std::int32_t& last) {
+// A pair's colour among those of its kind, in the order in which the kinds are solved: contacts with what does not move come
+// after all others, as what these leave must not push blocks into the floor. Where all colours are taken, a pair has one of its
+// own.
+enum class ColourKind : std::uint8_t { amongMoving, withUnmoved, own };
+struct Colour {
+  ColourKind kind = ColourKind::own;
+  std::int32_t number = 0;
+};
+
+// The first colour that neither body has; both have it then. `owns`: pairs so far that have one of their own.
+Colour takeColour(const RigidIsland& island, const ContactConstraint& point, std::vector<std::array<std::uint64_t, 2>>& taken,
+                  std::int32_t& owns) {
   const bool moves[2] = {movesByImpulses(island, point.upper), movesByImpulses(island, point.lower)};
-  const std::size_t kind = moves[0] && moves[1] ? 0 : 1;
+  const ColourKind kind = moves[0] && moves[1] ? ColourKind::amongMoving : ColourKind::withUnmoved;
+  const auto k = static_cast<std::size_t>(kind);
   std::uint64_t colours = 0;
-  if (moves[0]) colours |= taken[static_cast<std::size_t>(point.upper)][kind];
-  if (moves[1]) colours |= taken[static_cast<std::size_t>(point.lower)][kind];
+  if (moves[0]) colours |= taken[static_cast<std::size_t>(point.upper)][k];
+  if (moves[1]) colours |= taken[static_cast<std::size_t>(point.lower)][k];
   const int colour = std::countr_one(colours);
-  if (colour == kSharedColours) return ++last;
-  if (moves[0]) taken[static_cast<std::size_t>(point.upper)][kind] |= std::uint64_t{1} << colour;
-  if (moves[1]) taken[static_cast<std::size_t>(point.lower)][kind] |= std::uint64_t{1} << colour;
-  return static_cast<std::int32_t>(kind) * kSharedColours + colour;
+  if (colour == kSharedColours) return {ColourKind::own, owns++};
+  if (moves[0]) taken[static_cast<std::size_t>(point.upper)][k] |= std::uint64_t{1} << colour;
+  if (moves[1]) taken[static_cast<std::size_t>(point.lower)][k] |= std::uint64_t{1} << colour;
+  return {kind, colour};
 }
 
-// Sorts the groups that have points by key, and counts the colours' keys.
+// Sorts the groups that have points by colour, then by what is side by side.
 void sortGroups(const RigidIsland& island, const PointList& list, PackedPoints& packed) {
   packed.taken.assign(island.bodies.size(), {0, 0});
-  std::int32_t colours = 2 * kSharedColours - 1;
-  packed.key.resize(list.groups.size());
-  std::int32_t last = -1;
+  packed.key.assign(list.groups.size(), -1);
+  packed.kind.resize(list.groups.size());
+  std::array<std::int32_t, 3> colours{};  // of each kind
+  std::int32_t owns = 0;
   for (std::size_t g = 0; g < list.groups.size(); ++g) {
     const PointGroup& group = list.groups[g];
-    packed.key[g] = -1;
     if (group.count == 0) continue;
     const auto first = list.points.begin() + group.first;
-    const std::int32_t colour = takeColour(island, *first, packed.taken, colours);
+    const Colour colour = takeColour(island, *first, packed.taken, owns);
     const bool idle = std::all_of(first, first + group.count, [](const ContactConstraint& p) { return p.idle; });
-    packed.key[g] = colour * kKeysOfColour + (idle ? kMostPoints + 1 : 0) + kMostPoints - group.count;
-    last = std::max(last, packed.key[g]);
+    packed.kind[g] = static_cast<std::uint8_t>(colour.kind);
+    packed.key[g] = colour.number * kKeysOfColour + (idle ? kMostPoints + 1 : 0) + kMostPoints - group.count;
+    colours[packed.kind[g]] = std::max(colours[packed.kind[g]], colour.number + 1);
   }
+  const std::array<std::int32_t, 3> before = {0, colours[0], colours[0] + colours[1]};
+  for (std::size_t g = 0; g < list.groups.size(); ++g) {
+    if (packed.key[g] >= 0) packed.key[g] += before[packed.kind[g]] * kKeysOfColour;
+  }
+  const std::int32_t last = (before[2] + colours[2]) * kKeysOfColour - 1;
   packed.keyStart.assign(static_cast<std::size_t>(last) + 2, 0);
   for (const std::int32_t key : packed.key) {
     if (key >= 0) ++packed.keyStart[static_cast<std::size_t>(key) + 1];
@@ -75,7 +90,7 @@ void clearPack(const RigidIsland& island, PackedPair& pair) {
   pair.rows = pair.pushing = pair.nearby = 0;
   pair.movesUpper = pair.movesLower = 0;
   pair.slips = false;
-  pair.staticFriction = pair.kineticFriction = Lanes{0.0, 0.0, 0.0, 0.0};
+  pair.staticFriction = pair.kineticFriction = pair.restitution = Lanes{0.0, 0.0, 0.0, 0.0};
 }
 
 // Distributes the sorted groups over packs: a colour begins a new one.
@@ -128,7 +143,6 @@ void fillLane(const ContactConstraint& from, int lane, PackedPoint& point, Packe
   place.turnsUpper[lane] = from.normalOf == NormalOf::a ? -1 : 0;
   place.turnsLower[lane] = from.normalOf == NormalOf::b ? -1 : 0;
   place.allowed[lane] = from.allowed;
-  place.restitution[lane] = from.restitution;
   setLane(point.friction, lane, from.friction);
   point.push[lane] = from.push;
   point.normalMass[lane] = 1.0;
@@ -153,6 +167,7 @@ void fillPack(const IslandStep& step, const RigidIsland& island, ActingPoints& l
     const Friction friction = step.simulation.friction.of(key.a, key.b);
     pair.staticFriction[lane] = friction.staticFriction;
     pair.kineticFriction[lane] = friction.kineticFriction;
+    pair.restitution[lane] = any.restitution;
     for (std::int32_t i = 0; i < group.count; ++i)
       fillLane(list.points[packedRow(group.first, i)], lane, packed.points[packedRow(pair.first, i)],
                packed.places[packedRow(pair.first, i)]);

@@ -9,6 +9,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace springtower {
@@ -47,6 +48,14 @@ template <class Kernel>
 void overPacks(const PackedPoints& packed, const Kernel& kernel) {
   const std::size_t count = packed.pairs.size();
   forRanges(count, tuning::kPackGrain, count >= 2 * tuning::kPackGrain, kernel);
+}
+
+/// The packed points of four pairs.
+SPRINGTOWER_INLINE std::span<PackedPoint> pointsOf(PackedPoints& packed, const PackedPair& pair) {
+  return {packed.points.data() + pair.first, static_cast<std::size_t>(pair.rows)};
+}
+SPRINGTOWER_INLINE std::span<const PackedPoint> pointsOf(const PackedPoints& packed, const PackedPair& pair) {
+  return {packed.points.data() + pair.first, static_cast<std::size_t>(pair.rows)};
 }
 
 /// Motion of the bodies of four pairs.

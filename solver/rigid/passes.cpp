@@ -40,16 +40,26 @@ SPRINGTOWER_INLINE void aimOf(const Pass& pass, const PackedPoint& p, Aim& aim) 
   aim.released = kNone;
 }
 
-// Friction within the cone of the normal impulse so far: its change, and the moments of that about both bodies' centres.
-struct FrictionChange {
+// An impulse of friction, with its moments about both bodies' centres.
+struct FrictionImpulse {
   LaneVector impulse;
   LaneVector momentUpper;
   LaneVector momentLower;
-  Lanes most;
 };
 
+SPRINGTOWER_INLINE void findMoments(const PackedPair& pair, const PackedPoint& p, FrictionImpulse& friction) {
+  cross(p.armUpper, friction.impulse, friction.momentUpper);
+  cross(p.armLower, friction.impulse, friction.momentLower);
+  if (!pair.slips) return;
+  LaneVector moment;
+  cross(p.towardsCentre, friction.impulse, moment);
+  add(moment, friction.momentUpper);
+  add(moment, friction.momentLower);
+}
+
+// Friction within the cone of the normal impulse so far: its change.
 SPRINGTOWER_INLINE void solveFriction(const PackedPair& pair, const PackMotion& motion, const LaneVector& relative,
-                                      const Lanes& opening, const LaneMask& acts, PackedPoint& p, FrictionChange& change) {
+                                      const Lanes& opening, const LaneMask& acts, PackedPoint& p, FrictionImpulse& change) {
   LaneVector slip = relative;
   subtractTimes(opening, p.normal, slip);
   if (pair.slips) {
@@ -64,26 +74,19 @@ SPRINGTOWER_INLINE void solveFriction(const PackedPair& pair, const PackMotion& 
   subtractTimes(p.acrossMass, slip, friction);
   Lanes squared, size;
   dot(friction, friction, squared);
-  change.most = p.coefficient * p.push;
-  const LaneMask sliding = squared > change.most * change.most;
+  const Lanes most = p.coefficient * p.push;
+  const LaneMask sliding = squared > most * most;
   squareRoot(squared, size);
-  const Lanes left = sliding ? change.most / size : kNone + 1.0;
+  const Lanes left = sliding ? most / size : kNone + 1.0;
   const LaneVector& old = p.friction;
   change.impulse = {acts ? left * friction.x - old.x : kNone, acts ? left * friction.y - old.y : kNone,
                     acts ? left * friction.z - old.z : kNone};
   add(change.impulse, p.friction);
   p.sliding = acts ? sliding : p.sliding;
-  cross(p.armUpper, change.impulse, change.momentUpper);
-  cross(p.armLower, change.impulse, change.momentLower);
-  if (pair.slips) {
-    LaneVector moment;
-    cross(p.towardsCentre, change.impulse, moment);
-    add(moment, change.momentUpper);
-    add(moment, change.momentLower);
-  }
+  findMoments(pair, p, change);
 }
 
-SPRINGTOWER_INLINE void applyImpulses(const PackedPair& pair, const PackedPoint& p, const FrictionChange& friction,
+SPRINGTOWER_INLINE void applyImpulses(const PackedPair& pair, const PackedPoint& p, const FrictionImpulse& friction,
                                       const Lanes& more, PackMotion& motion) {
   LaneVector turn;
   times(pair.inertiaUpper, friction.momentUpper, turn);
@@ -114,7 +117,8 @@ SPRINGTOWER_INLINE void solvePoints(const Pass& pass, const PackedPair& pair, co
   const LaneMask acts = looks & ~rests;
   more = kNone;
   if (!any(acts)) return;
-  FrictionChange friction;
+  const Lanes mostFriction = p.coefficient * p.push;
+  FrictionImpulse friction;
   solveFriction(pair, motion, relative, opening, acts, p, friction);
   Lanes byUpper, byLower;
   dot(p.turnUpper, friction.momentUpper, byUpper);
@@ -124,7 +128,7 @@ SPRINGTOWER_INLINE void solvePoints(const Pass& pass, const PackedPair& pair, co
   largerOf(p.push + p.normalMass * aim.share * (aim.least - now) - aim.released * p.push, kNone, push);
   more = acts ? push - p.push : kNone;
   p.push = acts ? push : p.push;
-  const LaneMask idle = (push == kNone) & (friction.most == kNone);
+  const LaneMask idle = (push == kNone) & (mostFriction == kNone);
   p.idle = acts ? idle : p.idle;
   applyImpulses(pair, p, friction, more, motion);
 }
@@ -135,21 +139,13 @@ void warmStart(BodyMotion* bodies, const PackedPoints& packed, std::size_t first
     const PackedPair& pair = packed.pairs[i];
     PackMotion motion;
     bool gathered = false;
-    for (std::int32_t row = pair.first; row < pair.first + pair.rows; ++row) {
-      const PackedPoint& p = packed.points[static_cast<std::size_t>(row)];
+    for (const PackedPoint& p : pointsOf(packed, pair)) {
       if (!any(~p.idle)) continue;
       if (!gathered) gather(bodies, pair, motion);
       gathered = true;
-      FrictionChange friction;
+      FrictionImpulse friction;
       friction.impulse = p.friction;
-      cross(p.armUpper, friction.impulse, friction.momentUpper);
-      cross(p.armLower, friction.impulse, friction.momentLower);
-      if (pair.slips) {
-        LaneVector moment;
-        cross(p.towardsCentre, friction.impulse, moment);
-        add(moment, friction.momentUpper);
-        add(moment, friction.momentLower);
-      }
+      findMoments(pair, p, friction);
       applyImpulses(pair, p, friction, p.push, motion);
     }
     if (gathered) scatter(motion, pair, bodies);
@@ -164,8 +160,7 @@ void solveFirst(const Pass& pass, BodyMotion* bodies, PackedPoints& packed, std:
     gather(bodies, pair, motion);
     pair.pushing = 0;
     LaneMask nearby{};
-    for (std::int32_t row = pair.first; row < pair.first + pair.rows; ++row) {
-      PackedPoint& p = packed.points[static_cast<std::size_t>(row)];
+    for (PackedPoint& p : pointsOf(packed, pair)) {
       Lanes opening, more;
       solvePoints(pass, pair, kAll, motion, p, opening, more);
       pair.pushing += count(~p.idle);
@@ -185,8 +180,7 @@ void solveAgain(const Pass& pass, BodyMotion* bodies, PackedPoints& packed, std:
     PackMotion motion;
     gather(bodies, pair, motion);
     Lanes opening, more;
-    for (std::int32_t row = pair.first; row < pair.first + pair.rows; ++row)
-      solvePoints(pass, pair, kAll, motion, packed.points[static_cast<std::size_t>(row)], opening, more);
+    for (PackedPoint& p : pointsOf(packed, pair)) solvePoints(pass, pair, kAll, motion, p, opening, more);
     scatter(motion, pair, bodies);
   }
 }
@@ -224,8 +218,7 @@ std::size_t solveRange(const Pass& pass, RigidIsland& island, PackedPoints& pack
     PackMotion motion;
     gather(island.motions.data(), pair, motion);
     LaneMask changes = kNone != kNone;
-    for (std::int32_t row = pair.first; row < pair.first + pair.rows; ++row) {
-      PackedPoint& p = packed.points[static_cast<std::size_t>(row)];
+    for (PackedPoint& p : pointsOf(packed, pair)) {
       Lanes opening, more, size;
       solvePoints(pass, pair, looks, motion, p, opening, more);
       sizeOf(more, size);

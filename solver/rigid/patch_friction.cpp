@@ -28,8 +28,7 @@ SPRINGTOWER_INLINE void slipAt(const PackMotion& motion, const PackedPoint& p, L
 SPRINGTOWER_INLINE void findFree(const PackedPoints& packed, const PackedPair& pair, LaneMask& isFree) {
   LaneMask sticks{};
   LaneMask pushes = pair.staticFriction != pair.kineticFriction;
-  for (std::int32_t row = pair.first; row < pair.first + pair.rows; ++row) {
-    const PackedPoint& p = packed.points[static_cast<std::size_t>(row)];
+  for (const PackedPoint& p : pointsOf(packed, pair)) {
     const LaneMask here = p.push > 0.0;
     sticks |= here & ~p.sliding;
     pushes |= here;
@@ -41,8 +40,7 @@ SPRINGTOWER_INLINE void findFree(const PackedPoints& packed, const PackedPair& p
 bool isSlipping(const IslandStep& step, const PatchRules& rules, const PackedPoints& packed, const PackedPair& pair, int lane,
                 const PackMotion& motion) {
   SlipOfPoints slip;
-  for (std::int32_t row = pair.first; row < pair.first + pair.rows; ++row) {
-    const PackedPoint& p = packed.points[static_cast<std::size_t>(row)];
+  for (const PackedPoint& p : pointsOf(packed, pair)) {
     if (!(p.normalMass[lane] > 0.0)) continue;
     LaneVector along;
     Lanes squared;
@@ -70,8 +68,7 @@ EvenPressure pressureOn(const RigidIsland& island, const PackedPoints& packed, c
   PatchPoints patch;
   double push = 0.0;
   Vec3 slide = Vec3::Zero();
-  for (std::int32_t row = pair.first; row < pair.first + pair.rows; ++row) {
-    const PackedPoint& p = packed.points[static_cast<std::size_t>(row)];
+  for (const PackedPoint& p : pointsOf(packed, pair)) {
     LaneVector along;
     slipAt(motion, p, along);
     patch.add(meetingPlace(island, pair, p, lane), p.push[lane]);
@@ -89,8 +86,7 @@ EvenPressure pressureOn(const RigidIsland& island, const PackedPoints& packed, c
 // Lets the friction of a pair act at `shrink` times the points' distance from the centre of pressure.
 void moveFriction(const RigidIsland& island, PackedPoints& packed, const PackedPair& pair, int lane,
                   const EvenPressure& pressure) {
-  for (std::int32_t row = pair.first; row < pair.first + pair.rows; ++row) {
-    PackedPoint& p = packed.points[static_cast<std::size_t>(row)];
+  for (PackedPoint& p : pointsOf(packed, pair)) {
     Lanes toward;
     toLanes((1.0 - pressure.shrink) * (pressure.centre - meetingPlace(island, pair, p, lane)), toward);
     setLane(p.towardsCentre, lane, toward);
@@ -98,8 +94,7 @@ void moveFriction(const RigidIsland& island, PackedPoints& packed, const PackedP
 }
 
 void setStatic(PackedPoints& packed, PackedPair& pair) {
-  for (std::int32_t row = pair.first; row < pair.first + pair.rows; ++row) {
-    PackedPoint& p = packed.points[static_cast<std::size_t>(row)];
+  for (PackedPoint& p : pointsOf(packed, pair)) {
     p.coefficient = pair.staticFriction;
     if (pair.slips) setZero(p.towardsCentre);
   }
@@ -117,8 +112,7 @@ void chooseOf(const IslandStep& step, const RigidIsland& island, const PatchRule
   for (int lane = 0; lane < kPackedPairs; ++lane) {
     if (isFree[lane] == 0 || pair.group[static_cast<std::size_t>(lane)] < 0) continue;
     if (!isSlipping(step, rules, packed, pair, lane, motion)) continue;
-    for (std::int32_t row = pair.first; row < pair.first + pair.rows; ++row)
-      packed.points[static_cast<std::size_t>(row)].coefficient[lane] = pair.kineticFriction[lane];
+    for (PackedPoint& p : pointsOf(packed, pair)) p.coefficient[lane] = pair.kineticFriction[lane];
     if (!rules.evens) continue;
     const EvenPressure pressure = pressureOn(island, packed, pair, lane, motion);
     if (!(pressure.shrink < 1.0)) continue;

@@ -70,8 +70,7 @@ void markImpacts(RigidIsland& island) {
     for (const std::int32_t i : packed->active) {
       const PackedPair& pair = packed->pairs[static_cast<std::size_t>(i)];
       LaneMask meets{};
-      for (std::int32_t row = pair.first; row < pair.first + pair.rows; ++row) {
-        const PackedPoint& p = packed->points[static_cast<std::size_t>(row)];
+      for (const PackedPoint& p : pointsOf(*packed, pair)) {
         meets |= (p.push > 0.0) & (p.impact > 0.0);
       }
       for (std::size_t lane = 0; lane < kPackedPairs; ++lane) {
@@ -124,8 +123,8 @@ double workOfPushOut(const RigidIsland& island, double rate) {
   return rate * sum(sum4);
 }
 
-// The share of the usual rate at which overlap is pushed out. In rigid mode it is paid by energy that the frame has lost before;
-// a hand, a force or a driven block does work.
+// The share of the usual rate at which overlap is pushed out. In rigid mode it is paid by energy that the frame has lost before,
+// and by as little beside it as lets a pile at rest come up again; a hand, a force or a driven block does work.
 double shareOfPushOut(const IslandStep& step, const RigidIsland& island, double rate) {
   if (isRigid(step.simulation.scene.settings.method) || holdsTether(step) || isPushed(step) || !step.driven.empty()) return 1.0;
   const double work_j = workOfPushOut(island, rate);
@@ -202,14 +201,16 @@ void stepImpulses(IslandStep& step, RigidIsland& island) {
     body.moved.setZero();
     body.turned.setZero();
   }
-  island.energyBefore_j = kineticEnergy(island.bodies);
   if (island.steady.points.empty() && island.fast.points.empty()) {
     applyForces(step);
-    for (RigidBody& body : island.bodies) body.pushed = false;
-    moveBodies(step, island);
+    for (RigidBody& body : island.bodies) {
+      body.pushed = false;
+      moveInStep(step, body);
+    }
     island.touches = false;
     return;
   }
+  island.energyBefore_j = kineticEnergy(island.bodies);
   readBodies(island);
   for (PackedPoints* packed : packsOf(island)) placeConstraints(island, *packed);
   setImpacts(step, island);

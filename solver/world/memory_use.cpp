@@ -109,8 +109,8 @@ std::size_t ofScratch(const Scratch& s) {
                                        lcp.column, lcp.clamped, lcp.placeOf);
     for (const PointList* list : listsOf(island)) sum += sumOf(list->points, list->groups);
     for (const PackedPoints* p : packsOf(island))
-      sum += sumOf(p->pairs, p->points, p->places, p->colourStart, p->active, p->activeStart, p->taken, p->key, p->keyStart,
-                   p->order);
+      sum += sumOf(p->pairs, p->points, p->places, p->colourStart, p->active, p->activeStart, p->taken, p->kind, p->key,
+                   p->keyStart, p->order);
   }
   return sum;
 }

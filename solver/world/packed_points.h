@@ -51,6 +51,7 @@ struct alignas(32) PackedPair {
   bool slips;  ///< whether friction acts elsewhere than at the points in any lane
   Lanes staticFriction;
   Lanes kineticFriction;
+  Lanes restitution;
   Lanes inverseMassUpper;  ///< 1/kg
   Lanes inverseMassLower;
   LaneMatrix inertiaUpper;  ///< 1/(kg m2), inverse, world axes
@@ -86,7 +87,6 @@ struct alignas(32) PackedPlace {
   LaneMask turnsUpper;  ///< whether it turns with the upper body
   LaneMask turnsLower;  ///< or with the lower one
   Lanes allowed;        ///< m, overlap that is not pushed out
-  Lanes restitution;    ///< of the pair
 };
 
 /// The points of a list, packed for the substeps of a step.
@@ -100,6 +100,7 @@ struct PackedPoints {
   std::size_t activePoints = 0;           ///< points that touch or nearly do
   // Working space of packPoints().
   std::vector<std::array<std::uint64_t, 2>> taken;  ///< colours of each body, by bit: among what moves, with what does not
+  std::vector<std::uint8_t> kind;
   std::vector<std::int32_t> key;
   std::vector<std::int32_t> keyStart;
   std::vector<std::int32_t> order;

@@ -46,7 +46,7 @@ void poisonScratch(Engine& engine) {
               lcp.column, lcp.clamped, lcp.placeOf);
     for (PointList* list : listsOf(island)) poisonAll(list->points, list->groups);
     for (PackedPoints* p : packsOf(island))
-      poisonAll(p->pairs, p->points, p->places, p->colourStart, p->active, p->activeStart, p->taken, p->key, p->keyStart,
+      poisonAll(p->pairs, p->points, p->places, p->colourStart, p->active, p->activeStart, p->taken, p->kind, p->key, p->keyStart,
                 p->order);
   }
 }
