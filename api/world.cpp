@@ -278,7 +278,7 @@ Counters World::counters() const {
   counters.implicitSteps = from.implicitSteps;
   counters.implicitIterations = from.implicitIterations;
   counters.factorisations = from.factorisations;
-  counters.explicitFallbacks = from.newtonFailures;
+  counters.failedImplicitSteps = from.newtonFailures;
   counters.wakes = std::accumulate(simulation.wakes.begin(), simulation.wakes.end(), std::uint64_t{0});
   return counters;
 }

@@ -34,7 +34,7 @@ struct Counters {
   std::uint64_t implicitSteps = 0;       ///< steps taken by the implicit method, over all islands
   std::uint64_t implicitIterations = 0;  ///< solutions with a factorised matrix in these
   std::uint64_t factorisations = 0;
-  std::uint64_t newtonFailures = 0;      ///< implicit steps that did not converge: their islands were stepped explicitly
+  std::uint64_t newtonFailures = 0;      ///< implicit steps that did not converge
   std::uint64_t responseIterations = 0;  ///< passes of the report's collision loop
 
   Counters& operator+=(const Counters& other);

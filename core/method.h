@@ -27,7 +27,7 @@ enum class MethodFamily : std::uint8_t { implicit, explicitSprings, rigid, repor
 struct MethodTraits {
   MethodFamily family = MethodFamily::implicit;
   bool twoStep = false;     ///< implicit: BDF2, which uses the step before, instead of backward Euler
-  bool leapfrog = false;    ///< its explicit steps (of an implicit method, the fallback) keep velocities half a step behind
+  bool leapfrog = false;    ///< its steps keep velocities half a step behind
   bool multiStage = false;  ///< explicit: several evaluations of the forces a step
   bool anchors = false;     ///< rigid: contacts are constraints of positions instead of impulses
 };
@@ -37,9 +37,9 @@ constexpr MethodTraits traitsOf(Method method) {
   switch (method) {
     case Method::implicit:
     case Method::implicitEigen:
-      return {.family = MethodFamily::implicit, .twoStep = true, .leapfrog = true};
+      return {.family = MethodFamily::implicit, .twoStep = true};
     case Method::implicitEuler:
-      return {.family = MethodFamily::implicit, .leapfrog = true};
+      return {.family = MethodFamily::implicit};
     case Method::semiImplicitEuler:
       return {.family = MethodFamily::explicitSprings, .leapfrog = true};
     case Method::midpoint:

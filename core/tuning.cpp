@@ -1,13 +1,28 @@
 #include "core/tuning.h"
 
 #include <array>
+#ifdef SPRINGTOWER_TUNING_FROM_FILE
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <map>
+#include <sstream>
+#include <string>
+#endif
 
 namespace springtower {
 
 namespace {
 
+#ifdef SPRINGTOWER_TUNING_FROM_FILE
+#define TUNING_CONSTANT const
+#else
+#define TUNING_CONSTANT constexpr
+#endif
+
 // A row that begins a group has no name; what follows belongs to it.
-constexpr auto kRowsAndGroups = std::to_array<TuningRow>({
+TUNING_CONSTANT auto kRowsAndGroups = std::to_array<TuningRow>({
 #define TUNING_GROUP(name) {name, "", "", 0.0, "", "", ""},
 #define TUNING(type, name, value, unit, purpose, evidence) \
   {"", #name, #value, static_cast<double>(tuning::name), unit, purpose, evidence},
@@ -16,14 +31,16 @@ constexpr auto kRowsAndGroups = std::to_array<TuningRow>({
 #undef TUNING_GROUP
 });
 
-constexpr std::size_t countOfRows() {
-  std::size_t count = 0;
-  for (const TuningRow& row : kRowsAndGroups) count += row.name.empty() ? 0 : 1;
-  return count;
-}
+constexpr std::size_t kCountOfRows = 0
+#define TUNING_GROUP(name)
+#define TUNING(type, name, value, unit, purpose, evidence) +1
+#include "core/tuning.def"
+#undef TUNING
+#undef TUNING_GROUP
+    ;
 
-constexpr std::array<TuningRow, countOfRows()> rowsWithTheirGroups() {
-  std::array<TuningRow, countOfRows()> rows{};
+constexpr std::array<TuningRow, kCountOfRows> rowsWithTheirGroups() {
+  std::array<TuningRow, kCountOfRows> rows{};
   std::string_view group;
   std::size_t at = 0;
   for (TuningRow row : kRowsAndGroups) {
@@ -37,9 +54,55 @@ constexpr std::array<TuningRow, countOfRows()> rowsWithTheirGroups() {
   return rows;
 }
 
-constexpr auto kTuningTable = rowsWithTheirGroups();
+TUNING_CONSTANT auto kTuningTable = rowsWithTheirGroups();
+
+#undef TUNING_CONSTANT
+
+#ifdef SPRINGTOWER_TUNING_FROM_FILE
+constexpr std::array<std::string_view, kCountOfRows> kNames = {
+#define TUNING_GROUP(name)
+#define TUNING(type, name, value, unit, purpose, evidence) #name,
+#include "core/tuning.def"
+#undef TUNING
+#undef TUNING_GROUP
+};
+
+[[noreturn]] void refuse(const std::string& line) {
+  std::fprintf(stderr, "SPRINGTOWER_TUNING: found '%s', allowed is the name of a constant of core/tuning.def and a number\n",
+               line.c_str());
+  std::exit(2);
+}
+
+// Read before any constant is: constants are made before main begins.
+const std::map<std::string, double, std::less<>>& valuesOfFile() {
+  static const std::map<std::string, double, std::less<>> values = [] {
+    std::map<std::string, double, std::less<>> read;
+    const char* path = std::getenv("SPRINGTOWER_TUNING");
+    if (path == nullptr) return read;
+    std::ifstream file(path);
+    if (!file) refuse(path);
+    for (std::string line; std::getline(file, line);) {
+      if (line.empty()) continue;
+      std::istringstream words(line);
+      std::string name;
+      double value = 0.0;
+      if (!(words >> name >> value) || std::find(kNames.begin(), kNames.end(), name) == kNames.end()) refuse(line);
+      read[name] = value;
+    }
+    return read;
+  }();
+  return values;
+}
+#endif
 
 }  // namespace
+
+#ifdef SPRINGTOWER_TUNING_FROM_FILE
+const double* tunedByFile(std::string_view name) {
+  const auto found = valuesOfFile().find(name);
+  return found == valuesOfFile().end() ? nullptr : &found->second;
+}
+#endif
 
 std::span<const TuningRow> tuningTable() {
   return kTuningTable;

@@ -73,7 +73,7 @@ struct Counters {
   std::uint64_t implicitSteps = 0;               ///< over all islands
   std::uint64_t implicitIterations = 0;          ///< linear systems solved in these
   std::uint64_t factorisations = 0;              ///< of their matrices
-  std::uint64_t explicitFallbacks = 0;           ///< implicit steps that did not converge, whose islands took explicit ones
+  std::uint64_t failedImplicitSteps = 0;         ///< that did not converge: finer ones or rigid ones were taken
   std::uint64_t wakes = 0;                       ///< blocks that woke, for whatever reason
   bool operator==(const Counters&) const = default;
 };

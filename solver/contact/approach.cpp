@@ -177,7 +177,7 @@ Vec3 velocityAt(const BlockFrame& frame, const AffineField& motion, const Vec3& 
 }
 
 // Smallest opening or closing speed over the points of a manifold, m/s; over those that touched last, if any did. A point that is
-// open and opens further counts as 0: it has parted, as where the end of a drawn block leaves its support. After explicit steps
+// open and opens further counts as 0: it has parted, as where the end of a drawn block leaves its support. After rigid steps
 // it counts in full, because it may be rebounding.
 double slowestRate(const IslandStep& step, const ContactView& manifold) {
   const MotionState& state = step.simulation.state;

@@ -91,7 +91,7 @@ int chooseSubsteps(IslandStep& step) {
 
 using StepFunction = void (*)(IslandStep&);
 
-// One explicit step of a method; of implicit methods, what takes over where implicit steps do not fit.
+// One explicit step of a method.
 StepFunction explicitStepOf(Method method) {
   switch (method) {
     case Method::midpoint:
@@ -107,13 +107,14 @@ StepFunction explicitStepOf(Method method) {
 
 }  // namespace
 
-IslandOutcome runExplicitSteps(IslandStep& step, double begin_s) {
+IslandOutcome runExplicitSteps(IslandStep& step) {
   Simulation& simulation = step.simulation;
   const Settings& settings = simulation.scene.settings;
   const StepFunction takeStep = explicitStepOf(settings.method);
   const bool isReport = traitsOf(settings.method).family == MethodFamily::report;
   const bool leapfrog = traitsOf(settings.method).leapfrog;
-  const double rest_s = step.part.end_s - begin_s;
+  const double begin_s = step.part.begin_s;
+  const double rest_s = step.part.duration_s();
   copyFrameStart(step);
   step.pushedBefore_s = 0.0;
   IslandOutcome outcome;

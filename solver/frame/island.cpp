@@ -17,37 +17,29 @@ namespace {
 // overlaps as their rest depths, which would add up over the tries. Returns the time of the frame, s.
 double takeBackImplicitSteps(IslandStep& step) {
   std::vector<IslandHistory>& history = step.engine.memo.islandHistory;
-  const std::int32_t frames = history[static_cast<std::size_t>(step.blocks.front())].explicitFrames;
+  const std::int32_t frames = history[static_cast<std::size_t>(step.blocks.front())].rigidFrames;
   restoreIsland(step);
-  for (const std::int32_t block : step.blocks) history[static_cast<std::size_t>(block)].explicitFrames = frames;
+  for (const std::int32_t block : step.blocks) history[static_cast<std::size_t>(block)].rigidFrames = frames;
   return step.part.begin_s;
 }
 
-// Implicit steps, as far as they fit and converge; then rigid or explicit ones, as the table of island_modes.h has it.
+// Implicit steps, as far as they fit and converge; then rigid ones.
 IslandOutcome runByModes(IslandStep& step) {
   IslandFacts facts = islandFacts(step);
   IslandOutcome outcome;
   double begin_s = step.part.begin_s;
-  IslandMode mode = nextMode(begin_s > 0.0 ? ModeChange::frameContinues : ModeChange::frameBegins, facts);
+  const IslandMode mode = nextMode(begin_s > 0.0 ? ModeChange::frameContinues : ModeChange::frameBegins, facts);
   setMode(step, mode);
-  if (facts.fast) {
-    for (const std::int32_t block : step.blocks) step.engine.memo.blockHistory[static_cast<std::size_t>(block)].hasFallen = true;
-  }
+  if (facts.leftAlone) noteFallen(step);
   if (mode == IslandMode::implicit) {
     outcome = runImplicitSteps(step, facts.mostlyFallen, begin_s);
     if (!outcome.inside || begin_s >= step.part.end_s) return outcome;
     facts.stands = stands(step, facts);
-    mode = nextMode(ModeChange::implicitFailed, facts);
-    if (mode == IslandMode::rigid) {
-      if (facts.rigidBefore) begin_s = takeBackImplicitSteps(step);
-      setMode(step, mode);
-    } else {  // implicit steps are tried again in the next frame
-      for (const std::int32_t block : step.blocks)
-        step.engine.memo.islandHistory[static_cast<std::size_t>(block)].explicitFrames = 0;
-    }
+    if (facts.rigidBefore) begin_s = takeBackImplicitSteps(step);
+    setMode(step, IslandMode::rigid);
   }
   const int before = outcome.substeps;
-  outcome = mode == IslandMode::rigid ? runRigidMode(step, begin_s) : runExplicitSteps(step, begin_s);
+  outcome = runRigidMode(step, begin_s, facts.stands);
   outcome.substeps += before;
   return outcome;
 }
@@ -67,7 +59,7 @@ IslandOutcome advanceIsland(IslandStep& step) {
     case MethodFamily::report:
       break;
   }
-  return runExplicitSteps(step, step.part.begin_s);
+  return runExplicitSteps(step);
 }
 
 }  // namespace springtower

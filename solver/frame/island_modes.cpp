@@ -5,7 +5,6 @@
 #include "solver/contact/evaluate_forces.h"
 #include "solver/contact/query.h"
 #include "solver/contact/rigid_contacts.h"
-#include "solver/implicit/bdf2.h"
 #include "solver/rigid/run.h"
 #include "solver/world/checkpoint.h"
 #include "solver/world/over_island.h"
@@ -18,40 +17,50 @@ namespace springtower {
 
 namespace {
 
-// Motion of an island.
-struct Motion {
+Vec3 centreVelocity(const IslandStep& step, std::int32_t block) {
+  return centre(step.simulation.state.velocity, static_cast<std::size_t>(block));
+}
+
+double massOf(const IslandStep& step, std::int32_t block) {
+  return step.simulation.model.mass[static_cast<std::size_t>(block)];
+}
+
+// Speed in m/s of one in sqrt(g h).
+double speedOf(const IslandStep& step, double speed) {
+  return speed * step.simulation.lengths.blockHeight_m / step.simulation.lengths.fallTime_s;
+}
+
+// Whether the root mean square speed, weighted by mass, is above this one, in sqrt(g h).
+bool isFasterThan(const IslandStep& step, double speed) {
   double mass_kg = 0.0;
-  double twiceKinetic_j = 0.0;  // of the blocks' centres
-  Vec3 momentum = Vec3::Zero();
-  double height_m = 0.0;
-  double fallTime_s = 0.0;  // sqrt(h / g)
-
-  // Whether the root mean square speed, weighted by mass, is above this one, in sqrt(g h).
-  [[nodiscard]] bool isFasterThan(double speed) const {
-    const double least = speed * height_m / fallTime_s;
-    return twiceKinetic_j > mass_kg * least * least;
-  }
-
-  // The same with speeds against that of the centre of mass. A column that topples has half of its speed that way.
-  [[nodiscard]] bool topplesFasterThan(double speed) const {
-    const double least = 0.5 * speed * height_m / fallTime_s;
-    return twiceKinetic_j - momentum.squaredNorm() / mass_kg > mass_kg * least * least;
-  }
-};
-
-Motion motionOf(const IslandStep& step) {
-  const Simulation& simulation = step.simulation;
-  Motion motion;
-  motion.height_m = simulation.lengths.blockHeight_m;
-  motion.fallTime_s = simulation.lengths.fallTime_s;
+  double twiceKinetic_j = 0.0;
   for (const std::int32_t block : step.blocks) {
-    const auto b = static_cast<std::size_t>(block);
-    const Vec3 velocity = centre(simulation.state.velocity, b);
-    motion.mass_kg += simulation.model.mass[b];
-    motion.twiceKinetic_j += simulation.model.mass[b] * velocity.squaredNorm();
-    motion.momentum += simulation.model.mass[b] * velocity;
+    mass_kg += massOf(step, block);
+    twiceKinetic_j += massOf(step, block) * centreVelocity(step, block).squaredNorm();
   }
-  return motion;
+  const double least = speedOf(step, speed);
+  return twiceKinetic_j > mass_kg * least * least;
+}
+
+// Whether blocks that have more than half of the mass move faster than this against a velocity, m/s.
+bool mostIsFasterThan(const IslandStep& step, double least_m_s, const Vec3& against) {
+  double mass_kg = 0.0;
+  double fast_kg = 0.0;
+  for (const std::int32_t block : step.blocks) {
+    mass_kg += massOf(step, block);
+    if ((centreVelocity(step, block) - against).squaredNorm() > least_m_s * least_m_s) fast_kg += massOf(step, block);
+  }
+  return 2.0 * fast_kg > mass_kg;
+}
+
+Vec3 meanVelocity(const IslandStep& step) {
+  double mass_kg = 0.0;
+  Vec3 momentum = Vec3::Zero();
+  for (const std::int32_t block : step.blocks) {
+    mass_kg += massOf(step, block);
+    momentum += massOf(step, block) * centreVelocity(step, block);
+  }
+  return momentum / mass_kg;
 }
 
 // Whether it lies on something that is no part of it.
@@ -109,6 +118,14 @@ void impulseToPenalty(const IslandStep& step, std::int32_t contact, const Contac
 
 }  // namespace
 
+void noteFallen(const IslandStep& step) {
+  const double least = speedOf(step, tuning::kRigidEntrySpeed);
+  for (const std::int32_t block : step.blocks) {
+    if (centreVelocity(step, block).squaredNorm() > least * least)
+      step.engine.memo.blockHistory[static_cast<std::size_t>(block)].hasFallen = true;
+  }
+}
+
 IslandFacts islandFacts(const IslandStep& step) {
   IslandFacts facts;
   facts.leftAlone = isLeftAlone(step);
@@ -116,19 +133,19 @@ IslandFacts islandFacts(const IslandStep& step) {
   facts.rigidBefore = before.rigid;
   std::size_t pinned = 0;
   for (const std::int32_t block : step.blocks)
-    pinned += step.engine.memo.islandHistory[static_cast<std::size_t>(block)].explicitFrames > 0 ? 1U : 0U;
+    pinned += step.engine.memo.islandHistory[static_cast<std::size_t>(block)].rigidFrames > 0 ? 1U : 0U;
   facts.rigidPinned = 2 * pinned > step.blocks.size();
   facts.mostlyFallen = isMostlyFallen(step);
   if (!facts.leftAlone || facts.rigidPinned) return facts;
-  const Motion motion = motionOf(step);
-  facts.fast =
-      motion.isFasterThan(tuning::kRigidEntrySpeed) && (!isSupported(step) || motion.topplesFasterThan(tuning::kRigidEntrySpeed));
+  const double entry = speedOf(step, tuning::kRigidEntrySpeed);
+  facts.fast = mostIsFasterThan(step, entry, Vec3::Zero()) &&
+               (!isSupported(step) || mostIsFasterThan(step, 0.5 * entry, meanVelocity(step)));
   return facts;
 }
 
 bool stands(const IslandStep& step, const IslandFacts& facts) {
   const std::size_t count = step.blocks.size();
-  if (facts.mostlyFallen || count < tuning::kMinRigidModeBlocks || count >= tuning::kParallelBlocks) return false;
+  if (facts.mostlyFallen || count >= tuning::kParallelBlocks) return false;
   return isSupported(step) && !isAboutToRebound(step);
 }
 
@@ -140,10 +157,6 @@ IslandMode nextMode(ModeChange when, const IslandFacts& facts) {
       break;
     case ModeChange::frameContinues:
       rigid = facts.rigidBefore;
-      break;
-    case ModeChange::implicitFailed:
-      if (facts.stands) return IslandMode::explicitFallback;
-      rigid = true;
       break;
   }
   return rigid ? IslandMode::rigid : IslandMode::implicit;
@@ -170,13 +183,10 @@ void setMode(IslandStep& step, IslandMode mode) {
   forEachContact(PointKind::impulse, impulseToPenalty);
   for (const std::int32_t block : step.blocks) history[static_cast<std::size_t>(block)].rigid = falling;
   if (!falling) return;
-  step.time_s = step.simulation.time_s;
-  step.gravity = step.simulation.scene.gravity.at(step.time_s);
-  synchronise(step);
   forEachContact(PointKind::penalty, penaltyToImpulse);
 }
 
-IslandOutcome runRigidMode(IslandStep& step, double begin_s) {
+IslandOutcome runRigidMode(IslandStep& step, double begin_s, bool stands) {
   const Simulation& simulation = step.simulation;
   double fastest = 0.0;
   for (const std::int32_t block : step.blocks)
@@ -190,7 +200,7 @@ IslandOutcome runRigidMode(IslandStep& step, double begin_s) {
   const IslandOutcome outcome = runRigidSteps(step, groups * tuning::kSubstepsPerStep, begin_s);
   // A block that rocks is slow for a moment at each turn.
   const bool moving =
-      motionOf(step).isFasterThan(tuning::kRigidExitSpeed) && step.engine.scratch.rigidIslands.of(step.blocks.front()).rebounds;
+      isFasterThan(step, tuning::kRigidExitSpeed) && step.engine.scratch.rigidIslands.of(step.blocks.front()).rebounds;
   const std::int32_t least = moving ? framesOf(simulation, tuning::kRigidRestTime) : 0;
   for (const std::int32_t block : step.blocks) {
     BlockHistory& history = step.engine.memo.blockHistory[static_cast<std::size_t>(block)];
@@ -198,8 +208,8 @@ IslandOutcome runRigidMode(IslandStep& step, double begin_s) {
     history.lastImplicitStep_s = 0.0;
     history.explicitLast = true;
     IslandHistory& island = step.engine.memo.islandHistory[static_cast<std::size_t>(block)];
-    if (step.part.begin_s == 0.0) island.explicitFrames = std::max(0, island.explicitFrames - 1);
-    island.explicitFrames = std::max(least, island.explicitFrames);
+    if (step.part.begin_s == 0.0) island.rigidFrames = std::max(0, island.rigidFrames - 1);
+    island.rigidFrames = stands ? 0 : std::max(history.hasFallen ? least : 0, island.rigidFrames);
   }
   step.engine.memo.newtonSystems.of(step.blocks.front()).forcesKnown = false;
   return outcome;

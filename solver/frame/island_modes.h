@@ -10,10 +10,10 @@ namespace springtower {
 // shape of its blocks, until it is slow. The springs' strain follows from the forces of the last impulses when it returns.
 
 /// The kind of steps that advances an island through a frame, or through the rest of one.
-enum class IslandMode : std::uint8_t { implicit, rigid, explicitFallback };
+enum class IslandMode : std::uint8_t { implicit, rigid };
 
 /// When that is decided.
-enum class ModeChange : std::uint8_t { frameBegins, frameContinues, implicitFailed };
+enum class ModeChange : std::uint8_t { frameBegins, frameContinues };
 
 /// Inputs of that decision, as the frame begins.
 struct IslandFacts {
@@ -21,23 +21,25 @@ struct IslandFacts {
   bool rigidBefore = false;   ///< rigid steps advanced one of its blocks in the last frame
   bool rigidPinned = false;   ///< more than half of its blocks are to stay in rigid steps: they moved, or implicit ones failed
   bool mostlyFallen = false;  ///< more than half of its blocks have fallen since they slept last
-  /// Root mean square speed, by mass, above 0.45 sqrt(g h): blocks could rise by a tenth of their height. Of what stands on
-  /// something and slides as a whole it is not: that is smooth.
+  /// Whether blocks that have more than half of the mass are faster than 0.45 sqrt(g h): they could rise by a tenth of their
+  /// height. What stands on something and slides as a whole is not fast: that is smooth.
   bool fast = false;
   bool stands = false;  ///< see `stands`; found only where implicit steps have failed
 };
 IslandFacts islandFacts(const IslandStep& step);
 
-/// Whether an island is a stack that stands and sways, or that a hand leads: of three blocks up to as many as explicit steps
-/// advance in less than seconds a frame, mostly not fallen, on something else, and with no pair about to meet so fast that it
-/// rebounds.
+/// Notes in the histories of blocks which of them are as fast as what falls.
+void noteFallen(const IslandStep& step);
+
+/// Whether an island is a stack that stands and sways, or that a hand leads: mostly not fallen, on something else, and with no
+/// pair about to meet so fast that it rebounds; and not so wide that implicit steps in every frame would take seconds. Implicit
+/// steps that have failed are then tried again in the next frame: rigid ones do not bring it to rest.
 bool stands(const IslandStep& step, const IslandFacts& facts);
 
 /// The transition table:
 ///   frame begins: rigid if left alone and fast or pinned to rigid steps; else implicit.
 ///   frame continues, after another part of it: rigid where a block was in the last part, else implicit.
-///   implicit failed (steps do not fit or do not converge): explicit where a stack stands, because rigid steps do not bring it to
-///                 rest; else rigid.
+/// Where implicit steps do not fit or do not converge, rigid ones take the rest of the frame.
 IslandMode nextMode(ModeChange when, const IslandFacts& facts);
 
 /// The only place where an island's mode is set: converts its contacts between springs and impulses, and notes in its blocks'
@@ -45,7 +47,8 @@ IslandMode nextMode(ModeChange when, const IslandFacts& facts);
 /// springs of the strain that rigid steps have kept, as far as their forces explain it: no more energy than there was.
 void setMode(IslandStep& step, IslandMode mode);
 
-/// Advances an island in rigid mode through the frame from `begin_s` on. Result as of `runRigidSteps`.
-IslandOutcome runRigidMode(IslandStep& step, double begin_s);
+/// Advances an island in rigid mode through the frame from `begin_s` on. `stands`: implicit steps are tried again in the next
+/// frame. Result as of `runRigidSteps`.
+IslandOutcome runRigidMode(IslandStep& step, double begin_s, bool stands);
 
 }  // namespace springtower

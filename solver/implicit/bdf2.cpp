@@ -75,33 +75,6 @@ void predictEulerOf(IslandStep& step, std::span<const std::int32_t> blocks, doub
 
 }  // namespace
 
-void synchronise(IslandStep& step) {
-  Engine& engine = step.engine;
-  double behind_s = 0.0;
-  for (const std::int32_t block : step.blocks)
-    behind_s = std::max(behind_s, engine.memo.blockHistory[static_cast<std::size_t>(block)].lastExplicitStep_s);
-  if (behind_s == 0.0) return;
-  copyFrameStart(step);
-  ParticleArray& velocity = step.simulation.state.velocity;
-  step.kick_s = behind_s;
-  step.pushedFrom_s = step.time_s - 0.5 * behind_s;
-  step.pushedUntil_s = step.time_s;
-  step.pushedBefore_s = 0.0;
-  evaluateForces(step, step.simulation.state, velocity, behind_s, PointUpdate::store);
-  for (const std::int32_t block : step.blocks) {
-    const auto b = static_cast<std::size_t>(block);
-    const double half_s = 0.5 * engine.memo.blockHistory[b].lastExplicitStep_s;
-    double acceleration[3][kCorners];
-    accelerate(step, b, acceleration);
-    for (std::size_t a = 0; a < 3; ++a) {
-      double* v = velocity.values(a, b);
-      for (std::size_t c = 0; c < kCorners; ++c) v[c] += half_s * acceleration[a][c];
-    }
-    engine.memo.blockHistory[b].lastExplicitStep_s = 0.0;
-  }
-  step.engine.memo.newtonSystems.of(step.blocks.front()).forcesKnown = false;
-}
-
 void predictBdf2(IslandStep& step, double effective_s) {
   overBlocks(step, [&](std::size_t first, std::size_t last) {
     predictBdf2Of(step, step.blocks.subspan(first, last - first), effective_s);

@@ -4,10 +4,6 @@
 
 namespace springtower {
 
-/// After explicit steps velocities are half a step behind the positions, and contact points a whole step: advances both to the
-/// positions' time.
-void synchronise(IslandStep& step);
-
 /// Fills engine.scratch.freePosition with each block's position at the step's end without forces, and engine.scratch.pastPosition
 /// with the contribution of past positions to it: x = (4 x_n - x_(n-1)) / 3 + 2/3 h v at the end, and the same for v (Gear 1971).
 /// A block without a history gets that of its present acceleration, taken as uniform, or of none where an impact makes that

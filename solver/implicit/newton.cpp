@@ -41,9 +41,9 @@ struct NewtonOptions {
 
 // Newton settings in motion. A share of the initial residual may remain, up to tuning::kMaxMotionResidual: a ten-thousandth of a
 // weight changes a speed by 4 micrometres a second, and the next step corrects it.
-constexpr NewtonOptions kInMotion{tuning::kMaxActiveSetIterations, tuning::kConsistentTangentResidual, tuning::kRelativeResidual};
+const NewtonOptions kInMotion{tuning::kMaxActiveSetIterations, tuning::kConsistentTangentResidual, tuning::kRelativeResidual};
 // If finer steps can follow: a step that does not converge in a few iterations converges in fewer with finer steps.
-constexpr NewtonOptions kBeforeFiner{tuning::kMaxNewtonIterations, tuning::kConsistentTangentResidual, tuning::kRelativeResidual};
+const NewtonOptions kBeforeFiner{tuning::kMaxNewtonIterations, tuning::kConsistentTangentResidual, tuning::kRelativeResidual};
 
 NewtonSystem& islandOf(IslandStep& step) {
   return step.engine.memo.newtonSystems.of(step.blocks.front());
@@ -421,7 +421,6 @@ bool stepImplicit(IslandStep& step, bool canRetryFiner) {
   const double end_s = step.time_s + step.drift_s;
   placeDriven(step, step.time_s, step.time_s);
   if (drives) islandOf(step).forcesKnown = false;
-  synchronise(step);
   setPushes(step);
   if (findSlippingContacts(step)) islandOf(step).forcesKnown = islandOf(step).factorised = false;
   const bool carried = !islandOf(step).forcesKnown && isCarried(step, effective_s);

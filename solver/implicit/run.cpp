@@ -37,7 +37,7 @@ bool isQuiescent(const IslandStep& step) {
   const Simulation& simulation = step.simulation;
   const double most = quiescentSpeed(simulation);
   return everyBlock(step, [&](std::size_t b) {
-    // A block that has just been released has no speed yet, and one that explicit steps moved may be at the turning point of a
+    // A block that has just been released has no speed yet, and one that rigid steps moved may be at the turning point of a
     // bounce.
     if (!(simulation.restTime_s[b] > 0.0) || step.engine.memo.blockHistory[b].explicitLast) return false;
     for (std::size_t a = 0; a < 3; ++a) {
@@ -92,14 +92,33 @@ int stepsInPart(const IslandStep& step, int steps) {
   return std::max(1, static_cast<int>(std::ceil(steps * share - 1e-9)));
 }
 
-// Step count for retrying the rest of the frame after Newton failed, or where `steps` do not fit: 4 a frame, and 8 if 4 were
-// already in use. Needed when a whole face starts to slip at once. What is led by a hand or pushed has 128 as well: other steps
-// would not leave the rest in place.
-int retryStepCount(double share, int steps, bool led) {
+// Steps a frame of the last retry. Rigid steps leave what a hand leads, and a stack that a blow has set swaying, less well in
+// place. But where blocks are about to rebound they are right, and in a wide island finer steps would take seconds.
+int mostSteps(const IslandStep& step, bool forced, bool mostlyFallen) {
+  if (step.simulation.scene.settings.substeps > 0) return 0;
+  if (forced) return tuning::kMaxLedSteps;
+  const bool rigidIsRight = mostlyFallen || step.blocks.size() >= tuning::kParallelBlocks || isAboutToRebound(step);
+  return rigidIsRight ? tuning::kMaxFrequencySteps : tuning::kMaxStandingSteps;
+}
+
+// Step count for retrying the rest of the frame after Newton failed: 4 a frame, 8 if 4 were already in use, and `most` after
+// these. Needed when a whole face starts to slip at once.
+int retryStepCount(double share, int steps, int most) {
   const auto of = [&](int frame) { return static_cast<int>(std::lround(share * frame)); };
   if (of(tuning::kStandardImplicitSteps) > steps) return of(tuning::kStandardImplicitSteps);
-  if (of(tuning::kMaxFrequencySteps) > steps || !led) return of(tuning::kMaxFrequencySteps);
-  return of(tuning::kMaxLedSteps);
+  if (of(tuning::kMaxFrequencySteps) > steps) return of(tuning::kMaxFrequencySteps);
+  return of(most);
+}
+
+// So many steps a frame or, where these do not fit, the fewest of the retries that do; 0 where none fit.
+int fittingSteps(const IslandStep& step, int steps, bool forced, bool mostlyFallen) {
+  const auto fit = [&](int count) { return implicitStepsFit(step, step.part.duration_s() / stepsInPart(step, count)); };
+  if (fit(steps)) return steps;
+  const int most = mostSteps(step, forced, mostlyFallen);
+  for (const int finer : {std::min(tuning::kStandardImplicitSteps, most), most}) {
+    if (finer > steps && fit(finer)) return finer;
+  }
+  return 0;
 }
 
 // Restarts BDF2 (drops the history) when an external force ends: acceleration jumps, and the history is wrong. Not when one
@@ -125,7 +144,7 @@ double turningSpeed(const AffineField& place, const AffineField& motion) {
 void noteFrame(IslandStep& step, bool forced) {
   for (const std::int32_t block : step.blocks) {
     IslandHistory& history = step.engine.memo.islandHistory[static_cast<std::size_t>(block)];
-    if (step.part.begin_s == 0.0) history.explicitFrames = std::max(0, history.explicitFrames - 1);
+    if (step.part.begin_s == 0.0) history.rigidFrames = std::max(0, history.rigidFrames - 1);
     history.forced = forced;
   }
 }
@@ -162,7 +181,7 @@ void chooseFormula(IslandStep& step, NewtonSystem& island, bool begins) {
 // Sets the number of frames until implicit steps are tried again.
 void leaveImplicitSteps(IslandStep& step, bool mostlyFallen) {
   for (const std::int32_t block : step.blocks)
-    step.engine.memo.islandHistory[static_cast<std::size_t>(block)].explicitFrames =
+    step.engine.memo.islandHistory[static_cast<std::size_t>(block)].rigidFrames =
         framesOf(step.simulation, mostlyFallen ? tuning::kRigidRetryTime : tuning::kRigidRestTime);
 }
 
@@ -230,18 +249,12 @@ IslandOutcome runImplicitSteps(IslandStep& step, bool mostlyFallen, double& reac
   const bool forced = holdsTether(step) || isPushed(step) || !step.driven.empty();
   const bool wasForced = engine.memo.islandHistory[static_cast<std::size_t>(step.blocks.front())].forced;
   if (wasForced && !forced) resetHistory(step);
-  int steps = implicitSteps(step, forced, forced == wasForced, mostlyFallen);
-  bool fits = implicitStepsFit(step, step.part.duration_s() / stepsInPart(step, steps));
-  for (const int finer : {tuning::kStandardImplicitSteps, forced ? tuning::kMaxLedSteps : 0}) {
-    if (fits || steps >= finer || simulation.scene.settings.substeps > 0) continue;
-    steps = finer;
-    fits = implicitStepsFit(step, step.part.duration_s() / stepsInPart(step, steps));
-  }
+  int steps = fittingSteps(step, implicitSteps(step, forced, forced == wasForced, mostlyFallen), forced, mostlyFallen);
   noteFrame(step, forced);
   // If pairs, islands and forces are unchanged, the forces are those at the end of the last frame.
   const bool known = island.forcesKnown && !engine.memo.topologyChanged && !wasForced && !forced;
   island.forcesKnown = false;
-  if (!fits) return outcome;
+  if (steps == 0) return outcome;
   bool begins = true;  // with steps of this length
   if (forced && !wasForced && reached_s == 0.0) followNewForces(step);
   const auto takeSteps = [&](int count) {
@@ -258,10 +271,12 @@ IslandOutcome runImplicitSteps(IslandStep& step, bool mostlyFallen, double& reac
     step.time_s = simulation.time_s + reached_s;
     step.gravity = simulation.scene.gravity.at(step.time_s + step.drift_s);  // forces are those of the step's end
     chooseFormula(step, island, std::exchange(begins, false));
-    const int finer = retryStepCount((end_s - reached_s) / simulation.scene.settings.frame_s, steps, forced);
-    const bool canRetryFiner = finer > steps && simulation.scene.settings.substeps == 0 && !mostlyFallen;
+    const double share = (end_s - reached_s) / simulation.scene.settings.frame_s;
+    const int finest = retryStepCount(share, steps, forced ? tuning::kMaxLedSteps : tuning::kMaxStandingSteps);
+    const bool canRetryFiner = finest > steps && simulation.scene.settings.substeps == 0 && !mostlyFallen;
     if (!stepImplicit(step, canRetryFiner || mostlyFallen)) {
-      if (canRetryFiner) {
+      const int finer = canRetryFiner ? retryStepCount(share, steps, mostSteps(step, forced, mostlyFallen)) : 0;
+      if (finer > steps) {
         takeSteps(finer);
         continue;
       }

@@ -126,7 +126,8 @@ void chooseOf(const IslandStep& step, const RigidIsland& island, const PatchRule
 void choosePatchFriction(const IslandStep& step, RigidIsland& island) {
   // Where a fall has too many points for its passes to converge, friction at the points that touch gains no energy.
   const std::size_t all = island.steady.points.size() + island.fast.points.size();
-  const bool converges = all * tuning::kCheapPasses <= tuning::kCheapEvaluations;
+  const bool converges =
+      all * static_cast<std::size_t>(tuning::kCheapPasses) <= static_cast<std::size_t>(tuning::kCheapEvaluations);
   const PatchRules rules{slipNoise_m_s(step), converges || isRigid(step.simulation.scene.settings.method)};
   for (PackedPoints* packed : packsOf(island)) {
     overPacks(*packed, [&](std::size_t first, std::size_t last) {

@@ -135,11 +135,11 @@ double shareOfPushOut(const IslandStep& step, const RigidIsland& island, double 
 
 // Passes in rigid mode that cost little because few points are active, or that a stack needs which is hit and mostly stands: the
 // overlap that fewer leave would shift its load for good. Precondition: `active` > 0.
-int affordablePasses(const IslandStep& step, std::size_t active) {
+int affordablePasses(const IslandStep& step, const RigidIsland& island, std::size_t active) {
   const auto within = [&](int passes, int evaluations) {
     return static_cast<int>(std::min(static_cast<std::size_t>(passes), static_cast<std::size_t>(evaluations) / active));
   };
-  const bool stands = !isRigid(step.simulation.scene.settings.method) && !isMostlyFallen(step);
+  const bool stands = !isRigid(step.simulation.scene.settings.method) && island.stands;
   return stands ? within(tuning::kStandingPasses, tuning::kStandingEvaluations)
                 : within(tuning::kCheapPasses, tuning::kCheapEvaluations);
 }
@@ -153,7 +153,7 @@ void stopAtContact(IslandStep& step, RigidIsland& island, int passes) {
   for (const PackedPoints* packed : packsOf(island)) applyWarmStart(island.motions, *packed);
   for (PackedPoints* packed : packsOf(island)) step.counters.contactEvaluations += solveAll(pass, island.motions, *packed);
   const std::size_t active = std::max<std::size_t>(1, island.steady.packed.activePoints + island.fast.packed.activePoints);
-  runPasses(step, island, pass, std::max(passes, affordablePasses(step, active)) - 1);
+  runPasses(step, island, pass, std::max(passes, affordablePasses(step, island, active)) - 1);
   writeBodies(island);
 }
 

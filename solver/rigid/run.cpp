@@ -15,6 +15,7 @@
 #include "solver/rigid/warm_start.h"
 #include "solver/world/checkpoint.h"
 #include "solver/world/driven_blocks.h"
+#include "solver/world/over_island.h"
 #include "solver/world/stage_clock.h"
 
 #include <Eigen/LU>
@@ -353,6 +354,7 @@ IslandOutcome runRigidSteps(IslandStep& step, int steps, double begin_s) {
   RigidIsland& island = rigidIslandOf(step);
   forgetPoints(island);
   island.rebounds = false;
+  island.stands = !isMostlyFallen(step);
   island.gained_j = 0.0;
   outcome.inside = runSteps(step, count, substeps, begin_s);
   if (sequential && outcome.inside) storeInManifolds(step, island, step.drift_s / substeps);

@@ -105,7 +105,7 @@ void fallAsleep(Simulation& simulation, std::size_t b) {
   engine.sleep.checkedLoads.clear();
   engine.memo.blockHistory[b].hasFallen = false;
   engine.memo.islandHistory[b].rigid = false;
-  engine.memo.islandHistory[b].explicitFrames = 0;
+  engine.memo.islandHistory[b].rigidFrames = 0;
   --engine.sleep.awakeCount;
   for (std::size_t a = 0; a < 3; ++a) std::fill_n(simulation.state.velocity.values(a, b), kCorners, 0.0);
   engine.memo.frames[b] = blockFrame(simulation.state.position, b);

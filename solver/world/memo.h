@@ -21,7 +21,7 @@ namespace springtower {
 struct BlockHistory {
   double lastExplicitStep_s = 0.0;  ///< s; the last explicit step of the block's positions; 0 after an implicit one
   double lastImplicitStep_s = 0.0;  ///< s; the implicit step from memo.previous to the present positions, 0 if there was none
-  bool explicitLast = false;        ///< whether the last step was explicit
+  bool explicitLast = false;        ///< whether the last step was an explicit or a rigid one
   bool hasFallen = false;           ///< whether it has fallen since it slept last
   double jerk = 0.0;    ///< kg m2/s6; mass times the squared rate of change of its corners' acceleration, mean over some frames
   double motion = 0.0;  ///< kg m2/s2; mass times the squared velocity of its corners, same mean

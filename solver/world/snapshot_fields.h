@@ -142,8 +142,8 @@ void fieldsOf(Stream& stream, BlockHistory& history) {
 
 template <class Stream>
 void fieldsOf(Stream& stream, IslandHistory& history) {
-  auto& [explicitFrames, implicitSteps, forced, rigid, spectralRadius, contactSignature] = history;
-  stream(explicitFrames, implicitSteps, forced, rigid, spectralRadius, contactSignature);
+  auto& [rigidFrames, implicitSteps, forced, rigid, spectralRadius, contactSignature] = history;
+  stream(rigidFrames, implicitSteps, forced, rigid, spectralRadius, contactSignature);
 }
 
 template <class Stream>

@@ -34,20 +34,6 @@ TEST(IslandModes, WhatMovesStaysInRigidSteps) {
   EXPECT_EQ(nextMode(ModeChange::frameBegins, held), IslandMode::implicit) << "a hand takes hold";
 }
 
-// Rigid steps cost little; but they do not bring a stack to rest that stands and sways.
-TEST(IslandModes, FailedImplicitStepsAreFollowedByRigidOnesButWhereAStackStands) {
-  for (const bool alone : {true, false}) {
-    for (const bool fallen : {true, false}) {
-      IslandFacts facts;
-      facts.leftAlone = alone;
-      facts.mostlyFallen = fallen;
-      EXPECT_EQ(nextMode(ModeChange::implicitFailed, facts), IslandMode::rigid);
-      facts.stands = true;
-      EXPECT_EQ(nextMode(ModeChange::implicitFailed, facts), IslandMode::explicitFallback);
-    }
-  }
-}
-
 // Between the parts of a frame its speed decides nothing.
 TEST(IslandModes, AFrameInPartsGoesOnAsItBegan) {
   IslandFacts facts;

@@ -9,14 +9,14 @@ namespace {
 // Blocks 1 and 3 were in an island that rigid steps carried, block 2 in one whose vibration needed six steps.
 TEST(IslandHistory, OfIslandsThatMergeTheStrongestCountsAndTheRestIsTheFirstBlocks) {
   std::array<IslandHistory, 4> histories{};
-  histories[1] = {.explicitFrames = 2, .implicitSteps = 1, .forced = true, .spectralRadius = 7.0, .contactSignature = 5};
+  histories[1] = {.rigidFrames = 2, .implicitSteps = 1, .forced = true, .spectralRadius = 7.0, .contactSignature = 5};
   histories[2] = {.implicitSteps = 6, .spectralRadius = 9.0, .contactSignature = 8};
-  histories[3] = {.explicitFrames = 4, .rigid = true};
+  histories[3] = {.rigidFrames = 4, .rigid = true};
   const std::array<std::int32_t, 3> blocks{1, 2, 3};
 
   const IslandHistory merged = mergedHistory(histories, blocks);
 
-  EXPECT_EQ(merged.explicitFrames, 4);
+  EXPECT_EQ(merged.rigidFrames, 4);
   EXPECT_EQ(merged.implicitSteps, 6);
   EXPECT_TRUE(merged.rigid);
   EXPECT_TRUE(merged.forced);

@@ -1,0 +1,93 @@
+#include "core/block.h"
+#include "core/scene/scene.h"
+#include "scenarios/random_scene.h"
+#include "scenarios/registry.h"
+#include "solver/block/inertia.h"
+#include "solver/frame/prepare.h"
+#include "solver/metrics/penetration.h"
+#include "solver/world/simulation.h"
+#include "tests/support/prepare_and_step.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <gtest/gtest.h>
+#include <string>
+#include <vector>
+
+namespace springtower {
+namespace {
+
+// Kinetic energy over potential energy of those of the first blocks that lie within half a height of where they were.
+double agitation(const Simulation& simulation, const std::vector<Vec3>& start) {
+  double kinetic = 0.0;
+  double potential = 0.0;
+  for (std::size_t b = 0; b < start.size(); ++b) {
+    const RigidMotion motion = rigidMotion(simulation.state, b);
+    if ((motion.centre - start[b]).norm() > 0.5 * kBlockHeight_m) continue;
+    kinetic += 0.5 * simulation.model.mass[b] * motion.velocity.squaredNorm();
+    potential += simulation.model.mass[b] * kStandardGravity_m_s2 * motion.centre.z();
+  }
+  return kinetic / potential;
+}
+
+struct Blow {
+  const char* tower;
+  double speed_m_s;
+  double height_rows;  // of the block that hits it
+};
+
+class BlowTest : public ::testing::TestWithParam<Blow> {};
+
+// A block flies at a tower that stands. What is left standing comes to rest: a tower in rigid steps alone sways on for seconds,
+// at 1e-4 of its potential energy. No frame takes more steps than rigid steps need (explicit ones of this tower are 1100 and
+// more), and no block gets into another by more than a fiftieth of its height.
+TEST_P(BlowTest, WhatIsLeftStandingComesToRest) {
+  Scene scene = sceneNamed(GetParam().tower);
+  std::vector<Vec3> start;
+  for (const BlockSpec& block : scene.blocks) start.push_back(block.centre);
+  BlockSpec shot;
+  shot.centre = Vec3(-0.3, 0.0, GetParam().height_rows * kBlockHeight_m);
+  shot.velocity = Vec3(GetParam().speed_m_s, 0.0, 0.0);
+  scene.blocks.push_back(shot);
+  scene.settings.sleep = Sleep::off;
+  Simulation simulation(scene);
+  PenetrationWorkspace workspace;
+  double deepest_m = 0.0;
+  int most = 0;
+  for (int frame = 0; frame < 120; ++frame) {
+    prepareAndStep(simulation);
+    deepest_m = std::max(deepest_m, maxPenetration(simulation.state.position, true, workspace).depth);
+    most = std::max(most, simulation.substeps);
+  }
+  EXPECT_LT(agitation(simulation, start), 1e-6);
+  EXPECT_LE(most, 400);
+  EXPECT_LT(deepest_m, 0.02 * kBlockHeight_m);
+}
+
+INSTANTIATE_TEST_SUITE_P(Speeds, BlowTest,
+                         ::testing::Values(Blow{"tower:6", 3.0, 3.6}, Blow{"tower:6", 5.0, 3.6}, Blow{"tower:18", 2.0, 15.6},
+                                           Blow{"tower:18", 5.0, 10.6}),
+                         [](const auto& tested) {
+                           return std::string(tested.param.tower).substr(6) + "RowsAt" +
+                                  std::to_string(static_cast<int>(tested.param.speed_m_s)) + "MetresASecond";
+                         });
+
+class DrawnStackTest : public ::testing::TestWithParam<std::uint64_t> {};
+
+// Random stacks by implicit steps that diverged in explicit ones, or took up to 100,000 of them in a frame.
+TEST_P(DrawnStackTest, TakesFewStepsAFrameAndDoesNotDiverge) {
+  Scene scene = randomScene(GetParam()).scene;
+  Simulation simulation(scene);
+  int most = 0;
+  for (int frame = 0; frame < 30; ++frame) {
+    prepareAndStep(simulation);
+    most = std::max(most, simulation.substeps);
+  }
+  EXPECT_LE(most, 1000);
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, DrawnStackTest, ::testing::Values(1071U, 1217U, 1414U, 1427U));
+
+}  // namespace
+}  // namespace springtower
