@@ -67,9 +67,8 @@ constexpr std::array<std::string_view, kCountOfRows> kNames = {
 #undef TUNING_GROUP
 };
 
-[[noreturn]] void refuse(const std::string& line) {
-  std::fprintf(stderr, "SPRINGTOWER_TUNING: found '%s', allowed is the name of a constant of core/tuning.def and a number\n",
-               line.c_str());
+[[noreturn]] void refuse(const std::string& where, const std::string& found, const char* allowed) {
+  std::fprintf(stderr, "SPRINGTOWER_TUNING=%s: found '%s', allowed is %s\n", where.c_str(), found.c_str(), allowed);
   std::exit(2);
 }
 
@@ -80,13 +79,14 @@ const std::map<std::string, double, std::less<>>& valuesOfFile() {
     const char* path = std::getenv("SPRINGTOWER_TUNING");
     if (path == nullptr) return read;
     std::ifstream file(path);
-    if (!file) refuse(path);
+    if (!file) refuse(path, "no file that can be read", "a file of lines `name value`");
     for (std::string line; std::getline(file, line);) {
       if (line.empty()) continue;
       std::istringstream words(line);
       std::string name;
       double value = 0.0;
-      if (!(words >> name >> value) || std::find(kNames.begin(), kNames.end(), name) == kNames.end()) refuse(line);
+      if (!(words >> name >> value) || !(words >> std::ws).eof() || std::find(kNames.begin(), kNames.end(), name) == kNames.end())
+        refuse(path, line, "the name of a constant of core/tuning.def and a number");
       read[name] = value;
     }
     return read;

@@ -61,7 +61,7 @@ Settings chooseMethod(const Scene& scene) {
   const double thrown = meetingSpeed(scene);
   const double squaredSpeed = 2.0 * gravity * loads.askewFall_m + thrown * thrown;
   const double stiffening = mass * squaredSpeed / (depth * depth * stiffness);
-  if (stiffening < tuning::kRigidMethodStiffening || movableBlocks(scene) >= tuning::kMinRigidModeBlocks) {
+  if (stiffening < tuning::kRigidMethodStiffening || movableBlocks(scene) >= tuning::kMinImplicitModeBlocks) {
     settings.method = Method::implicit;
     return settings;
   }

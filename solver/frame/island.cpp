@@ -25,7 +25,8 @@ double takeBackImplicitSteps(IslandStep& step) {
 
 // Implicit steps, as far as they fit and converge; then rigid ones.
 IslandOutcome runByModes(IslandStep& step) {
-  IslandFacts facts = islandFacts(step);
+  const IslandFacts facts = islandFacts(step);
+  bool isStanding = false;  // found only where implicit steps fail
   IslandOutcome outcome;
   double begin_s = step.part.begin_s;
   const IslandMode mode = nextMode(begin_s > 0.0 ? ModeChange::frameContinues : ModeChange::frameBegins, facts);
@@ -34,12 +35,12 @@ IslandOutcome runByModes(IslandStep& step) {
   if (mode == IslandMode::implicit) {
     outcome = runImplicitSteps(step, facts.mostlyFallen, begin_s);
     if (!outcome.inside || begin_s >= step.part.end_s) return outcome;
-    facts.stands = stands(step, facts);
+    isStanding = stands(step, facts.mostlyFallen);
     if (facts.rigidBefore) begin_s = takeBackImplicitSteps(step);
     setMode(step, IslandMode::rigid);
   }
   const int before = outcome.substeps;
-  outcome = runRigidMode(step, begin_s, facts.stands);
+  outcome = runRigidMode(step, begin_s, isStanding);
   outcome.substeps += before;
   return outcome;
 }

@@ -143,9 +143,9 @@ IslandFacts islandFacts(const IslandStep& step) {
   return facts;
 }
 
-bool stands(const IslandStep& step, const IslandFacts& facts) {
+bool stands(const IslandStep& step, bool mostlyFallen) {
   const std::size_t count = step.blocks.size();
-  if (facts.mostlyFallen || count >= tuning::kParallelBlocks) return false;
+  if (mostlyFallen || count >= tuning::kParallelBlocks) return false;
   return isSupported(step) && !isAboutToRebound(step);
 }
 

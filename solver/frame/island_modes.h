@@ -24,7 +24,6 @@ struct IslandFacts {
   /// Whether blocks that have more than half of the mass are faster than 0.45 sqrt(g h): they could rise by a tenth of their
   /// height. What stands on something and slides as a whole is not fast: that is smooth.
   bool fast = false;
-  bool stands = false;  ///< see `stands`; found only where implicit steps have failed
 };
 IslandFacts islandFacts(const IslandStep& step);
 
@@ -34,7 +33,7 @@ void noteFallen(const IslandStep& step);
 /// Whether an island is a stack that stands and sways, or that a hand leads: mostly not fallen, on something else, and with no
 /// pair about to meet so fast that it rebounds; and not so wide that implicit steps in every frame would take seconds. Implicit
 /// steps that have failed are then tried again in the next frame: rigid ones do not bring it to rest.
-bool stands(const IslandStep& step, const IslandFacts& facts);
+bool stands(const IslandStep& step, bool mostlyFallen);
 
 /// The transition table:
 ///   frame begins: rigid if left alone and fast or pinned to rigid steps; else implicit.

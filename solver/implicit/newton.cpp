@@ -195,7 +195,6 @@ void setLastStep(IslandStep& step, double step_s) {
     for (const std::int32_t block : step.blocks.subspan(first, last - first)) {
       BlockHistory& history = step.engine.memo.blockHistory[static_cast<std::size_t>(block)];
       history.lastImplicitStep_s = step_s;
-      history.lastExplicitStep_s = 0.0;
       history.explicitLast = false;
     }
   });

@@ -40,8 +40,8 @@ struct Blow {
 class BlowTest : public ::testing::TestWithParam<Blow> {};
 
 // A block flies at a tower that stands. What is left standing comes to rest: a tower in rigid steps alone sways on for seconds,
-// at 1e-4 of its potential energy. No frame takes more steps than rigid steps need (explicit ones of this tower are 1100 and
-// more), and no block gets into another by more than a fiftieth of its height.
+// at 1e-4 of its potential energy. No frame takes more steps than rigid steps at this
+// speed need, and no block gets into another by more than a fiftieth of its height.
 TEST_P(BlowTest, WhatIsLeftStandingComesToRest) {
   Scene scene = sceneNamed(GetParam().tower);
   std::vector<Vec3> start;
