@@ -31,13 +31,14 @@ TUNING_CONSTANT auto kRowsAndGroups = std::to_array<TuningRow>({
 #undef TUNING_GROUP
 });
 
-constexpr std::size_t kCountOfRows = 0
+constexpr auto kNames = std::to_array<std::string_view>({
 #define TUNING_GROUP(name)
-#define TUNING(type, name, value, unit, purpose, evidence) +1
+#define TUNING(type, name, value, unit, purpose, evidence) #name,
 #include "core/tuning.def"
 #undef TUNING
 #undef TUNING_GROUP
-    ;
+});
+constexpr std::size_t kCountOfRows = kNames.size();
 
 constexpr std::array<TuningRow, kCountOfRows> rowsWithTheirGroups() {
   std::array<TuningRow, kCountOfRows> rows{};
@@ -59,14 +60,6 @@ TUNING_CONSTANT auto kTuningTable = rowsWithTheirGroups();
 #undef TUNING_CONSTANT
 
 #ifdef SPRINGTOWER_TUNING_FROM_FILE
-constexpr std::array<std::string_view, kCountOfRows> kNames = {
-#define TUNING_GROUP(name)
-#define TUNING(type, name, value, unit, purpose, evidence) #name,
-#include "core/tuning.def"
-#undef TUNING
-#undef TUNING_GROUP
-};
-
 [[noreturn]] void refuse(const std::string& where, const std::string& found, const char* allowed) {
   std::fprintf(stderr, "SPRINGTOWER_TUNING=%s: found '%s', allowed is %s\n", where.c_str(), found.c_str(), allowed);
   std::exit(2);
