@@ -1,13 +1,11 @@
 #include "apps/commands/run/moves_report.h"
 #include "apps/commands/validate/frames.h"
+#include "apps/commands/validate/removals.h"
 #include "apps/commands/validate/validate.h"
-#include "core/error.h"
-#include "core/line_input.h"
 #include "solver/statics/statics.h"
 
 #include <algorithm>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
 #include <optional>
@@ -152,22 +150,15 @@ bool holdsTooHard(const Scene& scene, BlockId block, const Vec3& towards) {
 }
 
 std::vector<RemovalSequence> removalSequences(const ValidationPlan& plan) {
-  const std::string path = plan.oracle + "/removal.jsonl";
-  LineInput file(path, "--oracle");
   std::vector<RemovalSequence> sequences;
-  for (std::string text; file.next(text);) {
-    if (text.empty()) continue;
-    const nlohmann::json line = nlohmann::json::parse(text);
-    RemovalSequence sequence;
-    sequence.id = line.at("id").get<std::string>();
-    sequence.scene = bitCodeScene(line.at("config").get<std::string>());
-    sequence.standsAfter = line.at("stands_after").get<std::vector<bool>>();
+  for (const Removals& removals : readRemovals(plan.oracle, plan.longForm ? kAllRemovals : 1)) {
+    RemovalSequence sequence{removals.id, removals.scene, removals.standsAfter, 0, {}};
     Scene left = sequence.scene;
-    for (const nlohmann::json& place : line.at("remove")) {
+    for (const Removals::Place& place : removals.removed) {
       if (!plan.longForm && sequence.scene.moves.size() >= 2 * kShortRemovals) break;
       Move take;
-      take.row = place.at("row").get<int>();
-      take.position = place.at("position").get<int>();
+      take.row = place.row;
+      take.position = place.position;
       const bool alongX = take.row % 2 == 0;
       const Vec3 length = alongX ? Vec3::UnitX() : Vec3::UnitY();
       const Vec3 outwards = (take.position - 2) * (alongX ? Vec3::UnitY() : Vec3::UnitX());
@@ -175,9 +166,6 @@ std::vector<RemovalSequence> removalSequences(const ValidationPlan& plan) {
       const auto block = std::find_if(left.blocks.begin(), left.blocks.end(), [&](const BlockSpec& spec) {
         return spec.row == take.row && spec.position == take.position;
       });
-      if (block == left.blocks.end())
-        throw InputError(fmt::format("--oracle: {} takes a block from row {}, position {}, where none is left", sequence.id,
-                                     take.row, take.position));
       const auto id = blockId(static_cast<std::size_t>(block - left.blocks.begin()));
       if (holdsTooHard(left, id, take.towards)) take.speed_m_s = kJerk_m_s;
       left.blocks.erase(block);
@@ -187,7 +175,6 @@ std::vector<RemovalSequence> removalSequences(const ValidationPlan& plan) {
       sequence.scene.moves.insert(sequence.scene.moves.end(), {take, away});
     }
     sequences.push_back(sequence);
-    if (!plan.longForm) break;
   }
   return sequences;
 }

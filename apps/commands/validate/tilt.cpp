@@ -72,7 +72,7 @@ std::vector<Tilted> tiltedScenes(const ValidationPlan& plan, std::size_t count) 
   if (!file) throw InputError(fmt::format("--oracle: found no file {}, allowed is the folder of the reference sets", path));
   std::vector<VerdictLine> fit;
   for (VerdictLine& line : readVerdictLines(file, path)) {
-    if (rowsOf(line.scene) > kMaxTiltedRows || !line.expect.is_object() || !line.expect.value("clear", false)) continue;
+    if (rowsOf(line.scene) > kMaxTiltedRows || !isClear(line)) continue;
     if (!line.expect.contains("tilt_deg") || !line.expect.at("tilt_deg").is_number()) continue;
     const double tilt_deg = line.expect.at("tilt_deg").get<double>();
     if (tilt_deg > kMinMargin_deg && tilt_deg < kMaxMargin_deg) fit.push_back(std::move(line));

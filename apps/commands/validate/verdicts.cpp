@@ -1,8 +1,8 @@
 #include "apps/commands/validate/frames.h"
+#include "apps/commands/validate/removals.h"
 #include "apps/commands/validate/validate.h"
 #include "apps/commands/verdict/verdict.h"
 #include "core/error.h"
-#include "core/line_input.h"
 #include "solver/runner/run.h"
 #include "solver/statics/statics.h"
 
@@ -17,8 +17,6 @@
 
 namespace springtower {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr double kSeconds = 10.0;
 constexpr double kWatch_s = 0.5;
@@ -70,11 +68,9 @@ bool sameVerdict(const Fate& a, const Fate& b) {
   return a.divergence.empty() && b.divergence.empty() && a.standing.stands == b.standing.stands;
 }
 
-std::optional<bool> clearVerdict(const Json& expect) {
-  if (!expect.is_object() || !expect.value("clear", false) || !expect.contains("stands") || !expect.at("stands").is_boolean()) {
-    return {};
-  }
-  return expect.at("stands").get<bool>();
+std::optional<bool> clearVerdict(const VerdictLine& line) {
+  if (!isClear(line)) return {};
+  return line.expect.at("stands").get<bool>();
 }
 
 // How many of a set agree.
@@ -159,31 +155,23 @@ void addClaims(const OracleSet& set, const Counts& counts, ValidationSection& se
 
 // Every state of the sequences of removals, each as a tower of its own.
 void addRemovalStatics(const ValidationPlan& plan, ValidationSection& section) {
-  const std::string path = plan.oracle + "/removal.jsonl";
-  LineInput file(path, "--oracle");
   struct State {
     std::string id;
     Scene scene;
     bool expected;
   };
   std::vector<State> states;
-  std::size_t sequences = 0;
-  for (std::string text; file.next(text);) {
-    if (text.empty()) continue;
-    if (!plan.longForm && sequences == 1) break;
-    ++sequences;
-    const Json line = Json::parse(text);
-    Scene scene = bitCodeScene(line.at("config").get<std::string>());
-    const Json& after = line.at("stands_after");
-    for (std::size_t step = 0; step < after.size(); ++step) {
+  for (const Removals& removals : readRemovals(plan.oracle, plan.longForm ? kAllRemovals : 1)) {
+    Scene scene = removals.scene;
+    const std::size_t last = removals.removed.size();
+    for (std::size_t step = 0; step <= last; ++step) {
       if (step > 0) {
-        const Json& place = line.at("remove").at(step - 1);
-        std::erase_if(scene.blocks, [&](const BlockSpec& block) {
-          return place.at("row") == block.row && place.at("position") == block.position;
-        });
+        const Removals::Place& place = removals.removed[step - 1];
+        std::erase_if(scene.blocks,
+                      [&](const BlockSpec& block) { return place.row == block.row && place.position == block.position; });
       }
-      if (!plan.longForm && step % 4 != 0 && step + 1 != after.size()) continue;
-      states.push_back({fmt::format("{} after {}", line.at("id").get<std::string>(), step), scene, after.at(step).get<bool>()});
+      if (!plan.longForm && step % 4 != 0 && step != last) continue;
+      states.push_back({fmt::format("{} after {}", removals.id, step), scene, removals.standsAfter[step]});
     }
   }
   std::vector<char> agrees(states.size());
@@ -217,7 +205,7 @@ ValidationSection validateVerdicts(const ValidationPlan& plan) {
     });
     Counts counts;
     for (std::size_t i = 0; i < lines.size(); ++i) {
-      count(lines[i].id, clearVerdict(lines[i].expect), fates[i], counts, section.notes);
+      count(lines[i].id, clearVerdict(lines[i]), fates[i], counts, section.notes);
     }
     addClaims(set, counts, section);
   }

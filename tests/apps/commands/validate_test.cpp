@@ -1,12 +1,15 @@
 #include "tests/support/program.h"
 
 #include <filesystem>
+#include <fstream>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <set>
+#include <string>
+#include <vector>
 
 namespace springtower {
 namespace {
@@ -118,6 +121,64 @@ TEST(Validate, RefusesWhatItDoesNotKnow) {
   EXPECT_EQ(twice.exitCode, 2);
   EXPECT_THAT(twice.error, ::testing::AllOf(HasSubstr("--full"), HasSubstr("--long")));
   EXPECT_FALSE(fs::exists(scratch.file("page")));
+}
+
+// A folder of reference sets in which one file is as given and the others are as they should be.
+void writeSets(const fs::path& folder, const std::string& name, const std::string& text) {
+  const std::string tower = R"j({"id":"a","config":"(111)","expect":{"stands":true,"clear":true}})j";
+  fs::create_directories(folder);
+  for (const char* set : {"small", "shift", "loose", "r18"})
+    std::ofstream(folder / (std::string(set) + ".jsonl")) << tower << '\n';
+  std::ofstream(folder / "removal.jsonl") << R"j({"id":"r","config":"(111)","remove":[],"stands_after":[true]})j" << '\n';
+  std::ofstream(folder / name) << text << '\n';
+}
+
+ProgramResult validateVerdictsOf(const ScratchFolder& scratch, const fs::path& sets) {
+  return runProgram("springtower", {"validate", "--out", scratch.file("page"), "--only", "verdicts", "--oracle", sets.string(),
+                                    "--scenes", std::string(SPRINGTOWER_SOURCE_DIR) + "/scenes"});
+}
+
+// They were no message and exit code 70.
+TEST(Validate, NamesTheFileAndLineOfABrokenReferenceSet) {
+  struct Broken {
+    const char* file;
+    const char* text;
+    std::vector<const char*> named;
+  };
+  const Broken all[] = {
+      {"removal.jsonl", R"j({"id":)j", {"removal.jsonl, line 1", "allowed is a JSON object"}},
+      {"removal.jsonl", "\n[]", {"removal.jsonl, line 2", "'[]'"}},
+      {"removal.jsonl", R"j({"config":"(111)","remove":[],"stands_after":[true]})j", {"line 1", "id is missing"}},
+      {"removal.jsonl", R"j({"id":5,"config":"(111)","remove":[],"stands_after":[true]})j", {"id", "'5'", "a text"}},
+      {"removal.jsonl", R"j({"id":"r","config":"(121)","remove":[],"stands_after":[true]})j", {"config", "(121)"}},
+      {"removal.jsonl", R"j({"id":"r","config":"(111)","remove":[],"stands_after":["yes"]})j", {"stands_after", "yes"}},
+      {"removal.jsonl", R"j({"id":"r","config":"(111)","remove":[],"stands_after":[]})j", {"stands_after", "found 0", "1"}},
+      {"removal.jsonl",
+       R"j({"id":"r","config":"(111)","remove":[{"row":0}],"stands_after":[true,true]})j",
+       {"remove[0]", "position is missing"}},
+      {"removal.jsonl",
+       R"j({"id":"r","config":"(111)","remove":[{"row":1,"position":1}],"stands_after":[true,true]})j",
+       {"remove", "row 1, position 1"}},
+      {"removal.jsonl", R"j({"id":"r","config":"(111)","remove":"all","stands_after":[true]})j", {"remove", "a list of objects"}},
+      {"small.jsonl", R"j({"id":)j", {"small.jsonl: line 1", "allowed is a JSON object"}},
+      {"r18.jsonl", "nothing", {"r18.jsonl: line 1", "allowed is a JSON object"}},
+  };
+  for (const Broken& broken : all) {
+    const ScratchFolder scratch;
+    writeSets(scratch.path() / "sets", broken.file, broken.text);
+    const ProgramResult result = validateVerdictsOf(scratch, scratch.path() / "sets");
+    EXPECT_EQ(result.exitCode, 2) << broken.text << '\n' << result.error;
+    for (const char* named : broken.named) EXPECT_THAT(result.error, HasSubstr(named)) << broken.text;
+  }
+}
+
+// What is expected of a tower may be anything: where that is no verdict, it is not judged.
+TEST(Validate, JudgesNoTowerByWhatIsNoVerdict) {
+  const ScratchFolder scratch;
+  writeSets(scratch.path() / "sets", "small.jsonl", R"j({"id":"a","config":"(111)","expect":{"stands":"yes","clear":"yes"}})j");
+  const ProgramResult result = validateVerdictsOf(scratch, scratch.path() / "sets");
+  EXPECT_EQ(result.exitCode, 0) << result.error;
+  EXPECT_THAT(result.output, HasSubstr("small: clear verdicts right, sleep on: 0 of 0"));
 }
 
 }  // namespace
