@@ -1,7 +1,6 @@
 // A user who does anything at random: on the viewer itself frame by frame, where all repeats, and with mouse and keys on the real
 // program.
-#include "apps/viewer/view/state.h"
-#include "core/random.h"
+#include "tests/apps/viewer/app/random_user.h"
 #include "tests/apps/viewer/app/viewer_window.h"
 
 #include <array>
@@ -21,76 +20,6 @@ double secondsOr(double usual) {
   return given == nullptr ? usual : std::atof(given);
 }
 
-/// Draws what the user does next.
-class Dice {
- public:
-  explicit Dice(std::uint64_t seed) : random_(seed, 1) {}
-  double share() { return random_.uniform(); }
-  int below(int n) { return static_cast<int>(n * share()); }
-  bool happens(double probability) { return share() < probability; }
-
- private:
-  RandomStream random_;
-};
-
-// One of the keys that the window handles, or one of its panel's switches.
-void pressKey(Viewer& viewer, Dice& dice) {
-  Controls& controls = viewer.controls;
-  switch (dice.below(12)) {
-    case 0:
-      viewer.paused = !viewer.paused;
-      return;
-    case 1:
-      viewer.paused = viewer.once = true;
-      return;
-    case 2:
-      return travel(viewer, viewer.session.frame - std::min<std::uint64_t>(viewer.session.frame, 1));
-    case 3:
-      return travel(viewer, viewer.session.frame + 1);
-    case 4:
-      return undo(viewer);
-    case 5:
-      if (dice.happens(0.3)) restart(viewer, viewer.choice);
-      return;
-    case 6:
-      viewer.overlay = static_cast<Overlay>(dice.below(static_cast<int>(kOverlays)));
-      return;
-    case 7:
-      viewer.arrows = !viewer.arrows;
-      return;
-    case 8:
-      return turnHand(controls, TurnAxis::view, kKeyTurn * (dice.below(9) - 4));
-    case 9:
-      return turnHand(controls, TurnAxis::right, kKeyTurn * (dice.below(9) - 4));
-    case 10:
-      return orbit(controls.camera, 0.05 * (dice.below(9) - 4), 0.05 * (dice.below(9) - 4));
-    default:
-      viewer.limit_n = 0.5 + 19.5 * dice.share();
-      return;
-  }
-}
-
-void act(Viewer& viewer, Dice& dice) {
-  Controls& controls = viewer.controls;
-  const Viewport& viewport = controls.viewport;
-  const double what = dice.share();
-  if (what < 0.70) {
-    // Mostly over the tower, where something happens.
-    const double x = viewport.width * (0.25 + 0.5 * dice.share());
-    pointerMoved(controls, viewer.session, x, viewport.height * dice.share());
-  } else if (what < 0.90) {
-    const Button button = dice.happens(0.6) ? Button::left : dice.happens(0.75) ? Button::right : Button::middle;
-    buttonChanged(controls, viewer.session, button, dice.happens(0.6));
-  } else if (what < 0.95) {
-    wheelTurned(controls, dice.below(7) - 3);
-  } else if (what < 0.97) {
-    controls.look = dice.happens(0.4);
-  } else {
-    pressKey(viewer, dice);
-    if (viewer.paused && !viewer.once && dice.happens(0.8)) viewer.paused = false;
-  }
-}
-
 // What a user who changes the physics all the time may do.
 void retune(Viewer& viewer, Dice& dice) {
   constexpr std::array kMethods = {Method::implicit, Method::semiImplicitEuler, Method::midpoint, Method::rungeKutta4,
@@ -100,28 +29,6 @@ void retune(Viewer& viewer, Dice& dice) {
   viewer.tuning.sleep = kSleeps[static_cast<std::size_t>(dice.below(static_cast<int>(kSleeps.size())))];
   viewer.tuning.friction = dice.share();
   viewer.tuning.tolerance_m = 2e-5 * std::pow(50.0, dice.share());
-}
-
-Viewer randomViewer(const std::string& scene, int players, Method method = Method::semiImplicitEuler) {
-  SceneChoice choice;
-  choice.name = scene;
-  choice.players = players;
-  choice.options.heightsSigma_m = kUsualSigma_m;
-  Tuning tuning = tuningOf(sceneOf(choice));
-  tuning.method = method;
-  Viewer viewer(choice, tuning);
-  viewer.watch.measures = true;
-  return viewer;
-}
-
-void play(Viewer& viewer, double seconds, Dice& dice) {
-  const double frame_s = viewer.session.scene.settings.frame_s;
-  for (int i = 0; i < seconds / frame_s; ++i) {
-    act(viewer, dice);
-    viewer.session.frame_ms = 0.0;  // what a slow machine leaves out would not repeat
-    advance(viewer, frame_s);
-    pictureOf(viewer);
-  }
 }
 
 bool finite(const ParticleArray& position) {
@@ -140,7 +47,7 @@ TEST_P(ViewerRandomMinute, BreaksNothing) {
   const double seconds = secondsOr(60.0);
   Viewer viewer = randomViewer("tower:6", 0, GetParam());
   Dice dice(1);
-  play(viewer, seconds, dice);
+  playAtRandom(viewer, seconds, dice);
   RecordProperty("frames", std::to_string(viewer.watch.frames));
   RecordProperty("max_penetration_mm", std::to_string(1e3 * viewer.watch.deepest.depth));
   EXPECT_TRUE(finite(viewer.session.simulation.state.position));
@@ -153,7 +60,7 @@ TEST_P(ViewerRandomMinute, BreaksNothing) {
 TEST(ViewerRandom, AGameAtRandomBreaksNothing) {
   Viewer viewer = randomViewer("tower:4", 2);
   Dice dice(2);
-  play(viewer, 20.0, dice);
+  playAtRandom(viewer, 20.0, dice);
   EXPECT_TRUE(finite(viewer.session.simulation.state.position));
   EXPECT_EQ(viewer.watch.failures, 0);
   EXPECT_LT(viewer.watch.deepest.depth, 1e-3) << viewer.watch.deepestTime_s;
@@ -166,7 +73,7 @@ TEST(ViewerRandom, PhysicsChangedAtRandomIsAnsweredOrNamed) {
   Dice dice(3);
   for (int i = 0; i < 20; ++i) {
     retune(viewer, dice);
-    play(viewer, 0.25, dice);
+    playAtRandom(viewer, 0.25, dice);
     if (!viewer.session.failure.empty()) {
       EXPECT_FALSE(viewer.message.empty());
       restart(viewer, viewer.choice);
@@ -182,7 +89,7 @@ TEST(ViewerRandom, AViewerThatWasPlayedLeavesNoMemoryBehind) {
   const auto once = [] {
     Viewer viewer = randomViewer("tower:3", 1);
     Dice dice(4);
-    play(viewer, 3.0, dice);
+    playAtRandom(viewer, 3.0, dice);
     return viewer.session.log.size();
   };
   EXPECT_GT(once(), 0U);
