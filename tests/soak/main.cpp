@@ -101,7 +101,7 @@ void soakTower(const Soak& soak, Soaked& found) {
   const double energy_j = energy(simulation).total();
   std::optional<double> memory_mb;  // from the second twin on: what the first one takes is part of the start
   PenetrationWorkspace workspace;
-  for (std::uint64_t check = 0; soak.goesOn(); ++check) {
+  for (std::uint64_t check = 0; check == 0 || soak.goesOn(); ++check) {  // one look, however slow the machine is
     const std::string before = check % kTwinChecks == 0 ? bytesOf(simulation) : std::string();
     for (std::uint64_t frame = 0; frame < kCheckFrames; ++frame) stepFrame(simulation);
     if (!before.empty() && hashOfTwin(scene, before, kCheckFrames) != stateHash(simulation)) {
@@ -142,9 +142,9 @@ void soakFalls(const Soak& soak, Soaked& found) {
   constexpr std::uint64_t kSeeds = 12;
   std::map<std::string, std::uint64_t> ends;
   std::optional<double> memory_mb;
-  for (std::uint64_t round = 0; soak.goesOn(); ++round) {
+  for (std::uint64_t round = 0; round == 0 || soak.goesOn(); ++round) {
     if (round == 2) memory_mb = residentMemory_mb();
-    for (std::uint64_t seed = soak.seed; seed < soak.seed + kSeeds && soak.goesOn(); ++seed) {
+    for (std::uint64_t seed = soak.seed; seed < soak.seed + kSeeds && (ends.empty() || soak.goesOn()); ++seed) {
       const std::vector<Scene> scenes = {droppedBlocks(seed), topplingTower(seed), shiftedTower(seed)};
       for (std::size_t kind = 0; kind < scenes.size(); ++kind) {
         const std::string name = fmt::format("seed {} of kind {}", seed, kind);
@@ -166,7 +166,7 @@ void soakViewer(const Soak& soak, Soaked& found) {
   Viewer viewer = randomViewer("tower:6", 0, Method::implicit);
   Dice dice(soak.seed);
   std::size_t longest = 0;
-  while (soak.goesOn()) {
+  do {
     playAtRandom(viewer, kPlay_s, dice);
     Session& session = viewer.session;
     longest = std::max(longest, session.log.size());
@@ -183,7 +183,7 @@ void soakViewer(const Soak& soak, Soaked& found) {
     found.see("memory over what its history may have", "", 1.0, (residentMemory_mb() - memory_mb) / allowed_mb);
     found.see("penetration", "mm", 1.0, 1e3 * viewer.watch.deepest.depth);
     found.see("divergences", "", 0.0, viewer.watch.failures);
-  }
+  } while (soak.goesOn());
 }
 
 struct Part {
