@@ -44,7 +44,7 @@ struct RandomScene {
 
 /// The scene of a seed: sizes, masses, friction, gravity, speeds, method and settings are drawn within the limits above, most of
 /// them evenly in their logarithm. checkScene accepts it: where a draw is refused the next of the same stream is taken. The same
-/// on every machine up to the last bits of sines and cosines, from which orientations come, as in scene files.
+/// on every machine.
 RandomScene randomScene(std::uint64_t seed);
 
 /// Puts the tower of `towerCode` in the place of the scene's first `towerBlocks` blocks. Throws InputError for a code, options,

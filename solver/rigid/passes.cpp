@@ -173,16 +173,22 @@ void solveFirst(const Pass& pass, BodyMotion* bodies, PackedPoints& packed, std:
   }
 }
 
+// Returns by how much the points' approach was changed at most, m/s.
 SPRINGTOWER_KERNEL
-void solveAgain(const Pass& pass, BodyMotion* bodies, PackedPoints& packed, std::size_t first, std::size_t last) {
+double solveAgain(const Pass& pass, BodyMotion* bodies, PackedPoints& packed, std::size_t first, std::size_t last) {
+  Lanes worst = kNone;
   for (std::size_t i = first; i < last; ++i) {
     const PackedPair& pair = packed.pairs[static_cast<std::size_t>(packed.active[i])];
     PackMotion motion;
     gather(bodies, pair, motion);
     Lanes opening, more;
-    for (PackedPoint& p : pointsOf(packed, pair)) solvePoints(pass, pair, kAll, motion, p, opening, more);
+    for (PackedPoint& p : pointsOf(packed, pair)) {
+      solvePoints(pass, pair, kAll, motion, p, opening, more);
+      worst = more > worst * p.normalMass ? more / p.normalMass : worst;
+    }
     scatter(motion, pair, bodies);
   }
+  return std::max(std::max(worst[0], worst[1]), std::max(worst[2], worst[3]));
 }
 
 // The pairs of which a body's velocity has changed since a pass; returns the number of their active points.
@@ -262,9 +268,15 @@ std::size_t solveAll(const Pass& pass, std::vector<BodyMotion>& bodies, PackedPo
   return pushing;
 }
 
-void solveActive(const Pass& pass, std::vector<BodyMotion>& bodies, PackedPoints& packed) {
-  overColours(packed.activeStart,
-              [&](std::size_t first, std::size_t last) { solveAgain(pass, bodies.data(), packed, first, last); });
+double solveActive(const Pass& pass, std::vector<BodyMotion>& bodies, PackedPoints& packed) {
+  std::atomic<double> worst = 0.0;
+  overColours(packed.activeStart, [&](std::size_t first, std::size_t last) {
+    const double found = solveAgain(pass, bodies.data(), packed, first, last);
+    double known = worst;
+    while (found > known && !worst.compare_exchange_weak(known, found)) {
+    }
+  });
+  return worst;
 }
 
 std::size_t solveChanged(const Pass& pass, RigidIsland& island, PackedPoints& packed, int number, double enough) {

@@ -34,8 +34,8 @@ void applyWarmStart(std::vector<BodyMotion>& bodies, const PackedPoints& packed)
 /// A pass over all points, which finds those that are active. Returns the number of those that push or have pushed.
 std::size_t solveAll(const Pass& pass, std::vector<BodyMotion>& bodies, PackedPoints& packed);
 
-/// A pass over the active points.
-void solveActive(const Pass& pass, std::vector<BodyMotion>& bodies, PackedPoints& packed);
+/// A pass over the active points. Returns by how much it has slowed the approach at a point at most, m/s.
+double solveActive(const Pass& pass, std::vector<BodyMotion>& bodies, PackedPoints& packed);
 
 /// Pass `number` through an impact: over those active points of which a body's velocity has changed since they were solved last,
 /// as `changed` [bodies] has it. Changes of less than `enough` (m/s) count as none. Returns the number of points solved.

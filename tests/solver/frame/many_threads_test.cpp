@@ -18,7 +18,7 @@ namespace springtower {
 namespace {
 
 constexpr int kThreadCounts[] = {1, 2, 3, 5, 8, 16, 32, 64};
-constexpr int kFrames = 6;
+constexpr int kFramesOnThreads = 6;
 
 struct Timed {
   std::uint64_t hash = 0;
@@ -35,7 +35,7 @@ Timed timedOn(const Scene& scene, int threads) {
     prepare(simulation);
     stepFrame(simulation);
     const double before_s = processorTime_s();
-    for (int frame = 0; frame < kFrames; ++frame) stepFrame(simulation);
+    for (int frame = 0; frame < kFramesOnThreads; ++frame) stepFrame(simulation);
     timed.processor_s = processorTime_s() - before_s;
     timed.hash = stateHash(simulation);
     return timed;
