@@ -35,11 +35,13 @@ void SearchMonitor::look() {
   }
   if (!goesOn_) return;
   const std::unique_lock<std::mutex> lock(calling_, std::try_to_lock);
-  if (!lock.owns_lock() || now_s < nextCall_s_) return;
+  if (!lock.owns_lock() || endedByCaller_ || now_s < nextCall_s_) return;
   nextCall_s_ = now_s + kSecondsBetweenCalls;
   const PrepareProgress progress{blocks_, blocksDone_.load(std::memory_order_relaxed),
                                  iterations_.load(std::memory_order_relaxed), now_s};
-  if (!goesOn_(progress)) stopped_.store(true, std::memory_order_relaxed);
+  if (goesOn_(progress)) return;
+  endedByCaller_ = true;
+  stopped_.store(true, std::memory_order_relaxed);
 }
 
 }  // namespace springtower

@@ -47,7 +47,8 @@ class SearchMonitor {
   std::atomic<bool> stopped_{false};
   std::atomic<bool> outOfTime_{false};
   std::mutex calling_;
-  double nextCall_s_ = 0.0;
+  double nextCall_s_ = 0.0;     // guarded by it,
+  bool endedByCaller_ = false;  // and this: who has ended the search is not called again
 };
 
 }  // namespace springtower

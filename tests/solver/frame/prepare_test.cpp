@@ -4,9 +4,11 @@
 #include "scenarios/towers.h"
 #include "solver/metrics/balance.h"
 
+#include <chrono>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <oneapi/tbb/global_control.h>
+#include <thread>
 #include <vector>
 
 namespace springtower {
@@ -89,6 +91,18 @@ TEST(Prepare, EndsWhereTheCallerWantsIt) {
   ASSERT_EQ(heard.size(), 1U);
   EXPECT_EQ(heard.front().blocks, 300U);
   EXPECT_EQ(heard.front().blocksDone, 0U);
+}
+
+// Nor is the caller who takes long to answer called again.
+TEST(Prepare, WhoHasEndedItIsNotCalledAgain) {
+  Simulation simulation(towerScene(100));
+  int calls = 0;
+  prepare(simulation, {.goesOn = [&](const PrepareProgress&) {
+            ++calls;
+            std::this_thread::sleep_for(std::chrono::milliseconds(150));
+            return false;
+          }});
+  EXPECT_EQ(calls, 1);
 }
 
 TEST(Prepare, RefusesANegativeBudget) {
