@@ -5,6 +5,7 @@
 #include "core/scene/remove_block.h"
 #include "core/tuning.h"
 #include "solver/statics/forces.h"
+#include "solver/statics/loose.h"
 
 #include <algorithm>
 #include <array>
@@ -204,8 +205,8 @@ std::vector<BlockLoad> blockLoads(const StaticScene& scene, const ContactLoads& 
     } else {
       load.greatestAbove_n = 0.0;
     }
-    load.loose =
-        load.covered && (touched[b] == 0 || load.greatestAbove_n.value_or(1.0) <= tuning::kMinStaticLoad * model.forceUnit_n);
+    constexpr double kUnbounded = std::numeric_limits<double>::infinity();
+    load.loose = isLoose(load.covered, load.greatestAbove_n.value_or(kUnbounded), model.forceUnit_n);
     if (!load.covered) load.gap_m = 0.0;
   }
   return result;

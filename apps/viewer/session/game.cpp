@@ -1,6 +1,9 @@
 #include "apps/viewer/session/game.h"
 
+#include "apps/viewer/session/footprint.h"
+#include "core/tuning.h"
 #include "solver/block/inertia.h"
+#include "solver/statics/loose.h"
 #include "solver/statics/tilt_margin.h"
 
 #include <algorithm>
@@ -16,7 +19,7 @@ constexpr double kFlat = 0.95;            // least vertical part of the axis tha
 constexpr double kFloorSlack = 0.02;      // of a block's height, above the floor
 constexpr double kQuietSpeed_m_s = 5e-3;  // of any corner, while a turn ends
 constexpr double kQuietTime_s = 0.5;      // how long it has to last
-constexpr double kLooseInWeights = 0.5;   // a loose block carries less than this of its own weight
+constexpr double kOver = 0.25;            // of a block's height: how far into its top one may reach that lies over it
 
 double heightOf(const Simulation& simulation, std::size_t block) {
   return simulation.model.dimensions[block].z();
@@ -58,6 +61,18 @@ void beginTurn(Game& game, const Simulation& simulation, std::uint64_t frame) {
   for (std::size_t row = 0; row < count.size(); ++row) {
     if (count[row] >= 3) game.topRow = static_cast<int>(row);
   }
+}
+
+// Whether a block lies over this one, on it or with a gap of less than half its height.
+bool isCovered(std::span<const Footprint> all, std::size_t block) {
+  const Footprint& own = all[block];
+  const double height = own.top_m - own.bottom_m;
+  for (std::size_t b = 0; b < all.size(); ++b) {
+    const double above = all[b].bottom_m - own.top_m;
+    if (b == block || above < -kOver * height || above > 0.5 * height) continue;
+    if (overlapOf(all[b], own) > tuning::kMinOutlineOverlap_m) return true;
+  }
+  return false;
 }
 
 bool quiet(const Simulation& simulation) {
@@ -152,11 +167,19 @@ std::vector<Hint> hints(const Simulation& simulation, std::span<const ContactFor
     all[index(contact.lower)].drag_n += drag;
     if (load > 0.0) all[index(contact.lower)].load_n += load;
   }
-  const double gravity = simulation.scene.gravity.magnitude;
+  const std::vector<Footprint> footprints = footprintsOf(simulation.state.position);
+  const auto& mass = simulation.model.mass;
+  const double mean = std::accumulate(mass.begin(), mass.end(), 0.0) / static_cast<double>(blocks);
   for (std::size_t b = 0; b < blocks; ++b) {
-    all[b].loose = all[b].load_n < kLooseInWeights * simulation.model.mass[b] * gravity;
+    all[b].loose = isLoose(isCovered(footprints, b), all[b].load_n, mean * simulation.scene.gravity.magnitude);
   }
   return all;
+}
+
+std::string inWords(const Hint& hint, std::optional<bool> stands) {
+  std::string line = fmt::format("{}: {:.1f} N to pull.", hint.loose ? "Loose" : "Tight", hint.drag_n);
+  if (stands) line += *stands ? " The tower stands without it." : " The tower falls without it.";
+  return line;
 }
 
 std::optional<WithoutBlock> withoutBlock(const Simulation& simulation, std::span<const ContactForce> contacts, BlockId block) {

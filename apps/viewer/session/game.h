@@ -59,11 +59,15 @@ struct Hint {
   BlockId block = kFloor;
   double drag_n = 0.0;  ///< N, friction that holds it: the coefficient times all normal forces on it
   double load_n = 0.0;  ///< N, what rests on it
-  bool loose = false;   ///< nearly nothing but its own weight
+  bool loose = false;   ///< as isLoose (solver/statics/loose.h) defines it
 };
 
 /// Hints for all blocks, [blocks].
 std::vector<Hint> hints(const Simulation& simulation, std::span<const ContactForce> contacts);
+
+/// A hint as the player reads it: how tight the block is, what it takes to pull it, and whether the tower stands without it
+/// (empty while that is not found yet).
+std::string inWords(const Hint& hint, std::optional<bool> stands);
 
 /// The tower without a block, for statics: the other blocks as they lie and what they touch now.
 struct WithoutBlock {
