@@ -161,18 +161,27 @@ GripForce gripForce(const Simulation& simulation) {
   return tetherForces(simulation.tether, simulation.model, simulation.state, simulation.time_s, corner);
 }
 
+double reachOf(const Hand& hand, const Simulation& simulation) {
+  return hand.limit_n / (simulation.model.mass[index(hand.block)] * hand.rate_rad_s * hand.rate_rad_s);
+}
+
+void moveAlongLine(Hand& hand, double speed_m_s, double carried, const Simulation& simulation) {
+  const double frame_s = simulation.scene.settings.frame_s;
+  hand.velocity = speed_m_s * hand.line;
+  hand.place += frame_s * hand.velocity;
+  const double give = (1.0 - carried) * (1.0 - elementary::exp(-frame_s / tuning::kHeightFollowTime_s));
+  hand.place.z() += give * (centre(simulation.state.position, index(hand.block)).z() - hand.place.z());
+}
+
 void advancePull(Draw& draw, std::span<const ContactForce> contacts, Simulation& simulation) {
   Hand& hand = draw.hand;
   const std::size_t b = index(hand.block);
-  const double reach = hand.limit_n / (simulation.model.mass[b] * hand.rate_rad_s * hand.rate_rad_s);
+  const double reach = reachOf(hand, simulation);
   const double ahead = (hand.place - centre(simulation.state.position, b)).dot(hand.line);
   const double frame_s = simulation.scene.settings.frame_s;
   const double gained = draw.speed_m_s * draw.speed_m_s / (2.0 * tuning::kDrawRampLength_m) * (draw.drawn_s + 0.5 * frame_s);
   draw.drawn_s += frame_s;
-  hand.velocity = (ahead < reach ? std::min(draw.speed_m_s, gained) : 0.0) * hand.line;
-  hand.place += frame_s * hand.velocity;
-  const double give = (1.0 - draw.grip.carried) * (1.0 - elementary::exp(-frame_s / tuning::kHeightFollowTime_s));
-  hand.place.z() += give * (centre(simulation.state.position, b).z() - hand.place.z());
+  moveAlongLine(hand, ahead < reach ? std::min(draw.speed_m_s, gained) : 0.0, draw.grip.carried, simulation);
   hold(hand, contacts, draw.grip, simulation);
 }
 

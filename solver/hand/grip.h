@@ -64,6 +64,13 @@ struct Draw {
   double drawn_s = 0.0;     ///< s since the draw began
 };
 
+/// Distance from its block at which a hand reaches its force limit, m. Precondition: the hand holds a block.
+double reachOf(const Hand& hand, const Simulation& simulation);
+
+/// Moves the place of a hand along its line at a speed (m/s, signed) for the coming frame; its height follows the block's, the
+/// less of the block's weight the hand supports (`carried`, 0..1). Precondition: the hand holds a block and has a line.
+void moveAlongLine(Hand& hand, double speed_m_s, double carried, const Simulation& simulation);
+
 /// Advances the hand for the coming frame, limited to the distance from its block at which its force limit is reached, and holds
 /// the block. Precondition: the hand holds a block.
 void advancePull(Draw& draw, std::span<const ContactForce> contacts, Simulation& simulation);

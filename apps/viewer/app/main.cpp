@@ -30,8 +30,9 @@ constexpr std::string_view kFooter = R"help(examples:
   springtower-viewer --scene tower:12 --players 2    the game
   springtower-viewer --scene "(111)-(1L1)-(111)"     a tower with a loose block
   springtower-viewer --headless --frames 60 --png out --overlay load
-mouse: left drag moves a block in the plane of the screen, right drag along the view; beside the blocks it goes round.
-       Wheel and Q E W S A D turn the held block; shift looks round while the hand keeps it.
+mouse: a drag on a block pulls it out along its own axis, carries it once it is free, and lays it down where the outline is when
+       it is let go; the wheel, Q and E turn it. A drag beside the blocks goes round. With shift held the block moves in all six
+       axes: left drag in the plane of the screen, right drag along the view, wheel and Q E W S A D turn it.
 keys:  space pause, n one frame, r reset, t slow motion, backspace undo, [ ] back and forth, o colour by, f contact forces,
        tab panels, p screenshot, v record video, i writes what is seen and all poses, escape ends
 A signal (Ctrl-C) ends it as escape does, with exit code 130 or 143. A recording that a killed viewer leaves, FILE.partial, can be

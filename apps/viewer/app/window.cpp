@@ -67,11 +67,12 @@ void onCursor(GLFWwindow* window, double x, double y) {
   pointerMoved(desk.viewer.controls, desk.viewer.session, at.x(), at.y());
 }
 
-// A pull along the view needs more room than the screen has below a block: while it lasts the pointer is hidden and has no
-// bounds. It comes back where it was.
+// A move needs more room than the screen has beside a block: while it lasts the block itself shows where the mouse is, and the
+// pointer is hidden and has no bounds. It comes back where it was.
 void boundPointer(Desk& desk) {
   Controls& controls = desk.viewer.controls;
-  const int wanted = controls.right && controls.hand.block != kFloor ? GLFW_CURSOR_DISABLED : GLFW_CURSOR_NORMAL;
+  const int wanted =
+      controls.hand.block != kFloor && (controls.left || controls.right) ? GLFW_CURSOR_DISABLED : GLFW_CURSOR_NORMAL;
   if (glfwGetInputMode(desk.window, GLFW_CURSOR) == wanted) return;
   glfwSetInputMode(desk.window, GLFW_CURSOR, wanted);
   double x = 0.0;
@@ -115,17 +116,17 @@ void onRepeatedKey(Viewer& viewer, int key) {
     case GLFW_KEY_D:
       return turnHand(controls, TurnAxis::view, -kKeyTurn);
     case GLFW_KEY_LEFT:
-      return orbit(controls.camera, -kKeyOrbit, 0.0);
+      return lookRound(controls, -kKeyOrbit, 0.0);
     case GLFW_KEY_RIGHT:
-      return orbit(controls.camera, kKeyOrbit, 0.0);
+      return lookRound(controls, kKeyOrbit, 0.0);
     case GLFW_KEY_UP:
-      return orbit(controls.camera, 0.0, kKeyOrbit);
+      return lookRound(controls, 0.0, kKeyOrbit);
     case GLFW_KEY_DOWN:
-      return orbit(controls.camera, 0.0, -kKeyOrbit);
+      return lookRound(controls, 0.0, -kKeyOrbit);
     case GLFW_KEY_EQUAL:
-      return zoom(controls.camera, 1.0);
+      return comeNearer(controls, 1.0);
     case GLFW_KEY_MINUS:
-      return zoom(controls.camera, -1.0);
+      return comeNearer(controls, -1.0);
     case GLFW_KEY_N:
       viewer.paused = viewer.once = true;
       return;
@@ -179,7 +180,8 @@ void onPressedKey(Desk& desk, int key) {
 
 void onKey(GLFWwindow* window, int key, int, int action, int) {
   Desk& desk = deskOf(window);
-  if (key == GLFW_KEY_LEFT_SHIFT || key == GLFW_KEY_RIGHT_SHIFT) desk.viewer.controls.look = action != GLFW_RELEASE;
+  const bool isShift = key == GLFW_KEY_LEFT_SHIFT || key == GLFW_KEY_RIGHT_SHIFT;
+  if (isShift && action != GLFW_REPEAT) freeKeyChanged(desk.viewer.controls, desk.viewer.session, action == GLFW_PRESS);
   if (action == GLFW_RELEASE || ImGui::GetIO().WantTextInput) return;
   if (action == GLFW_PRESS) onPressedKey(desk, key);
   onRepeatedKey(desk.viewer, key);

@@ -5,6 +5,7 @@
 #include "core/limits.h"
 #include "core/line_input.h"
 #include "core/scene/input_check.h"
+#include "core/tuning.h"
 #include "core/version.h"
 #include "scenarios/registry.h"
 
@@ -23,8 +24,9 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr int kFormat = 1;
-constexpr double kTurnError = 1e-9;        // of the length of a unit quaternion
-constexpr std::int64_t kMostBytes = 4096;  // of a file's name
+constexpr double kTurnError = 1e-9;             // of the length of a unit quaternion
+constexpr Range kRateRange{1.0, 1e4, "rad/s"};  // of the hand's spring
+constexpr std::int64_t kMostBytes = 4096;       // of a file's name
 constexpr std::int64_t kMostWhole = std::numeric_limits<std::int64_t>::max();
 
 Json json(const Tuning& tuning) {
@@ -103,10 +105,15 @@ Tuning tuningFrom(const Json& json, const std::string& where) {
 
 Json json(const Hand& hand) {
   const auto& turn = hand.turn;
-  return {{"block", index(hand.block)},
-          {"place", {hand.place.x(), hand.place.y(), hand.place.z()}},
-          {"turn", {turn.w(), turn.x(), turn.y(), turn.z()}},
-          {"limit_n", hand.limit_n}};
+  Json json = {{"block", index(hand.block)},
+               {"place", {hand.place.x(), hand.place.y(), hand.place.z()}},
+               {"turn", {turn.w(), turn.x(), turn.y(), turn.z()}},
+               {"limit_n", hand.limit_n}};
+  // What is as usual is left out, so that a frame in which the hand rests takes one short line.
+  if (!hand.velocity.isZero(0.0)) json["velocity"] = {hand.velocity.x(), hand.velocity.y(), hand.velocity.z()};
+  if (!hand.line.isZero(0.0)) json["line"] = {hand.line.x(), hand.line.y(), hand.line.z()};
+  if (hand.rate_rad_s != tuning::kFollowFrequency_rad_s) json["rate_rad_s"] = hand.rate_rad_s;
+  return json;
 }
 
 Hand handFrom(const Json& json, const Scene& scene, const std::string& where) {
@@ -121,6 +128,16 @@ Hand handFrom(const Json& json, const Scene& scene, const std::string& where) {
   hand.turn = {turn[0], turn[1], turn[2], turn[3]};
   requireInRange(hand.turn.norm(), {1.0 - kTurnError, 1.0 + kTurnError, ""}, where + ": turn: length of the quaternion");
   hand.limit_n = number(json, "limit_n", kHandForceRange, where);
+  if (json.contains("velocity")) {
+    const auto velocity = numbers<3>(json, "velocity", kVelocityRange, where);
+    hand.velocity = {velocity[0], velocity[1], velocity[2]};
+  }
+  if (json.contains("line")) {
+    const auto line = numbers<3>(json, "line", {-1.0 - kTurnError, 1.0 + kTurnError, ""}, where);
+    hand.line = {line[0], line[1], line[2]};
+    requireInRange(hand.line.norm(), {1.0 - kTurnError, 1.0 + kTurnError, ""}, where + ": line: length");
+  }
+  if (json.contains("rate_rad_s")) hand.rate_rad_s = number(json, "rate_rad_s", kRateRange, where);
   return hand;
 }
 

@@ -174,11 +174,11 @@ void timePanel(const Viewer& viewer) {
 
 void helpPanel() {
   text(
-      "left drag on a block: move it in the plane of the screen\n"
-      "right drag: along the view, also with the left button held\n"
-      "wheel, Q E, W S, A D: turn the held block\n"
+      "drag a block: pull it out along itself, then carry it\n"
+      "let go: it lies down where the outline is\n"
+      "wheel, Q E: a quarter turn\n"
       "drag beside it, arrow keys: go round; wheel: nearer, farther\n"
-      "shift: look round while the hand keeps its block\n"
+      "shift: all six axes, right drag along the view, W S, A D\n"
       "space pause, N one frame, R reset, T slow motion\n"
       "backspace takes the last move back, [ ] one frame back, forth\n"
       "O colour by, F contact forces, tab panels, P screenshot\n"
@@ -242,16 +242,10 @@ void drawHint(const Viewer& viewer, StaticsHint& statics) {
   if (viewer.overlay != Overlay::hints || !viewer.controls.hover) return;
   const BlockId block = viewer.controls.hover->block;
   askStatics(viewer, block, statics);
-  std::string rest = "...";
-  if (statics.block == block && statics.tilt_deg) {
-    rest = *statics.tilt_deg < 0.0 ? "without it the rest cannot stay as it is"
-                                   : fmt::format("without it the rest stands, up to a tilt of {:.1f} degrees", *statics.tilt_deg);
-  }
+  std::optional<bool> stands;
+  if (statics.block == block && statics.tilt_deg) stands = *statics.tilt_deg >= 0.0;
   const Hint hint = hints(viewer.session.simulation, viewer.session.contacts)[index(block)];
-  drawBeside(viewer, index(block),
-             fmt::format("block {}: load {:.2f} N, friction at most {:.2f} N{}\n{}", index(block), hint.load_n, hint.drag_n,
-                         hint.loose ? ", loose" : "", rest),
-             IM_COL32(255, 255, 255, 255));
+  drawBeside(viewer, index(block), inWords(hint, stands), IM_COL32(255, 255, 255, 255));
 }
 
 }  // namespace

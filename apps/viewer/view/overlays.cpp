@@ -21,6 +21,7 @@ constexpr Colour kSlips = {1.00F, 0.50F, 0.10F};
 constexpr double kMinForce_n = 1e-3;
 constexpr double kMetresPerNewton = 0.01;
 constexpr double kShortestArrow_m = 0.003;
+constexpr double kLineInLengths = 1.5;  // of the line along which a block is pulled
 
 // Even steps in brightness and hue, from dark to bright.
 constexpr std::array<Colour, 6> kMap = {{{0.16F, 0.12F, 0.40F},
@@ -188,6 +189,15 @@ void blockMesh(const ParticleArray& position, std::span<const Colour> colours, s
   }
 }
 
+void addLine(const Vec3& from, const Vec3& to, const Colour& colour, const Camera& camera, double width_m,
+             std::vector<Vertex>& mesh) {
+  Vec3 side = (to - from).cross(cameraFrame(camera).eye - from);
+  if (side.norm() == 0.0) return;  // seen from its end
+  side *= 0.5 * width_m / side.norm();
+  addTriangle(from - side, from + side, to + side, colour, mesh);
+  addTriangle(from - side, to + side, to - side, colour, mesh);
+}
+
 void addArrow(const Vec3& from, const Vec3& to, const Colour& colour, const Camera& camera, double width_m,
               std::vector<Vertex>& mesh) {
   const Vec3 along = to - from;
@@ -217,6 +227,28 @@ void addContactArrows(const Session& session, const Camera& camera, std::vector<
 
 Colour holdColour(Hold hold) {
   return hold == Hold::slips ? kSlips : hold == Hold::sticks ? kSticks : kFree;
+}
+
+void addGuide(const Session& session, const Guide& guide, const Hand& hand, const Camera& camera, std::vector<Vertex>& mesh) {
+  constexpr double kWidth_m = 0.0012;
+  if (guide.lead == Lead::pulling) {
+    const Vec3 middle = centre(session.simulation.state.position, index(guide.block));
+    const double length = kLineInLengths * session.simulation.model.dimensions[index(guide.block)].maxCoeff();
+    addArrow(middle, middle + length * hand.line, kFree, camera, kWidth_m, mesh);
+  }
+  if (!showsLanding(guide)) return;
+  const Landing& landing = guide.landing;
+  const Vec3 half = 0.5 * session.simulation.model.dimensions[index(guide.block)];
+  std::array<Vec3, kCorners> corner;
+  for (std::size_t c = 0; c < kCorners; ++c) {
+    const Vec3 side(cornerSide(c, 0), cornerSide(c, 1), cornerSide(c, 2));
+    corner[c] = landing.place.centre + landing.place.turn * side.cwiseProduct(half);
+  }
+  for (std::size_t a = 0; a < kCorners; ++a) {
+    for (const std::size_t bit : {1U, 2U, 4U}) {
+      if ((a & bit) == 0) addLine(corner[a], corner[a | bit], landing.fits ? kSticks : kSlips, camera, kWidth_m, mesh);
+    }
+  }
 }
 
 void addHand(const Session& session, const Hand& hand, const ParticleArray& position, const Camera& camera,

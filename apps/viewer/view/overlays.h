@@ -1,6 +1,7 @@
 #pragma once
 
 #include "apps/viewer/input/camera.h"
+#include "apps/viewer/input/guide.h"
 #include "apps/viewer/session/session.h"
 
 #include <array>
@@ -53,6 +54,10 @@ struct Vertex {
 /// The triangles of all blocks from their particles' real positions, with the normal of each triangle, so that a bent face shows.
 void blockMesh(const ParticleArray& position, std::span<const Colour> colours, std::vector<Vertex>& mesh);
 
+/// Adds a straight line, turned as an arrow is.
+void addLine(const Vec3& from, const Vec3& to, const Colour& colour, const Camera& camera, double width_m,
+             std::vector<Vertex>& mesh);
+
 /// Adds an arrow that is seen from any side: it turns its width to the camera.
 void addArrow(const Vec3& from, const Vec3& to, const Colour& colour, const Camera& camera, double width_m,
               std::vector<Vertex>& mesh);
@@ -62,6 +67,10 @@ void addContactArrows(const Session& session, const Camera& camera, std::vector<
 
 /// The colour that shows how the hand's block touches others.
 Colour holdColour(Hold hold);
+
+/// Adds what leads the hand: the line along which it pulls, or the outline of the block where it will lie, blue where it fits and
+/// orange where it hangs over.
+void addGuide(const Session& session, const Guide& guide, const Hand& hand, const Camera& camera, std::vector<Vertex>& mesh);
 
 /// Adds the hand: an arrow from the block to where the hand moves it, in the colour of its hold.
 void addHand(const Session& session, const Hand& hand, const ParticleArray& position, const Camera& camera,

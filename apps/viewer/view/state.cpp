@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <ostream>
+#include <utility>
 
 namespace springtower {
 namespace {
@@ -38,8 +39,8 @@ void measure(Viewer& viewer) {
 
 void stepOnce(Viewer& viewer) {
   Session& session = viewer.session;
+  if (!viewer.replay) leadHand(viewer.controls, session, viewer.limit_n);
   FrameInput input{viewer.controls.hand, viewer.tuning};
-  input.hand.limit_n = viewer.limit_n;
   if (viewer.replay) {
     const std::optional<FrameInput> recorded = nextInput(*viewer.replay, session);
     if (recorded) {
@@ -73,6 +74,13 @@ void stepOnce(Viewer& viewer) {
   measure(viewer);
 }
 
+// A message goes when it has been read; while it is paused it says why, and stays.
+void fadeMessage(Viewer& viewer, double elapsed_s) {
+  viewer.messageAge_s = viewer.message == viewer.lastMessage && !viewer.paused ? viewer.messageAge_s + elapsed_s : 0.0;
+  if (viewer.messageAge_s > kMessage_s) viewer.message.clear();
+  viewer.lastMessage = viewer.message;
+}
+
 }  // namespace
 
 Viewer::Viewer(SceneChoice given, const Tuning& wanted)
@@ -91,10 +99,14 @@ void advance(Viewer& viewer, double elapsed_s) {
     frames = viewer.once ? 1 : 0;
     viewer.once = false;
     viewer.pacer.waiting_s = 0.0;
+  } else if (std::exchange(viewer.fresh, false)) {
+    viewer.pacer.waiting_s = 0.0;
   } else {
     frames = viewer.pacer.due(elapsed_s, frame_s, viewer.session.frame_ms);
   }
   for (int i = 0; i < frames; ++i) stepOnce(viewer);
+  fadeMessage(viewer, elapsed_s);
+  moveCamera(viewer.controls, viewer.session, elapsed_s);
   updateHover(viewer.controls, viewer.session);
 }
 
@@ -106,6 +118,7 @@ void restart(Viewer& viewer, const SceneChoice& choice) {
     viewer.session = std::move(next);
     viewer.choice = choice;
     viewer.start = viewer.session.simulation.state.position;
+    viewer.fresh = true;
     if (another) showAll(viewer.controls.camera, viewer.start);
     viewer.message.clear();
     viewer.replay.reset();
@@ -141,10 +154,13 @@ Picture pictureOf(Viewer& viewer) {
   between(session, viewer.paused ? 1.0 : viewer.pacer.share(session.scene.settings.frame_s), viewer.shown);
   Picture picture;
   picture.floor = session.scene.floor;
-  picture.highlighted = viewer.controls.hover ? static_cast<std::int32_t>(viewer.controls.hover->block) : -1;
+  const Controls& controls = viewer.controls;
+  const BlockId selected = controls.hover ? controls.hover->block : controls.guide.block;
+  picture.highlighted = selected == kFloor ? -1 : static_cast<std::int32_t>(selected);
   blockMesh(viewer.shown, blockColours(session, viewer.overlay).colour, picture.blocks);
   if (viewer.arrows) addContactArrows(session, viewer.controls.camera, picture.marks);
   addHand(session, viewer.controls.hand, viewer.shown, viewer.controls.camera, picture.marks);
+  addGuide(session, viewer.controls.guide, viewer.controls.hand, viewer.controls.camera, picture.marks);
   return picture;
 }
 

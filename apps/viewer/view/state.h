@@ -23,6 +23,9 @@ struct FrameBar {
 };
 inline constexpr std::size_t kBars = 240;
 
+/// How long a message is shown while time goes on, s.
+inline constexpr double kMessage_s = 3.0;
+
 /// What happened since the viewer was started, for its report.
 struct Watch {
   bool measures = false;  ///< penetration, every sixth frame
@@ -53,7 +56,10 @@ struct Viewer {
   bool panels = true;
   double limit_n = tuning::kGripForce_n;
   std::optional<Replay> replay;
-  std::string message;  ///< what the user is shown, until something else is
+  std::string message;      ///< what the user is shown, for kMessage_s unless it is paused
+  std::string lastMessage;  ///< as it was a picture ago
+  double messageAge_s = 0.0;
+  bool fresh = false;  ///< the scene has begun anew and was not drawn yet: its first frame, which may take long, waits for that
   std::array<FrameBar, kBars> bars{};
   std::size_t bar = 0;      ///< the oldest one
   float picture_ms = 0.0F;  ///< what drawing the last picture took

@@ -37,7 +37,7 @@ void pressKey(Viewer& viewer, Dice& dice) {
     case 9:
       return turnHand(controls, TurnAxis::right, kKeyTurn * (dice.below(9) - 4));
     case 10:
-      return orbit(controls.camera, 0.05 * (dice.below(9) - 4), 0.05 * (dice.below(9) - 4));
+      return lookRound(controls, 0.05 * (dice.below(9) - 4), 0.05 * (dice.below(9) - 4));
     default:
       viewer.limit_n = 0.5 + 19.5 * dice.share();
       return;
@@ -60,7 +60,7 @@ void actAtRandom(Viewer& viewer, Dice& dice) {
   } else if (what < 0.95) {
     wheelTurned(controls, dice.below(7) - 3);
   } else if (what < 0.97) {
-    controls.look = dice.happens(0.4);
+    freeKeyChanged(controls, viewer.session, dice.happens(0.4));
   } else {
     pressKey(viewer, dice);
     if (viewer.paused && !viewer.once && dice.happens(0.8)) viewer.paused = false;
