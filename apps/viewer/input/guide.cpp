@@ -99,6 +99,8 @@ void leadPull(Guide& guide, Hand& hand, const Session& session, const Camera& ca
   const double ahead = (hand.place - middle).dot(hand.line);
   if (ahead * guide.speed_m_s > 0.0 && std::abs(ahead) >= reachOf(hand, simulation)) guide.speed_m_s = 0.0;
   moveAlongLine(hand, guide.speed_m_s, session.grip.block == hand.block ? session.grip.carried : 0.0, simulation);
+  if (guide.speed_m_s == 0.0) return;  // a block that waits does not sink
+  hand.place.z() -= pressDepth(-simulation.scene.gravity.at(simulation.time_s).z(), hand.rate_rad_s, frame_s);
 }
 
 // Over the landing, clear of what stands beside it.

@@ -120,4 +120,9 @@ double pullSpeed(double left_m, double speed_m_s, double frame_s) {
   return std::clamp(wanted, speed_m_s - kGain_m_s2 * frame_s, speed_m_s + kGain_m_s2 * frame_s);
 }
 
+double pressDepth(double gravity_m_s2, double rate_rad_s, double frame_s) {
+  const double pressed_m = kPullPress * std::max(gravity_m_s2, 0.0) / (rate_rad_s * rate_rad_s);
+  return pressed_m * (1.0 - std::exp(-frame_s / tuning::kHeightFollowTime_s));
+}
+
 }  // namespace springtower

@@ -40,4 +40,12 @@ double pullSpeed(double left_m, double speed_m_s, double frame_s);
 
 inline constexpr double kGuidedPull_m_s = 0.08;  ///< the largest
 
+/// How far the hand sinks in a frame while it pulls, m, beside following the block's height: it comes to press on the block with
+/// kPullPress of its weight. A hand that only follows carries the block some micrometres too high where that leaves one of its
+/// supports, and what lies loosely on it is dragged along by up to a millimetre. `gravity_m_s2`: downwards; `rate_rad_s`: of the
+/// hand's spring.
+double pressDepth(double gravity_m_s2, double rate_rad_s, double frame_s);
+
+inline constexpr double kPullPress = 0.2;  ///< block weights
+
 }  // namespace springtower

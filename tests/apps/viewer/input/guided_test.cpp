@@ -4,6 +4,7 @@
 #include "apps/viewer/input/view.h"
 #include "core/random.h"
 #include "core/rotation_vector.h"
+#include "core/tuning.h"
 #include "solver/world/simulation.h"
 
 #include <cmath>
@@ -156,6 +157,21 @@ TEST(GuidedPull, SpeedsUpAndComesToRestAtTheMouse) {
     }
     EXPECT_NEAR(at, goal, 1e-4) << goal;
   }
+}
+
+TEST(GuidedPull, ComesToPressWithAShareOfTheWeight) {
+  constexpr double kFrame_s = 1.0 / 60.0;
+  constexpr double kGravity_m_s2 = 9.81;
+  constexpr double kRate_rad_s = 300.0;
+  // The hand follows the height of a block that rests on others, as moveAlongLine does.
+  double below_m = 0.0;
+  for (int i = 0; i < 60; ++i) {
+    below_m *= std::exp(-kFrame_s / tuning::kHeightFollowTime_s);
+    below_m += pressDepth(kGravity_m_s2, kRate_rad_s, kFrame_s);
+  }
+  EXPECT_NEAR(below_m * kRate_rad_s * kRate_rad_s / kGravity_m_s2, kPullPress, 1e-3);
+  EXPECT_EQ(pressDepth(0.0, kRate_rad_s, kFrame_s), 0.0);
+  EXPECT_EQ(pressDepth(-1.0, kRate_rad_s, kFrame_s), 0.0) << "what is pulled upwards is not pressed";
 }
 
 TEST(GuidedPull, ABlockIsFreeWhenNothingIsOverIt) {
