@@ -17,6 +17,12 @@ namespace {
 
 constexpr double kDragBegins_px = 6.0;
 
+// Four implicit steps of a frame resolve a closing speed of 3 mm/s (tuning::kMaxImplicitClosing at 0.025 mm), and count as about
+// to meet what is nearer than a block falls in a frame, 1.4 mm: lowered faster from there on, each frame takes kMaxLedSteps.
+constexpr double kNearSpeed_m_s = 0.02;
+constexpr double kTouchSpeed_m_s = 0.0029;
+constexpr double kTouchHeight_m = 0.0018;
+
 const ParticleArray& positionsOf(const Session& session) {
   return session.simulation.state.position;
 }
@@ -139,6 +145,12 @@ void leadCarry(Guide& guide, Hand& hand, const Session& session) {
   moveTo(hand, carryStep(all, held, dimensions, now, motion.centre.z(), goal, frame_s), frame_s);
 }
 
+// m/s, at a height over the place where the block will lie, m.
+double loweringSpeed(double above_m) {
+  if (above_m > tuning::kPlaceHeight_m) return tuning::kLowerSpeed_m_s;
+  return above_m > kTouchHeight_m ? kNearSpeed_m_s : kTouchSpeed_m_s;
+}
+
 // Straight down until it touches; then it is pressed on for a moment and let go.
 void leadDown(Guide& guide, Hand& hand, const Session& session) {
   const double frame_s = session.simulation.scene.settings.frame_s;
@@ -152,8 +164,7 @@ void leadDown(Guide& guide, Hand& hand, const Session& session) {
     return;
   }
   const double rest = guide.landing.place.centre.z();
-  const bool last = hand.place.z() < rest + tuning::kPlaceHeight_m;
-  const double step = (last ? tuning::kPlaceSpeed_m_s : tuning::kLowerSpeed_m_s) * frame_s;
+  const double step = loweringSpeed(hand.place.z() - rest) * frame_s;
   const double lowest = rest - tuning::kPlaceHeight_m;
   Place next{hand.place, hand.turn};
   next.centre.z() = std::max(next.centre.z() - step, lowest);

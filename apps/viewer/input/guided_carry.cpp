@@ -97,7 +97,7 @@ Place carryStep(std::span<const Footprint> all, std::size_t held, const Vec3& di
   if (onItsWay && std::min(hand.centre.z(), block_m) < clear - kBelow_m) return next;
   const double share = distance > step ? step / distance : 1.0;
   next.centre.head<2>() += share * way.head<2>();
-  const double turn = tuning::kCarryTurnRate_rad_s * frame_s;
+  const double turn = kGuidedTurn_rad_s * frame_s;
   next.turn = left > turn ? orientationBetween(hand.turn, goal.turn, turn / left) : goal.turn;
   return next;
 }

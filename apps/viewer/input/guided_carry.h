@@ -12,6 +12,10 @@ namespace springtower {
 inline constexpr double kCarryHeight_m = 0.006;  ///< of a carried block over what lies below it
 inline constexpr double kGuidedCarry_m_s = 0.4;  ///< speed of the hand while it lifts and carries
 
+/// Speed at which the hand turns a carried block, rad/s: a quarter turn takes 0.7 s. Implicit steps turn a block by at most
+/// tuning::kMaxTurnPerStep each; up to 2.4 rad/s the four of a frame suffice, and beyond it a frame may take kMaxLedSteps.
+inline constexpr double kGuidedTurn_rad_s = 2.2;
+
 /// Where a carried block moves when the mouse moves by some pixels, m: what is seen at the mouse is where it goes. Over the tower
 /// it moves in the level plane in which it will lie; beside it in the upright plane that faces the camera, or on the floor, and
 /// kCarryHeight_m above what lies below it. `over`: where it was to be carried so far.

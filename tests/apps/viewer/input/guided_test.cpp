@@ -275,6 +275,24 @@ TEST(GuidedCarry, TheHandGoesRoundTheTower) {
   }
 }
 
+// Else a frame is refined to tuning::kMaxLedSteps.
+TEST(GuidedCarry, TurnsAsFastAsTheUsualStepsOfAFrameTake) {
+  constexpr double kFrame_s = 1.0 / 60.0;
+  EXPECT_LT(kGuidedTurn_rad_s * kFrame_s / tuning::kStandardImplicitSteps, tuning::kMaxTurnPerStep);
+  const ParticleArray position = positionsOfTower(3);
+  const std::vector<Footprint> all = footprintsOf(position);
+  const Vec3 over(0.0, 0.0, 4.5 * kBlockHeight_m);
+  const Place goal{over, rotationAbout(Vec3::UnitZ(), kRightAngle)};
+  Place hand{over, Eigen::Quaterniond::Identity()};
+  int frames = 0;
+  for (; frames < 100 && !isAt(hand, goal); ++frames) {
+    const Place next = carryStep(all, 8, sizesOf(position)[8], hand, hand.centre.z(), goal, kFrame_s);
+    EXPECT_LT(angleBetween(hand.turn, next.turn), tuning::kStandardImplicitSteps * tuning::kMaxTurnPerStep) << frames;
+    hand = next;
+  }
+  EXPECT_LT(frames, 60) << "a second";
+}
+
 TEST(GuidedCarry, WhatIsSeenAtTheMouseIsWhereItGoes) {
   ParticleArray position = positionsOfTower(8);
   moveBlock(position, 4, {0.0, -0.09, 0.0});
