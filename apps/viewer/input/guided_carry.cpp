@@ -12,10 +12,10 @@ namespace {
 
 constexpr double kBesideTop_m = 0.01;  // how far beside the top the mouse still is over it
 
-constexpr double kAboveTop_m = 0.1;    // most height over the top to which a block is lifted
-constexpr double kLookEvery_m = 0.01;  // along the way
-constexpr double kFarthest_m = 2.0;    // from the axis of the tower
-constexpr double kBelow_m = 0.002;     // height that may be missing where the block moves on
+constexpr double kAboveTop_m = 0.1;         // most height over the top to which a block is lifted
+constexpr double kLookEvery_m = 0.01;       // along the way
+constexpr double kFarthestCarried_m = 2.0;  // from the axis of the tower
+constexpr double kBelow_m = 0.002;          // height that may be missing where the block moves on
 constexpr double kArrived_m = 1e-6;
 constexpr double kTurned_rad = 1e-3;
 
@@ -69,7 +69,7 @@ Vec3 carriedBy(const Camera& camera, const Viewport& viewport, std::span<const F
   const CameraFrame frame = cameraFrame(camera);
   auto place = meetsPlane(ray, over.centre, Vec3(frame.back.x(), frame.back.y(), 0.0));
   if (!place || place->z() < lift) place = meetsPlane(ray, Vec3(0.0, 0.0, lift), Vec3::UnitZ());
-  if (!place || place->head<2>().norm() > kFarthest_m) return over.centre;
+  if (!place || place->head<2>().norm() > kFarthestCarried_m) return over.centre;
   const double least = lift + levelBelow(all, held, grown(movedTo(own, *place), kRoomBeside_m));
   place->z() = std::clamp(place->z(), least, std::max(least, top + kAboveTop_m));
   return *place;

@@ -39,8 +39,8 @@ double angleOf(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
 Eigen::Vector2d forward(const Camera& camera, const Viewport& viewport, const Vec3& point, const Vec3& way,
                         const Eigen::Vector2d& firstWay_px) {
   const Eigen::Vector2d seen = seenWay(camera, viewport, point, way) * metresPerPixel(camera, viewport, point);
+  if (seen.norm() < kLeastSeen) return firstWay_px.normalized();
   const Eigen::Vector2d first = firstWay_px.normalized();
-  if (seen.norm() < kLeastSeen) return first;
   const Eigen::Vector2d between = seen.normalized() + first;
   return between.norm() < kLeastSeen ? Eigen::Vector2d(seen.normalized()) : Eigen::Vector2d(between.normalized());
 }
