@@ -11,8 +11,10 @@ const std::vector<Requirement>& reportRequirements() {
       {"1.2", "A player should be able to place a block back on top of the tower.",
        "Moves above; `ViewerWindow.APlayerDrawsTheLooseBlockAndLaysItOnTop`, `ViewerGame.DrawingPlacingAndUndoing`"},
       {"1.3", "Input should be analogue to simulate a player's movement in the real game.",
-       "`ViewerControls.DragsInThePlaneOfTheScreenAndAlongTheView`, `Grip.ABlockInTheAirFollowsCriticallyDamped`, "
-       "`Grip.FrictionAnswersTheHand`: a force of at most 5 N that follows the mouse"},
+       "`ViewerControls.WithTheFreeKeyItDragsInThePlaneOfTheScreenAndAlongTheView`, "
+       "`ViewerControls.APressSelectsAndADragPullsAlongTheBlock`, `NaivePlayer.SucceedsInNineOfTenGamesOfFixedSeeds`, "
+       "`Grip.ABlockInTheAirFollowsCriticallyDamped`, `Grip.FrictionAnswersTheHand`: a force of at most 5 N that follows the "
+       "mouse"},
       {"1.4", "The camera should allow for full view of all sides of the tower.",
        "`ViewerCamera.GoesAllTheWayRoundAndOverTheTop`, `ViewerCamera.ShowsTheWholeTower`, "
        "`ViewerControls.ADragBesideTheBlocksGoesRound`"},
