@@ -84,15 +84,12 @@ void markImpacts(RigidIsland& island) {
   }
 }
 
-// So many times as many points as are active may be solved in passes through impacts, where that is more than the usual bound.
-// With once, 144 rows that topple are 9 to 16 mm deep where all of them hit the floor at once; with four times 1 to 7 mm.
-constexpr std::size_t kLeastImpactSweeps = 4;
-
 // Passes through the impacts of a substep, the fastest of them at this speed, m/s: what rebounds leaves, so an impact is solved
 // at once, through all blocks that it reaches.
 void solveImpacts(IslandStep& step, RigidIsland& island, const Pass& pass, double impact) {
   const std::size_t active = island.steady.packed.activePoints + island.fast.packed.activePoints;
-  const std::size_t most = std::max(kLeastImpactSweeps * active, static_cast<std::size_t>(tuning::kMaxImpactEvaluations));
+  const std::size_t most =
+      std::max(static_cast<std::size_t>(tuning::kImpactSweeps) * active, static_cast<std::size_t>(tuning::kMaxImpactEvaluations));
   markImpacts(island);
   std::size_t solved = 0;
   for (int number = 1; number <= tuning::kMaxImpactPasses && solved < most; ++number) {
@@ -116,10 +113,6 @@ double massRatioOf(const RigidIsland& island) {
   return most > 0.0 ? most / least : 1.0;
 }
 
-// What passes that remove push-out may leave, of what others may: what they leave is energy. With 1 rows that land from 2 cm gain
-// 1.3e-6 of it in a frame, with 0.1 less than 1e-6.
-constexpr double kOfRelaxation = 0.1;
-
 // Passes over the active points: so many, and in rigid mode up to as many times more as the island's largest mass is that of its
 // smallest, until the last leaves blocks to get into one another by no more than a share of a height in the substep. A light
 // block between heavy ones takes so many passes.
@@ -129,8 +122,8 @@ void runPasses(IslandStep& step, RigidIsland& island, const Pass& pass, int pass
   const bool converges = !isRigid(step.simulation.scene.settings.method);
   const int limit = std::max({passes, tuning::kConvergingPasses, affordable});
   const int most = converges ? static_cast<int>(std::min(static_cast<double>(limit), massRatioOf(island) * passes)) : 0;
-  const double share = pass.push ? 1.0 : kOfRelaxation;
-  const double enough = share * tuning::kMaxApproachLeft * step.simulation.lengths.blockHeight_m / pass.step_s;
+  const double most_h = pass.push ? tuning::kMaxApproachLeft : tuning::kMaxRelaxationLeft;
+  const double enough = most_h * step.simulation.lengths.blockHeight_m / pass.step_s;
   double left = 0.0;
   for (int i = 0; i < passes || (left > enough && i < most); ++i) {
     left = 0.0;
