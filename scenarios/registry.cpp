@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 #include "core/limits.h"
+#include "scenarios/falling.h"
 #include "scenarios/loose.h"
 #include "scenarios/towers.h"
 #include "scenarios/walls.h"
@@ -85,10 +86,10 @@ constexpr Scenario kScenarios[] = {
      true,
      [](const ScenarioSize& size, const TowerOptions& options) { return touchingTowersScene(size[0], options); }},
     {"shot",
-     "a block is shot at a tower of six rows",
-     {kNone, kNone},
+     "a block flies at a tower, lengthwise at 5 m/s",
+     {rows(6), kNone},
      false,
-     [](const ScenarioSize&, const TowerOptions&) { return shotTowerScene(); }},
+     [](const ScenarioSize& size, const TowerOptions&) { return shotTowerScene(size[0]); }},
     {"sleeper",
      "a block falls from 21 m onto two rows that sleep by then",
      {kNone, kNone},
@@ -120,10 +121,15 @@ constexpr Scenario kScenarios[] = {
      false,
      [](const ScenarioSize& size, const TowerOptions&) { return pileScene(size[0], {.fall_m = kPileFall_m}); }},
     {"heap",
-     "blocks turned at random that fall from a lattice into a pile",
-     {SizeNumber{"blocks", 8, 1, 20000}, kNone},
+     "blocks turned at random that fall from a lattice into a heap",
+     {SizeNumber{"blocks", 200, 1, 20000}, kNone},
      false,
-     [](const ScenarioSize& size, const TowerOptions&) { return randomPileScene(size[0]); }},
+     [](const ScenarioSize& size, const TowerOptions&) { return heapScene(size[0]); }},
+    {"rain",
+     "blocks turned at random of which equally many land in every part of a second",
+     {SizeNumber{"blocks", 200, 1, 20000}, kNone},
+     false,
+     [](const ScenarioSize& size, const TowerOptions&) { return rainScene(size[0]); }},
     {"askew",
      "blocks dropped on one another, each turned further",
      {SizeNumber{"blocks", 8, 1, kMaxAskewBlocks}, kNone},

@@ -83,15 +83,6 @@ double collapseTilt_deg(int rows) {
   return std::min(standing + kBeyondStanding_deg, kMaxTilt_deg);
 }
 
-Scene shotTowerScene() {
-  Scene scene = towerScene(6);
-  BlockSpec shot;
-  shot.centre = Vec3(-0.3, 0.0, 3.6 * kBlockHeight_m);
-  shot.velocity = Vec3(5.0, 0.0, 0.0);
-  scene.blocks.push_back(shot);
-  return scene;
-}
-
 Scene sleeperHitScene() {
   Scene scene = towerScene(2);
   BlockSpec block;

@@ -46,9 +46,6 @@ Scene towerWithHolesScene(const TowerOptions& options = {});
 /// A tilt of gravity slightly beyond the limit of a tower of so many rows, degrees. At most 30: a short tower would slide first.
 double collapseTilt_deg(int rows);
 
-/// Six rows, and a block shot at them lengthwise at 5 m/s.
-Scene shotTowerScene();
-
 /// Two rows, and a block that falls on them from 21 m after some 2 s, when they sleep.
 Scene sleeperHitScene();
 

@@ -1,3 +1,4 @@
+#include "scenarios/falling.h"
 #include "scenarios/loose.h"
 #include "tests/pinned/pinned_scene.h"
 
@@ -64,7 +65,7 @@ std::vector<PinnedScene> pinnedFalls() {
       {"BlocksThatFly", 40, blocksThatFly},
       {"ThrownPair", 60, [] { return sceneOfFile("two_thrown_blocks"); }},
       {"ThinWall", 40, [] { return sceneOfFile("thin_wall"); }},
-      {"ShotTower", 40, shotTowerScene},
+      {"ShotTower", 40, [] { return shotTowerScene(6); }},
       {"SleeperHit", 160, sleeperHitScene},
   };
 }

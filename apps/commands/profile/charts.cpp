@@ -70,6 +70,16 @@ std::string describe(ProfileScene scene) {
       return "walls in running bond at rest, all blocks awake";
     case ProfileScene::pyramids:
       return "pyramids of cubes and of bricks at rest, all blocks awake";
+    case ProfileScene::topple:
+      return "towers that topple, gravity tilted by 14.5 degrees";
+    case ProfileScene::hit:
+      return "towers that a block flies at with 5 m/s";
+    case ProfileScene::heaps:
+      return "blocks turned at random that fall into a heap";
+    case ProfileScene::piles:
+      return "wide stacks of 108 blocks a row, landing after a fall of 10 cm";
+    case ProfileScene::rain:
+      return "blocks turned at random that land one after the other";
   }
   return "";
 }
@@ -105,7 +115,7 @@ class Charts {
 
   std::vector<NamedPlot> all() {
     for (const auto& [scene, results] : byScene_) {
-      if (scene != ProfileScene::towers && !isStack(scene)) rowsAgainstRate(scene, results);
+      if (scene != ProfileScene::towers && !isNamed(scene)) rowsAgainstRate(scene, results);
       stages(scene, results);
       if (scene == ProfileScene::pull || scene == ProfileScene::pullSleep || scene == ProfileScene::collapse ||
           scene == ProfileScene::pile) {
@@ -115,6 +125,7 @@ class Charts {
     if (const auto rest = byScene_.find(ProfileScene::rest); rest != byScene_.end()) figure623(rest->second);
     if (const auto many = byScene_.find(ProfileScene::towers); many != byScene_.end()) manyTowers(many->second);
     stackGrowth();
+    depthsOfFalls();
     return std::move(charts_);
   }
 
@@ -161,7 +172,7 @@ class Charts {
       Plot chart = plot("Where the time of a frame goes", scene);
       chart.subtitle = fmt::format("{}: {}{}", nameOf(series_[i], series_), describe(scene), commonOf(series_));
       const bool many = scene == ProfileScene::towers;
-      chart.x.title = many ? "towers" : isStack(scene) ? "name and size" : "rows";
+      chart.x.title = many ? "towers" : isNamed(scene) ? "name and size" : "rows";
       chart.y = {"ms a frame, mean, wall time summed over threads", false, 0.0};
       for (const std::string_view name : kStageNames) {
         std::string label(name);
@@ -174,7 +185,7 @@ class Charts {
         chart.bars.left.push_back(place - 0.38);
         chart.bars.right.push_back(place + 0.38);
         chart.x.labels.emplace_back(
-            place, isStack(scene) ? result->what.stack : fmt::format("{}", many ? result->what.towers : result->what.rows));
+            place, isNamed(scene) ? result->what.named : fmt::format("{}", many ? result->what.towers : result->what.rows));
         for (std::size_t s = 0; s < kStages; ++s) chart.bars.layers[s].heights.push_back(result->stage_ms[s]);
         place += 1.0;
       }
@@ -245,7 +256,7 @@ class Charts {
     PlotLine line{fmt::format("{}, {}", family.what, nameOf(series_[series], series_)), {}};
     line.style = style;
     for (const ProfileResult* result : scene->second) {
-      if (&familyOf(result->what.stack) != &family || seriesOf(*result) != series_[series]) continue;
+      if (&familyOf(result->what.named) != &family || seriesOf(*result) != series_[series]) continue;
       line.points.push_back({static_cast<double>(result->blocks), result->cost().median});
       const PeerFigures* const peer = nearestInAccuracy(*result);
       if (peer == nullptr) continue;
@@ -256,6 +267,38 @@ class Charts {
     std::sort(line.points.begin(), line.points.end(), [](const PlotPoint& a, const PlotPoint& b) { return a.x < b.x; });
     chart.lines.push_back(std::move(line));
     ++style;
+  }
+
+  // Of each fall a chart of time against depth: ours, and another engine's settings hollow, with their steps.
+  void depthsOfFalls() {
+    std::map<std::string, Plot> charts;
+    for (const auto& [scene, results] : byScene_) {
+      if (!isFall(scene)) continue;
+      for (const ProfileResult* result : results) {
+        if (result->what.threads != 1) continue;
+        Plot& chart =
+            charts.try_emplace(result->what.named, plot("Time against depth: " + result->what.named, scene)).first->second;
+        chart.x = {"depth, mm", true};
+        chart.y = {"ms a frame", true};
+        const std::size_t series = seriesAt(*result);
+        PlotLine line{nameOf(series_[series], series_), {{result->penetration_mm, result->cost().median}}};
+        line.style = static_cast<int>(series);
+        chart.lines.push_back(std::move(line));
+        if (result->peers.empty()) continue;
+        PlotLine peers{"Bullet, with its steps a frame", {}, Marker::hollow, false};
+        peers.style = kReportStyle;
+        for (const PeerFigures& peer : result->peers) {
+          peers.points.push_back({peer.penetration_mm, peer.frame_ms});
+          peers.labels.push_back(fmt::format("{}", peer.substeps));
+        }
+        chart.lines.push_back(std::move(peers));
+      }
+    }
+    for (auto& [name, chart] : charts) {
+      std::string file = "depth_" + name;
+      std::replace(file.begin(), file.end(), ':', '_');
+      charts_.emplace_back(std::move(file), std::move(chart));
+    }
   }
 
   // Each frame of the tower nearest to the game's 18 rows, and how the frames are spread.
@@ -269,7 +312,7 @@ class Charts {
     chart.y = {"ms", true};
     for (const ProfileResult* result : results) {
       if (result->what.rows != rows) continue;
-      const auto at = static_cast<std::size_t>(std::find(series_.begin(), series_.end(), seriesOf(*result)) - series_.begin());
+      const std::size_t at = seriesAt(*result);
       PlotLine line{nameOf(series_[at], series_), {}, Marker::none};
       line.style = static_cast<int>(at);
       for (std::size_t i = 0; i < result->frame_ms.size(); ++i)
@@ -285,6 +328,10 @@ class Charts {
     }
     chart.references = {{1e3 / kScreenRate_hz, "16.7 ms: a frame at 60 Hz"}};
     charts_.emplace_back(fmt::format("frames_{}", nameOf(scene)), std::move(chart));
+  }
+
+  [[nodiscard]] std::size_t seriesAt(const ProfileResult& result) const {
+    return static_cast<std::size_t>(std::find(series_.begin(), series_.end(), seriesOf(result)) - series_.begin());
   }
 
   [[nodiscard]] std::string fileNameOf(std::size_t series) const {

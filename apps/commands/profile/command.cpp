@@ -1,6 +1,8 @@
 #include "apps/commands/profile/command.h"
 
+#include "apps/commands/profile/cases.h"
 #include "apps/commands/profile/charts.h"
+#include "apps/commands/profile/falls.h"
 #include "apps/commands/profile/files.h"
 #include "apps/commands/profile/measure.h"
 #include "apps/commands/profile/report_figures.h"
@@ -27,14 +29,9 @@
 namespace springtower {
 namespace {
 
-constexpr Range kProfileRowsRange{1, kMaxRows, ""};
-constexpr Range kTowersRange{1, 2000, ""};
-constexpr Range kToleranceRange{1e-7, 1e-2, "m"};
 constexpr Range kProfileSamplesRange{1, 1000, ""};
 constexpr Range kFramesRange{2, 100000, ""};
 constexpr Range kLimitRange{0.0, 1e6, "s"};
-constexpr double kFullPeer_s = 60.0;
-constexpr int kTowersRows = 18;
 constexpr const char* kUnfinished = "profile.unfinished.json";
 
 constexpr std::string_view kProfileExamples =
@@ -49,6 +46,8 @@ awake), pull-sleep (the same with sleep), collapse (gravity tilted by 14.5 degre
 pile (a connected stack of 108 blocks a row, dropped from 10 cm: its first frames on the floor), walls (running bond, half
 blocks at the ends), pyramids (cubes of 20 mm; bricks laid across); of both: the search for the equilibrium, depth, creep, what is required of
 some, Bullet with the steps that come nearest in depth, and the growth of cost with blocks; on one thread and two; some 2 minutes
+falls, each timed whole, awake, on one thread and two, with depth, energy, memory, what is required, and Bullet beside: topple (towers
+under gravity tilted by 14.5 degrees), hit (a block at 5 m/s), heaps, piles, rain; some 5 minutes
 
 examples:
   springtower profile --quick                                     a look at rest and collapse in a few seconds
@@ -57,152 +56,26 @@ examples:
   springtower profile --rows 46 --scenes pile --tolerances 2e-4 --threads 1,2 --samples 1    some 5000 blocks; minutes
   springtower profile --scenes walls,pyramids --quick             a look at their table in seconds
   springtower profile --stacks wall:20x12,cubes:60 --peer-limit 0 these alone, without Bullet
+  springtower profile --scenes topple,hit,heaps,piles,rain        the table of what moves in large numbers
+  springtower profile --falls heap:100,shot:18 --threads 1        these alone, on one thread
   springtower profile --rows 18 --scenes pull --frames 60 --trace pull.json   then open pull.json at ui.perfetto.dev
   springtower profile --from figures/profile.json --out figures   draws the charts again without timing anything)help";
 
-std::string offered(const auto& names) {
-  return fmt::format("{}", fmt::join(names, ", "));
-}
-
-double numberFrom(const std::string& text, const Range& range, std::string_view option, bool whole) {
-  const std::optional<double> value = parseNumber(text);
-  if (value && isInside(*value, range) && (!whole || *value == std::floor(*value))) return *value;
-  throw InputError(fmt::format("{}: found {}, allowed are {}numbers with commas between, {}", option, inQuotes(text),
-                               whole ? "whole " : "", describe(range)));
-}
-
-// A list as given, or its default; no value twice.
-std::vector<double> numbers(const std::vector<std::string>& texts, const Range& range, std::string_view option, bool whole,
-                            std::vector<double> otherwise) {
-  if (texts.empty()) return otherwise;
-  std::vector<double> values;
-  for (const std::string& text : texts) {
-    const double value = numberFrom(text, range, option, whole);
-    if (std::find(values.begin(), values.end(), value) == values.end()) values.push_back(value);
-  }
-  return values;
-}
-
-// Those of a scene: as given, or the usual ones.
-std::vector<std::string> stacksOf(const ProfileCommand& command, ProfileScene scene) {
-  if (command.stacks.empty()) {
-    return stacksOf(scene, command.quick ? StackChoice::quick : command.full ? StackChoice::full : StackChoice::usual);
-  }
-  std::vector<std::string> stacks;
-  for (const std::string& text : command.stacks) {
-    const std::string stack = stackFrom(text);
-    const bool isNew = std::find(stacks.begin(), stacks.end(), stack) == stacks.end();
-    if (isNew && familyOf(stack).scene == scene) stacks.push_back(stack);
-  }
-  return stacks;
-}
-
-std::vector<ProfileScene> scenesOf(const ProfileCommand& command) {
-  if (command.scenes.empty() && !command.stacks.empty()) {
-    std::vector<ProfileScene> scenes;
-    for (const ProfileScene scene : {ProfileScene::walls, ProfileScene::pyramids}) {
-      if (!stacksOf(command, scene).empty()) scenes.push_back(scene);
-    }
-    return scenes;
-  }
-  if (command.scenes.empty()) {
-    if (command.quick) return {ProfileScene::rest, ProfileScene::collapse};
-    return {ProfileScene::rest, ProfileScene::pull, ProfileScene::collapse, ProfileScene::asleep, ProfileScene::towers};
-  }
-  std::vector<ProfileScene> scenes;
-  for (const std::string& name : command.scenes) {
-    const auto* const found = std::find(kProfileSceneNames.begin(), kProfileSceneNames.end(), name);
-    if (found == kProfileSceneNames.end()) {
-      throw InputError(fmt::format("--scenes: found {}, allowed are {}", inQuotes(name), offered(kProfileSceneNames)));
-    }
-    const auto scene = static_cast<ProfileScene>(found - kProfileSceneNames.begin());
-    if (std::find(scenes.begin(), scenes.end(), scene) == scenes.end()) scenes.push_back(scene);
-  }
-  return scenes;
-}
-
-// As given, or the usual method, beside which a tower at rest also shows the report's for comparison.
-std::vector<Method> methodsOf(const ProfileCommand& command, ProfileScene scene) {
-  if (command.methods.empty()) {
-    std::vector<Method> methods = {Settings{}.method};
-    if (scene == ProfileScene::rest) methods.push_back(Method::report);
-    return methods;
-  }
-  std::vector<Method> methods;
-  for (const std::string& name : command.methods) {
-    const Method method = methodFromName(name, "--methods");
-    if (std::find(methods.begin(), methods.end(), method) == methods.end()) methods.push_back(method);
-  }
-  return methods;
-}
-
-ProfileLimits limitsOf(const ProfileCommand& command) {
-  ProfileLimits limits;
-  if (command.quick) limits = {2, 20, 1.0, 2.0, 0.3, 0.5};
-  if (command.full) limits.peer_s = kFullPeer_s;
-  if (command.samples) limits.samples = static_cast<int>(*command.samples);
-  if (command.frames) limits.frames = static_cast<int>(*command.frames);
-  if (command.settle_s) limits.settle_s = *command.settle_s;
-  if (command.prepare_s) limits.prepare_s = *command.prepare_s;
-  if (command.sample_s) limits.sample_s = *command.sample_s;
-  if (command.peer_s) limits.peer_s = *command.peer_s;
-  return limits;
-}
-
-// All combinations, scene by scene; threads vary fastest, so that they share their preparation.
-std::vector<ProfileCase> casesOf(const ProfileCommand& command) {
-  const std::vector<double> usualRows =
-      command.quick ? std::vector<double>{3, 6, 9, 18} : std::vector<double>{3, 6, 9, 12, 18, 24, 36, 54, 72};
-  const std::vector<double> rows = numbers(command.rows, kProfileRowsRange, "--rows", true, usualRows);
-  const std::vector<double> towers = numbers(command.towers, kTowersRange, "--towers", true, {1, 4, 16, 64});
-  const std::vector<double> tolerances =
-      numbers(command.tolerances_m, kToleranceRange, "--tolerances", false, {kBlockTolerance_m});
-  const std::vector<double> threads = numbers(command.threads, kThreadsRange, "--threads", true, {1});
-  const Inertia inertia = command.inertia ? inertiaFromName(*command.inertia, "--inertia") : Settings{}.inertia;
-  std::vector<ProfileCase> cases;
-  for (const ProfileScene scene : scenesOf(command)) {
-    const bool many = scene == ProfileScene::towers;
-    const std::vector<Method> methods = methodsOf(command, scene);
-    const auto addAll = [&](ProfileCase what, const std::vector<double>& counts) {
-      for (const Method method : methods) {
-        for (const double tolerance : tolerances) {
-          for (const double count : counts) {
-            what.method = method;
-            what.inertia = inertia;
-            what.tolerance_m = tolerance;
-            what.threads = static_cast<int>(count);
-            cases.push_back(what);
-          }
-        }
-      }
-    };
-    if (isStack(scene)) {
-      for (const std::string& stack : stacksOf(command, scene))
-        addAll({.scene = scene, .rows = 1, .stack = stack}, command.threads.empty() ? std::vector<double>{1, 2} : threads);
-      continue;
-    }
-    for (const double size : many ? towers : rows) {
-      const int whole = static_cast<int>(size);
-      addAll({.scene = scene, .rows = many ? kTowersRows : whole, .towers = many ? whole : 1}, threads);
-    }
-  }
-  return cases;
-}
-
 std::string sizeOf(const ProfileCase& what) {
-  if (isStack(what.scene)) return what.stack.substr(what.stack.find(':') + 1);
+  if (isNamed(what.scene)) return what.named.substr(what.named.find(':') + 1);
   return what.scene == ProfileScene::towers ? fmt::format("{}x{}", what.towers, what.rows) : fmt::format("{}", what.rows);
 }
 
-// What the blocks do, or of a stack its family.
+// What the blocks do, or the family of what has a name and a size.
 std::string_view kindOf(const ProfileCase& what) {
-  return isStack(what.scene) ? familyOf(what.stack).name : nameOf(what.scene);
+  if (isFall(what.scene)) return fallFamilyOf(what.named).name;
+  return isStack(what.scene) ? familyOf(what.named).name : nameOf(what.scene);
 }
 
 // A frame shows 1/60 s: whether it takes less.
 std::string remarkOn(const ProfileResult& result) {
   const std::string pace = result.framesPerSecond() * Settings{}.frame_s >= 1.0 ? "real time" : "slower";
-  return result.stands ? pace : pace + ", fallen";
+  return result.stands || isFall(result.what.scene) ? pace : pace + ", fallen";
 }
 
 void printTable(const Profile& profile) {
@@ -247,13 +120,18 @@ void writeFolder(const std::string& folder, const Profile& profile, bool measure
   if (measured) writeOutputFile(folder, "profile.json", [&](std::ostream& stream) { writeProfileJson(stream, profile); });
   writeOutputFile(folder, "profile.csv", [&](std::ostream& stream) { writeProfileCsv(stream, profile); });
   writeOutputFile(folder, "culling.csv", [&](std::ostream& stream) { writeCulling(stream, profile); });
-  const bool stacks =
-      std::any_of(profile.results.begin(), profile.results.end(), [](const ProfileResult& r) { return isStack(r.what.scene); });
+  const auto any = [&](bool (*isOne)(ProfileScene)) {
+    return std::any_of(profile.results.begin(), profile.results.end(),
+                       [&](const ProfileResult& result) { return isOne(result.what.scene); });
+  };
+  const bool stacks = any(isStack);
+  const bool falls = any(isFall);
+  if (falls) writeOutputFile(folder, "falls.csv", [&](std::ostream& stream) { writeFallsCsv(stream, profile); });
   if (stacks) writeOutputFile(folder, "stacks.csv", [&](std::ostream& stream) { writeStacksCsv(stream, profile); });
   const std::vector<NamedPlot> charts = profileCharts(profile);
   for (const NamedPlot& chart : charts) writePlot(folder, chart.first, chart.second);
-  fmt::print("\n{} charts (SVG, PNG and PDF), profile.csv, culling.csv{}{} in {}\n", charts.size(), stacks ? ", stacks.csv" : "",
-             measured ? ", profile.json" : "", onOneLine(folder));
+  fmt::print("\n{} charts (SVG, PNG and PDF), profile.csv, culling.csv{}{}{} in {}\n", charts.size(),
+             stacks ? ", stacks.csv" : "", falls ? ", falls.csv" : "", measured ? ", profile.json" : "", onOneLine(folder));
 }
 
 // The results that a run that was broken off has left in the folder.
@@ -293,7 +171,7 @@ bool measureAll(const ProfileCommand& command, const std::vector<ProfileCase>& c
           measureProfile(group, profile.limits, begun, traced, [&](int done, int, const ProfileCase& next) {
             endIfInterrupted();
             progress.update(before + done, fmt::format("{}, {}{}, {}", kindOf(next), sizeOf(next),
-                                                       isStack(next.scene) ? "" : " rows", nameOf(next.method)));
+                                                       isNamed(next.scene) ? "" : " rows", nameOf(next.method)));
           });
       std::erase_if(kept.results, [&](const ProfileResult& old) { return std::find(first, last, old.what) != last; });
       kept.results.insert(kept.results.end(), results.begin(), results.end());
@@ -310,7 +188,7 @@ bool measureAll(const ProfileCommand& command, const std::vector<ProfileCase>& c
 
 CLI::App* defineProfile(CLI::App& program, ProfileCommand& command) {
   CLI::App* profile =
-      program.add_subcommand("profile", "times frames of towers, walls and pyramids of many sizes and draws charts");
+      program.add_subcommand("profile", "times frames of towers, walls, pyramids and falls of many sizes and draws charts");
   const auto list = [&](const std::string& name, std::vector<std::string>& target, const std::string& type,
                         const std::string& description) {
     profile->add_option(name, target, description)->delimiter(',')->type_name(type);
@@ -319,11 +197,14 @@ CLI::App* defineProfile(CLI::App& program, ProfileCommand& command) {
   list("--scenes", command.scenes, "NAME,...", "what the blocks do (default rest,pull,collapse,asleep,towers; see below)");
   list("--methods", command.methods, "NAME,...", "as in `run` (default: its default; at rest also report, for comparison)");
   list("--tolerances", command.tolerances_m, "METRES,...", "as in `run` (default 5e-05)");
-  list("--threads", command.threads, "N,N,...", "threads to use (default 1; of walls and pyramids 1,2)");
+  list("--threads", command.threads, "N,N,...", "threads to use (default 1; of what has a name and a size 1,2)");
   list("--towers", command.towers, "N,N,...", "how many towers scene `towers` has (default 1,4,16,64)");
   list("--stacks", command.stacks, "NAME:SIZE,...",
        "walls and pyramids to time in scenes `walls` and `pyramids`, which it implies: wall:COLUMNSxCOURSES, cubes:ROWS, "
        "bricks:ROWS (default those that have something to meet, 246 to 5050 blocks)");
+  list("--falls", command.falls, "NAME:SIZE,...",
+       "what to time in scenes `topple`, `hit`, `heaps`, `piles` and `rain`, which it implies: topple:ROWS, towers:TOWERS, "
+       "shot:ROWS, heap:BLOCKS, pile:ROWS, rain:BLOCKS (default those that have something to meet, 54 to 3456 blocks)");
   profile->add_option("--inertia", command.inertia, "cuboid (default) or lumped")->type_name("NAME");
   addWholeNumber(*profile, "--samples", command.samples, kProfileSamplesRange, "of each case, taken by turns (default 5)");
   addWholeNumber(*profile, "--frames", command.frames, kFramesRange, "timed in a sample (default 120)");
@@ -332,10 +213,11 @@ CLI::App* defineProfile(CLI::App& program, ProfileCommand& command) {
             "wall time after which a scene has settled enough, and as much again for a pull to begin (default 10)");
   addNumber(*profile, "--sample-limit", command.sample_s, kLimitRange, "S",
             "wall time after which a sample ends, with fewer frames (default 1)");
-  addNumber(*profile, "--peer-limit", command.peer_s, kLimitRange, "S",
-            "processor time that Bullet may take for a wall or pyramid, where its program is (default 4; 0: it is left out)");
+  addNumber(
+      *profile, "--peer-limit", command.peer_s, kLimitRange, "S",
+      "processor time that Bullet may take for a wall, a pyramid or a fall, where its program is (default 4; 0: it is left out)");
   CLI::Option* full = profile->add_flag(
-      "--full", command.full, "with the largest walls and pyramids (100,012 blocks), and more time for Bullet; minutes");
+      "--full", command.full, "with the largest walls, pyramids and piles (100,012 blocks), and more time for Bullet; minutes");
   profile->add_flag("--quick", command.quick, "fewer cases, shorter samples: seconds instead of minutes")->excludes(full);
   CLI::Option* noResume = profile->add_flag("--no-resume", command.noResume,
                                             "times everything again, also what a run that was broken off has left in the folder");
@@ -358,6 +240,7 @@ int executeProfile(const ProfileCommand& command) {
     makeOutputFolder(*command.out);
     printTable(profile);
     printStacks(profile);
+    printFalls(profile);
     writeFolder(*command.out, profile, false);
     return 0;
   }
@@ -382,6 +265,7 @@ int executeProfile(const ProfileCommand& command) {
   printTable(profile);
   printCulling(profile);
   printStacks(profile);
+  printFalls(profile);
   if (command.out) {
     writeFolder(*command.out, profile, true);
     std::error_code ignored;

@@ -20,6 +20,7 @@ struct ProfileCommand {
   std::vector<std::string> threads;
   std::vector<std::string> towers;
   std::vector<std::string> stacks;
+  std::vector<std::string> falls;
   std::optional<std::string> inertia;
   std::optional<std::int64_t> samples;
   std::optional<std::int64_t> frames;
@@ -39,7 +40,7 @@ struct ProfileCommand {
 CLI::App* defineProfile(CLI::App& program, ProfileCommand& command);
 
 /// Times every case and prints a table; writes profile.json, profile.csv, culling.csv, with walls or
-/// pyramids stacks.csv, and the charts into the folder of `--out`
+/// pyramids stacks.csv, with falls falls.csv, and the charts into the folder of `--out`
 /// and the trace into the file of `--trace`. Scenes that are done are kept in that folder, in profile.unfinished.json, until all
 /// are: a run that was broken off is gone on with (but with `--trace` all is timed again, as a trace is of one run), one of
 /// another build, machine or limits, or of a build with uncommitted changes, is refused unless `--no-resume`. Cases that are kept

@@ -1,5 +1,6 @@
 #include "apps/commands/profile/files.h"
 
+#include "apps/commands/profile/falls.h"
 #include "apps/commands/profile/stacks.h"
 #include "apps/common/output_file.h"
 #include "core/error.h"
@@ -26,34 +27,46 @@ FrameCost costFromJson(const Json& json) {
 }
 
 std::string sizeWithUnit(const ProfileCase& what) {
-  if (isStack(what.scene)) return what.stack;
+  if (isNamed(what.scene)) return what.named;
   return fmt::format("{} rows{}", what.rows, what.towers > 1 ? fmt::format(" x {}", what.towers) : "");
 }
 
-void addStack(const ProfileResult& result, Json& json) {
-  json["stack"] = result.what.stack;
-  json["equilibrium_s"] = result.equilibrium_s;
-  json["creep_mm_per_minute"] = result.creepPerMinute_mm;
+void addNamed(const ProfileResult& result, Json& json) {
+  if (isStack(result.what.scene)) {
+    json["stack"] = result.what.named;
+    json["equilibrium_s"] = result.equilibrium_s;
+    json["creep_mm_per_minute"] = result.creepPerMinute_mm;
+  } else {
+    json["fall"] = result.what.named;
+    json["energy_rise"] = result.energyRise;
+  }
   json["peers"] = Json::array();
   for (const PeerFigures& peer : result.peers) {
     json["peers"].push_back({{"engine", peer.engine},
                              {"substeps", peer.substeps},
                              {"cpu_ms_median", peer.frame_ms},
+                             {"cpu_ms_max", peer.worst_ms},
                              {"penetration_mm", peer.penetration_mm},
                              {"simulated_s", peer.simulated_s},
                              {"stands", peer.stands}});
   }
 }
 
-void readStack(const Json& json, ProfileResult& result) {
-  result.what.stack = stackFrom(json.at("stack").get<std::string>());
-  json.at("equilibrium_s").get_to(result.equilibrium_s);
-  json.at("creep_mm_per_minute").get_to(result.creepPerMinute_mm);
+void readNamed(const Json& json, ProfileResult& result) {
+  if (isStack(result.what.scene)) {
+    result.what.named = stackFrom(json.at("stack").get<std::string>());
+    json.at("equilibrium_s").get_to(result.equilibrium_s);
+    json.at("creep_mm_per_minute").get_to(result.creepPerMinute_mm);
+  } else {
+    result.what.named = fallFrom(json.at("fall").get<std::string>());
+    json.at("energy_rise").get_to(result.energyRise);
+  }
   for (const Json& one : json.at("peers")) {
     PeerFigures peer;
     one.at("engine").get_to(peer.engine);
     one.at("substeps").get_to(peer.substeps);
     one.at("cpu_ms_median").get_to(peer.frame_ms);
+    if (one.contains("cpu_ms_max")) one.at("cpu_ms_max").get_to(peer.worst_ms);  // profiles of before the falls have none
     one.at("penetration_mm").get_to(peer.penetration_mm);
     one.at("simulated_s").get_to(peer.simulated_s);
     one.at("stands").get_to(peer.stands);
@@ -93,7 +106,7 @@ Json resultJson(const ProfileResult& result) {
   json["bytes_per_block"] = {{"state", result.stateBytes}, {"contacts", result.contactBytes}, {"all", result.allBytes}};
   json["bytes_per_pair"] = {
       {"near", result.pairBytes}, {"touching", result.touchingBytes}, {"touching_step", result.touchingStepBytes}};
-  if (isStack(result.what.scene)) addStack(result, json);
+  if (isNamed(result.what.scene)) addNamed(result, json);
   json["frame_ms"] = result.frame_ms;
   return json;
 }
@@ -136,7 +149,7 @@ ProfileResult profileResultFromJson(const Json& json) {
     json.at("bytes_per_pair").at("touching").get_to(result.touchingBytes);
     json.at("bytes_per_pair").at("touching_step").get_to(result.touchingStepBytes);
   }
-  if (isStack(result.what.scene)) readStack(json, result);
+  if (isNamed(result.what.scene)) readNamed(json, result);
   json.at("frame_ms").get_to(result.frame_ms);
   return result;
 }

@@ -1,6 +1,7 @@
 #include "apps/commands/profile/measure.h"
 
-#include "apps/commands/profile/peer_stacks.h"
+#include "apps/commands/profile/falls.h"
+#include "apps/commands/profile/peer_figures.h"
 #include "apps/commands/profile/scene.h"
 #include "apps/common/interruption.h"
 #include "core/error.h"
@@ -12,6 +13,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
+#include <limits>
 #include <memory>
 #include <oneapi/tbb/global_control.h>
 
@@ -29,7 +32,7 @@ double secondsBetween(Clock::time_point start, Clock::time_point end) {
 
 bool samePreparation(const ProfileCase& a, const ProfileCase& b) {
   return a.scene == b.scene && a.rows == b.rows && a.towers == b.towers && a.method == b.method && a.inertia == b.inertia &&
-         a.tolerance_m == b.tolerance_m && a.stack == b.stack;
+         a.tolerance_m == b.tolerance_m && a.named == b.named;
 }
 
 // A case under way.
@@ -58,6 +61,16 @@ TracedFrame tracedFrame(const Simulation& simulation, const StageTimes& stages, 
   frame.contactEvaluations = simulation.counters.contactEvaluations - counters.contactEvaluations;
   frame.awakeBlocks = static_cast<std::size_t>(std::count(simulation.asleep.begin(), simulation.asleep.end(), 0));
   return frame;
+}
+
+// A fall is timed whole, and fewer times: it takes as long as many samples of another scene.
+ProfileLimits limitsOf(const ProfileCase& what, ProfileLimits limits) {
+  constexpr int kFallSamples = 2;
+  if (!isFall(what.scene)) return limits;
+  limits.frames = fallFamilyOf(what.named).frames;
+  limits.samples = std::min(limits.samples, kFallSamples);
+  limits.sample_s = std::numeric_limits<double>::infinity();
+  return limits;
 }
 
 // How many frames go into one time.
@@ -130,12 +143,18 @@ void warmUp(Measured& measured, const ProfileLimits& limits) {
   PenetrationWorkspace workspace;
   const ParticleArray start = simulation.state.position;
   const double start_s = simulation.time_s;
+  Energy before = energy(simulation);
+  const double atStart_j = before.kinetic + std::abs(before.gravity) + before.springs + before.contacts;
   for (int frame = 0; frame < limits.frames && (frame < 2 || secondsBetween(begin, Clock::now()) < limits.sample_s); ++frame) {
     endIfInterrupted();
     scene.step();
     const Penetration deepest =
         maxPenetration(simulation.state.position, simulation.scene.floor, workspace, simulation.model.fixed);
     result.penetration_mm = std::max(result.penetration_mm, 1e3 * deepest.depth);
+    if (!isFall(result.what.scene)) continue;
+    const Energy after = energy(simulation);
+    result.energyRise = std::max(result.energyRise, energyRise(before, after) / atStart_j);
+    before = after;
   }
   constexpr double kMinute_s = 60.0;
   if (isStack(result.what.scene)) {
@@ -239,15 +258,17 @@ std::vector<ProfileResult> measureProfile(const std::vector<ProfileCase>& cases,
     if (traced != nullptr) (*traced)[before + i].what = cases[i];
     describePrepared(scene, result);
     progress(done++, all, cases[i]);
-    attempt(result, [&] { warmUp(group[i], limits); });
+    attempt(result, [&] { warmUp(group[i], limitsOf(cases[i], limits)); });
   }
   for (int turn = 0; turn < limits.samples; ++turn) {
     for (Measured& measured : group) {
       const auto at = static_cast<std::size_t>(measured.result - results.data());
       progress(done++, all, measured.result->what);
-      const bool lastTurn = turn + 1 == limits.samples;
+      const ProfileLimits own = limitsOf(measured.result->what, limits);
+      if (turn >= own.samples) continue;
+      const bool lastTurn = turn + 1 == own.samples;
       attempt(*measured.result, [&] {
-        sample(measured, limits, begun, traced != nullptr && lastTurn ? &(*traced)[before + at] : nullptr);
+        sample(measured, own, begun, traced != nullptr && lastTurn ? &(*traced)[before + at] : nullptr);
         if (lastTurn) finish(measured);
       });
     }
@@ -255,8 +276,9 @@ std::vector<ProfileResult> measureProfile(const std::vector<ProfileCase>& cases,
   for (Measured& measured : group) {
     ProfileResult& result = *measured.result;
     const bool isFirst = &result == results.data() || !samePreparation(result.what, (&result)[-1].what);
-    if (!isStack(result.what.scene) || !isFirst) continue;
-    result.peers = measurePeer(Peer::bullet, measured.scene->simulation, result.penetration_mm, limits.peer_s,
+    if (!isNamed(result.what.scene) || !isFirst) continue;
+    const int frames = isFall(result.what.scene) ? fallFamilyOf(result.what.named).frames : 0;
+    result.peers = measurePeer(Peer::bullet, measured.scene->simulation, {frames, result.penetration_mm, limits.peer_s},
                                [&] { progress(done, all, result.what); });
   }
   return results;

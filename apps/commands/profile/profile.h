@@ -27,20 +27,39 @@ enum class ProfileScene {
   towers,     ///< many towers side by side at rest, awake
   pile,       ///< one wide stack of 108 blocks a row that lands after a fall of 10 cm
   walls,      ///< walls in running bond at rest, awake
-  pyramids    ///< pyramids of cubes and of bricks at rest, awake
+  pyramids,   ///< pyramids of cubes and of bricks at rest, awake
+  topple,     ///< towers that topple under gravity that leans by 14.5 degrees
+  hit,        ///< towers that a block flies at
+  heaps,      ///< blocks turned at random that fall from a lattice
+  piles,      ///< wide connected stacks that land after a fall of 10 cm
+  rain        ///< blocks that land one after the other
 };
 
 /// Names as the command line spells them, in the order of the enumeration.
-inline constexpr std::array<std::string_view, 11> kProfileSceneNames = {
-    "rest", "sway", "heights", "pull", "pull-sleep", "collapse", "asleep", "towers", "pile", "walls", "pyramids"};
+inline constexpr auto kProfileSceneNames =
+    std::to_array<std::string_view>({"rest", "sway", "heights", "pull", "pull-sleep", "collapse", "asleep", "towers", "pile",
+                                     "walls", "pyramids", "topple", "hit", "heaps", "piles", "rain"});
 constexpr std::string_view nameOf(ProfileScene scene) {
   return kProfileSceneNames[static_cast<std::size_t>(scene)];
 }
 
-/// Whether a scene is of stacks by name and size (apps/commands/profile/stacks.h); the others are of towers and piles by rows.
+/// Whether a scene is of stacks by name and size (apps/commands/profile/stacks.h).
 constexpr bool isStack(ProfileScene scene) {
   return scene == ProfileScene::walls || scene == ProfileScene::pyramids;
 }
+
+/// Whether a scene is of what moves in large numbers, by name and size (apps/commands/profile/falls.h).
+constexpr bool isFall(ProfileScene scene) {
+  return scene >= ProfileScene::topple;
+}
+
+/// Whether a scene's cases have names with sizes; those of the others have rows and towers.
+constexpr bool isNamed(ProfileScene scene) {
+  return isStack(scene) || isFall(scene);
+}
+
+/// How many of a scene's named cases are timed: for a few seconds, usually, or with the largest, for minutes.
+enum class ProfileExtent { quick, usual, full };
 
 /// One line of a profile's charts at one place: what is timed.
 struct ProfileCase {
@@ -51,8 +70,8 @@ struct ProfileCase {
   Inertia inertia = Settings{}.inertia;
   double tolerance_m = 0.0;
   int threads = 1;
-  std::string stack =
-      {};  ///< its name and size, such as wall:20x12, where the scene is of stacks; `rows` and `towers` then mean nothing
+  std::string named =
+      {};  ///< its name and size, such as wall:20x12, where a scene has such; `rows` and `towers` then mean nothing
   bool operator==(const ProfileCase&) const = default;
 };
 
@@ -79,7 +98,8 @@ struct PeerFigures {
   std::string engine;
   int substeps = 1;             ///< equal steps of a frame
   double frame_ms = 0.0;        ///< median of processor time, one thread
-  double penetration_mm = 0.0;  ///< largest in the second half of the time it was looked at
+  double worst_ms = 0.0;        ///< of its frames but the first
+  double penetration_mm = 0.0;  ///< largest in the second half of the time it was looked at; of a fall, in all of it
   double simulated_s = 0.0;     ///< that time
   bool stands = true;           ///< at its end
 };
@@ -130,8 +150,9 @@ struct ProfileResult {
   double touchingBytes = 0.0;                          ///< that a touching pair adds
   double touchingStepBytes = 0.0;                      ///< and for steps and rollbacks
   double equilibrium_s = 0.0;      ///< processor time of the search for the equilibrium; of stacks alone, as are
-  double creepPerMinute_mm = 0.0;  ///< the largest move of a corner while measured, mm a minute, and
-  std::vector<PeerFigures> peers;  ///< other engines; of the first case of those with one preparation
+  double creepPerMinute_mm = 0.0;  ///< the largest move of a corner while measured, mm a minute
+  double energyRise = 0.0;         ///< largest in a frame, of what there was at the start; of falls alone
+  std::vector<PeerFigures> peers;  ///< other engines; of the first case of those with one preparation; of stacks and falls
   std::vector<double> frame_ms;    ///< `cost` of each frame, least over the samples
 
   /// What a frame costs, for charts: processor time on one thread, which other programs disturb least; wall time on more.

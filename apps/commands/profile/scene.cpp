@@ -1,5 +1,6 @@
 #include "apps/commands/profile/scene.h"
 
+#include "apps/commands/profile/falls.h"
 #include "apps/commands/profile/stacks.h"
 #include "apps/common/interruption.h"
 #include "core/error.h"
@@ -90,7 +91,8 @@ void startPulling(PreparedScene& scene, const Deadline& deadline) {
 
 // The blocks, and how gravity acts on them.
 Scene blocksOf(const ProfileCase& what) {
-  if (isStack(what.scene)) return stackScene(what.stack);
+  if (isStack(what.scene)) return stackScene(what.named);
+  if (isFall(what.scene)) return fallScene(what.named);
   TowerOptions options;
   if (what.scene == ProfileScene::heights) options.heightsSigma_m = kUnevenHeightsSigma_m;
   Scene scene = towerScene(what.rows, options);
@@ -126,8 +128,8 @@ Scene sceneOf(const ProfileCase& what) {
 
 std::unique_ptr<PreparedScene> prepareScene(const ProfileCase& what, const ProfileLimits& limits) {
   auto scene = std::make_unique<PreparedScene>(what);
-  // None of a pile's blocks has a place to keep.
-  if (what.scene == ProfileScene::pile) scene->leftOut.assign(scene->simulation.scene.blocks.size(), 1);
+  // None of what falls has a place to keep.
+  if (what.scene == ProfileScene::pile || isFall(what.scene)) scene->leftOut.assign(scene->simulation.scene.blocks.size(), 1);
   try {
     if (isStack(what.scene)) {
       scene->equilibrium_s = prepare(scene->simulation).processor_s;  // it may take longer than all else
@@ -135,7 +137,7 @@ std::unique_ptr<PreparedScene> prepareScene(const ProfileCase& what, const Profi
     const Deadline deadline(limits.prepare_s);
     if (what.scene == ProfileScene::asleep) {
       fallAsleep(*scene, deadline);
-    } else if (what.scene == ProfileScene::collapse) {
+    } else if (what.scene == ProfileScene::collapse || isFall(what.scene)) {
       prepare(scene->simulation);
       scene->step();
     } else if (what.scene != ProfileScene::pile) {

@@ -23,7 +23,7 @@ struct PreparedScene {
   Draw hand;  ///< that pulls a block; it holds none in other scenes
   std::shared_ptr<const Snapshot> snapshot;
   Draw handKept;                      ///< the hand of the snapshot
-  std::vector<std::uint8_t> leftOut;  ///< 1 for blocks that need not stand: the pulled one, a pile's; [blocks] or empty
+  std::vector<std::uint8_t> leftOut;  ///< 1 for blocks that need not stand: the pulled one, what falls; [blocks] or empty
   double equilibrium_s = 0.0;         ///< processor time of the search for a stack's equilibrium, s
   std::string failure;                ///< why the scene does not come to what is to be timed; empty when it does
 

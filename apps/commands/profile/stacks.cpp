@@ -83,15 +83,15 @@ std::span<const StackGoal> stackGoals() {
   return kGoals;
 }
 
-std::vector<std::string> stacksOf(ProfileScene scene, StackChoice choice) {
+std::vector<std::string> stacksOf(ProfileScene scene, ProfileExtent choice) {
   const bool walls = scene == ProfileScene::walls;
-  if (choice == StackChoice::quick) {
+  if (choice == ProfileExtent::quick) {
     if (walls) return {"wall:20x12", "wall:28x18"};
     return {"cubes:22", "cubes:28", "bricks:22", "bricks:28"};
   }
   std::vector<std::string> stacks = {"wall:20x12", "wall:40x25", "wall:80x25", "wall:200x25"};
   if (!walls) stacks = {"cubes:22", "cubes:40", "cubes:100", "bricks:22", "bricks:40", "bricks:60"};
-  if (choice == StackChoice::full) stacks.emplace_back(walls ? "wall:4000x25" : "bricks:100");
+  if (choice == ProfileExtent::full) stacks.emplace_back(walls ? "wall:4000x25" : "bricks:100");
   return stacks;
 }
 
@@ -141,7 +141,7 @@ std::vector<StackGrowth> stackGrowth(const Profile& profile) {
       std::vector<double> blocks;
       std::vector<double> ms;
       for (const ProfileResult& result : profile.results) {
-        const bool counts = isStack(result.what.scene) && nameIn(result.what.stack) == family.name &&
+        const bool counts = isStack(result.what.scene) && nameIn(result.what.named) == family.name &&
                             result.what.threads == count && result.failure.empty() && result.blocks >= kGrowthLeastBlocks &&
                             result.what.method == Settings{}.method;
         if (!counts) continue;

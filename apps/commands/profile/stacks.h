@@ -46,8 +46,7 @@ inline constexpr double kMaxGrowthExponent = 1.25;
 inline constexpr std::size_t kGrowthLeastBlocks = 240;  ///< smaller stacks are left out of it
 
 /// The stacks that are timed when none are named: in a few seconds, in some two minutes, or with the largest as well.
-enum class StackChoice { quick, usual, full };
-std::vector<std::string> stacksOf(ProfileScene scene, StackChoice choice);
+std::vector<std::string> stacksOf(ProfileScene scene, ProfileExtent choice);
 
 /// A stack as given on the command line, checked: the name of a family, a colon and its size. Throws InputError naming
 /// `--stacks`, what was found and what is allowed.

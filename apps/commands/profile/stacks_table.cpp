@@ -82,7 +82,7 @@ std::string verdictOf(const StackRow& row) {
   if (result.what.method != Settings{}.method) return misses.empty() ? "stands" : misses;
   if (result.penetration_mm > 1e3 * result.what.tolerance_m) add(misses, "depth");
   if (result.creepPerMinute_mm > kMaxStackCreepPerMinute_mm) add(misses, "creep");
-  const StackGoal* const goal = goalOf(result.what.stack);
+  const StackGoal* const goal = goalOf(result.what.named);
   if (goal == nullptr) return misses.empty() ? "meets" : "misses: " + misses;
   judgeTimes(row, goal->required_ms, misses);
   if (result.equilibrium_s > goal->equilibrium_s) add(misses, "equilibrium");
@@ -102,13 +102,13 @@ std::string boundsText(const std::array<double, 2>& bounds) {
 }
 
 std::string requiredText(const StackRow& row) {
-  const StackGoal* const goal = goalOf(row.first().what.stack);
+  const StackGoal* const goal = goalOf(row.first().what.named);
   if (goal == nullptr || std::isnan(goal->required_ms[0])) return "-";
   return fmt::format("{} ({})", boundsText(goal->required_ms), boundsText(goal->goal_ms));
 }
 
 std::string firstText(const StackRow& row) {
-  const StackGoal* const goal = goalOf(row.first().what.stack);
+  const StackGoal* const goal = goalOf(row.first().what.named);
   const std::string measured = fmt::format("{:.2g}", row.first().equilibrium_s);
   return goal == nullptr || std::isnan(goal->equilibrium_s) ? measured : fmt::format("{} ({:g})", measured, goal->equilibrium_s);
 }
@@ -122,7 +122,7 @@ std::string peerText(const ProfileResult& result) {
 
 void printRow(const StackRow& row, const std::vector<int>& threads) {
   const ProfileResult& result = row.first();
-  std::string name = result.what.stack;
+  std::string name = result.what.named;
   if (result.what.method != Settings{}.method) name += " " + result.methodName;
   fmt::print("{:<14}{:>7}", name, result.blocks);
   if (!result.failure.empty()) {
@@ -177,12 +177,12 @@ void writeStacksCsv(std::ostream& stream, const Profile& profile) {
                                          csvText(from.processor), from.date);
   const auto set = [](double bound) { return std::isnan(bound) ? std::string() : fmt::format("{:g}", bound); };
   for (const StackRow& row : rowsOf(profile)) {
-    const StackGoal* const goal = goalOf(row.first().what.stack);
+    const StackGoal* const goal = goalOf(row.first().what.named);
     for (const ProfileResult* result : row.results) {
       const ProfileCase& what = result->what;
       const bool judged = goal != nullptr && (what.threads == 1 || what.threads == 2);
       const auto at = static_cast<std::size_t>(what.threads - 1);
-      stream << fmt::format("springtower,{},{},{},{:g},{},{:g},{},{},{},{},{},{},{},{},{},{},{},{},{},{}", what.stack,
+      stream << fmt::format("springtower,{},{},{},{:g},{},{:g},{},{},{},{},{},{},{},{},{},{},{},{},{},{}", what.named,
                             result->blocks, result->methodName, what.tolerance_m, what.threads, result->substeps,
                             result->wall_ms.median, result->wall_ms.p99, result->processor_ms.median, result->processor_ms.p99,
                             result->penetration_mm, result->creepPerMinute_mm, result->equilibrium_s, result->prepared_s,
@@ -191,7 +191,7 @@ void writeStacksCsv(std::ostream& stream, const Profile& profile) {
                             csvText(result->failure.empty() ? verdictOf(row) : result->failure), origin);
     }
     for (const PeerFigures& peer : row.first().peers) {
-      stream << fmt::format("{},{},{},,,1,{},,,{},,{},,,{},{},,,,,{}", peer.engine, row.first().what.stack, row.first().blocks,
+      stream << fmt::format("{},{},{},,,1,{},,,{},,{},,,{},{},,,,,{}", peer.engine, row.first().what.named, row.first().blocks,
                             peer.substeps, peer.frame_ms, peer.penetration_mm, peer.simulated_s, peer.stands ? "yes" : "no",
                             origin);
     }
