@@ -49,7 +49,8 @@ Scene rainScene(int blocks) {
   for (int i = 0; i < blocks; ++i) {
     const int row = i / kSide % kSide;
     if (i % (kSide * kSide) == 0) {
-      const double lands_s = static_cast<double>(i / (kSide * kSide) + 1) / layers;
+      const int layer = i / (kSide * kSide);
+      const double lands_s = static_cast<double>(layer + 1) / layers;
       height_m = std::max(height_m + kHeapSpacing_m, 0.5 * kStandardGravity_m_s2 * lands_s * lands_s);
     }
     const Vec3 centre(kRainSpacing_m * (i % kSide - kMiddle), kRainSpacing_m * (row - kMiddle), height_m);

@@ -126,7 +126,7 @@ constexpr Scenario kScenarios[] = {
      false,
      [](const ScenarioSize& size, const TowerOptions&) { return heapScene(size[0]); }},
     {"rain",
-     "blocks turned at random of which equally many land in every part of a second",
+     "blocks turned at random that land one after the other",
      {SizeNumber{"blocks", 200, 1, 20000}, kNone},
      false,
      [](const ScenarioSize& size, const TowerOptions&) { return rainScene(size[0]); }},

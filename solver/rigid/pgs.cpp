@@ -122,8 +122,8 @@ void runPasses(IslandStep& step, RigidIsland& island, const Pass& pass, int pass
   const bool converges = !isRigid(step.simulation.scene.settings.method);
   const int limit = std::max({passes, tuning::kConvergingPasses, affordable});
   const int most = converges ? static_cast<int>(std::min(static_cast<double>(limit), massRatioOf(island) * passes)) : 0;
-  const double most_h = pass.push ? tuning::kMaxApproachLeft : tuning::kMaxRelaxationLeft;
-  const double enough = most_h * step.simulation.lengths.blockHeight_m / pass.step_s;
+  const double heightsLeft = pass.push ? tuning::kMaxApproachLeft : tuning::kMaxRelaxationLeft;
+  const double enough = heightsLeft * step.simulation.lengths.blockHeight_m / pass.step_s;
   double left = 0.0;
   for (int i = 0; i < passes || (left > enough && i < most); ++i) {
     left = 0.0;

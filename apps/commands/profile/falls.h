@@ -42,10 +42,10 @@ struct FallGoal {
 };
 std::span<const FallGoal> fallGoals();
 
-/// Bounds for every fall: the largest rise of energy in a frame, of what there was at the start; memory, kB a block; how many
+/// Bounds for every fall: the largest rise of energy in a frame, of what there was at the start; memory, bytes a block; how many
 /// times as fast two threads are from so many blocks on.
 inline constexpr double kMaxFallEnergyRise = 1e-4;
-inline constexpr double kMaxFallMemory_kB = 8.0;
+inline constexpr double kMaxFallBytes = 8000.0;
 inline constexpr double kLeastTwoThreads = 1.6;
 inline constexpr std::size_t kTwoThreadsBlocks = 300;
 

@@ -70,7 +70,7 @@ std::string fallVerdict(const std::vector<const ProfileResult*>& fall) {
   }
   miss(result.penetration_mm > (goal != nullptr ? goal->required_mm : 1.0), "depth");
   miss(result.energyRise > kMaxFallEnergyRise, "energy");
-  miss(result.allBytes > kBytesPerKb * kMaxFallMemory_kB, "memory");
+  miss(result.allBytes > kMaxFallBytes, "memory");
   const std::optional<double> faster = twoThreadsOf(fall);
   miss(faster && *faster < kLeastTwoThreads && result.blocks >= kTwoThreadsBlocks, "two threads");
   if (!misses.empty()) return misses;
@@ -114,7 +114,7 @@ void printFalls(const Profile& profile) {
       "(at most 1, goal 0.5), largest rise of energy in a frame of what there was (at most {:g}), memory kB a block (at most "
       "{:g});\nBullet: steps a frame nearest in depth, processor time of the median and the worst frame, depth, and for how long "
       "it was looked at\n",
-      kLeastTwoThreads, kTwoThreadsBlocks, kMaxFallEnergyRise, kMaxFallMemory_kB);
+      kLeastTwoThreads, kTwoThreadsBlocks, kMaxFallEnergyRise, kMaxFallBytes / kBytesPerKb);
   fmt::print("{:<14}{:>7}{:>10}{:>9}{:>8}  {:>12}  {:>10}{:>9}{:>10}{:>7}  {:<34}  {}\n", "fall", "blocks", "ms median", "worst",
              "2 thr.", "required", "goal", "depth", "energy", "kB", "verdict", "Bullet");
   for (const auto& fall : falls) printFall(fall);
