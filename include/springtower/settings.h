@@ -20,7 +20,7 @@ struct InputError : std::runtime_error {
 /// How a frame is stepped. `implicit` is the method of the engine; most others are there to be compared with it.
 enum class Method {
   implicit,           ///< two-step backward differences, one to eight steps a frame, each solved to equilibrium
-  implicitEuler,      ///< the same with one step of history: calmer, but it swallows a tower's sway
+  implicitEuler,      ///< the same with one step of history: calmer, but it damps a tower's sway
   implicitEigen,      ///< `implicit` with another library's factors; slower
   semiImplicitEuler,  ///< explicit steps, as many as their stability requires
   midpoint,           ///< explicit, second order

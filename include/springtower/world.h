@@ -21,15 +21,14 @@ struct Pose {
   Quaternion orientation;  ///< from its own axes to the world's; unit
 };
 
-/// How a block moves as a rigid one. Where explicit steps carry it (the default method takes them for what flies or is hit), half
-/// a step behind its pose.
+/// How a block moves as a rigid one. By explicit methods half a step behind its pose.
 struct Velocity {
   Vec3 linear_m_s;     ///< of its centre
   Vec3 angular_rad_s;  ///< in the world's axes
 };
 
-/// That a simulation has failed: a position is not finite any more, or a block is turned inside out. The default method does so
-/// in some scenes, mostly of flush neighbours, in the first step (docs/random-scenes.md).
+/// That a simulation has failed: a position is not finite any more, or a block is turned inside out. How often methods do so:
+/// docs/random-scenes.md.
 struct Divergence {
   int block = kFloor;   ///< the block found first
   double time_s = 0.0;  ///< simulated time

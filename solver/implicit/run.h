@@ -16,7 +16,7 @@ constexpr double endShare(bool twoStep) {
 void prepareImplicit(Simulation& simulation);
 
 /// Advances an island by implicit steps through the frame, as far as they fit and converge; `reached_s` is the time reached in
-/// the frame. The rest is left to explicit or rigid steps. `mostlyFallen`: whether most of its blocks have fallen, so that rigid
+/// the frame. The rest is left to rigid steps. `mostlyFallen`: whether most of its blocks have fallen, so that rigid
 /// steps follow if these do not converge.
 IslandOutcome runImplicitSteps(IslandStep& step, bool mostlyFallen, double& reached_s);
 
