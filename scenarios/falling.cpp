@@ -13,6 +13,7 @@ constexpr double kHeapLowest_m = 0.145;
 constexpr double kRainSpacing_m = 0.1;
 constexpr double kRainLowest_m = 0.06;
 
+// Without sines, so that it does not depend on a mathematical library.
 BlockSpec turnedAtRandom(RandomStream& random, const Vec3& centre) {
   BlockSpec block;
   block.centre = centre;
@@ -34,6 +35,19 @@ Scene heapScene(int blocks) {
     const int level = i / (side * side);
     const Vec3 centre(kHeapSpacing_m * (i % side - middle), kHeapSpacing_m * (row - middle),
                       kHeapLowest_m + kHeapSpacing_m * level);
+    scene.blocks.push_back(turnedAtRandom(random, centre));
+  }
+  return scene;
+}
+
+Scene shaftScene(int blocks) {
+  constexpr int kSide = 2;
+  RandomStream random(1, 0);
+  Scene scene;
+  for (int i = 0; i < blocks; ++i) {
+    const int row = i / kSide % kSide;
+    const int level = i / (kSide * kSide);
+    const Vec3 centre(kHeapSpacing_m * (i % kSide), kHeapSpacing_m * row, 0.1 + kHeapSpacing_m * level);
     scene.blocks.push_back(turnedAtRandom(random, centre));
   }
   return scene;

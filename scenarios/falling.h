@@ -10,8 +10,11 @@ namespace springtower {
 /// the floor: some 1.5 times as high as it is wide. They fall into a heap. Precondition: `blocks` is positive.
 Scene heapScene(int blocks);
 
-/// The same, 16 a layer, at heights from which equally many land in every part of the first second, as far as none can touch
-/// another. Precondition: `blocks` is positive.
+/// The same in a shaft: four a layer, so that they fall from far higher. Precondition: `blocks` is positive.
+Scene shaftScene(int blocks);
+
+/// The same as heapScene with 16 a layer, at heights from which equally many land in every part of the first second, as far as
+/// none can touch another. Precondition: `blocks` is positive.
 Scene rainScene(int blocks);
 
 /// A tower of `rows`, and a block that flies lengthwise at 5 m/s at 0.6 of its height. Precondition: `rows` is positive.

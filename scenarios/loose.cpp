@@ -1,7 +1,6 @@
 #include "scenarios/loose.h"
 
 #include "core/elementary.h"
-#include "core/random.h"
 #include "core/rotation_vector.h"
 
 #include <cmath>
@@ -88,23 +87,6 @@ Scene thinWallScene() {
   thrown.velocity.x() = 5.0;
   scene.blocks.push_back(thrown);
   scene.seconds = 1.0;
-  return scene;
-}
-
-// Without sines, so that it does not depend on a mathematical library.
-Scene randomPileScene(int blocks) {
-  constexpr double kSpacing_m = 0.09;
-  RandomStream random(1, 0);
-  Scene scene;
-  for (int i = 0; i < blocks; ++i) {
-    BlockSpec block;
-    const int row = i / 2 % 2;
-    const int level = i / 4;
-    block.centre = Vec3(kSpacing_m * (i % 2), kSpacing_m * row, 0.1 + kSpacing_m * level);
-    for (Eigen::Index a = 0; a < 4; ++a) block.orientation.coeffs()[a] = random.normal();
-    block.orientation.normalize();
-    scene.blocks.push_back(block);
-  }
   return scene;
 }
 

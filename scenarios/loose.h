@@ -32,10 +32,6 @@ Scene thrownPairScene();
 /// A block thrown lengthwise at a wall of thin blocks that stand on edge (scenes/thin_wall.toml).
 Scene thinWallScene();
 
-/// Blocks with random orientations, always the same, on a lattice in which none can touch another: four a layer. They fall into a
-/// pile.
-Scene randomPileScene(int blocks);
-
 /// The largest number of blocks of askewPileScene without initial overlap.
 inline constexpr int kMaxAskewBlocks = 9;
 

@@ -1,5 +1,6 @@
 #include "apps/common/provenance.h"
 
+#include "apps/common/output_file.h"
 #include "core/error.h"
 #include "core/version.h"
 
@@ -73,6 +74,11 @@ void checkCommitted(const Provenance& then, const Provenance& now, const std::st
       fmt::format("{}: found results to go on with, but {} has uncommitted changes, so that its commit does not say whether they "
                   "are of the same sources; allowed are builds of a commit, or --no-resume",
                   where, isDirty ? "this build" : "the build that measured them"));
+}
+
+std::string csvText(const Provenance& provenance) {
+  return fmt::format("{},{},{},{},{}", provenance.commit, csvText(provenance.compiler), csvText(provenance.flags),
+                     csvText(provenance.processor), provenance.date);
 }
 
 std::string footnote(const Provenance& provenance) {

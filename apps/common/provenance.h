@@ -31,6 +31,9 @@ bool sameOrigin(const Provenance& a, const Provenance& b);
 /// both builds has uncommitted changes, of which its commit says nothing. `where` begins the message.
 void checkCommitted(const Provenance& then, const Provenance& now, const std::string& where);
 
+/// Commit, compiler, flags, processor and date, as the last columns of a line of CSV.
+std::string csvText(const Provenance& provenance);
+
 /// One line for the foot of a chart.
 std::string footnote(const Provenance& provenance);
 

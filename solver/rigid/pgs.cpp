@@ -11,7 +11,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 namespace springtower {
@@ -101,18 +100,6 @@ void solveImpacts(IslandStep& step, RigidIsland& island, const Pass& pass, doubl
   step.counters.contactEvaluations += solved;
 }
 
-// The largest mass of a body over the smallest.
-double massRatioOf(const RigidIsland& island) {
-  double least = std::numeric_limits<double>::infinity();
-  double most = 0.0;
-  for (const RigidBody& body : island.bodies) {
-    if (body.inverseMass == 0.0) continue;  // driven
-    least = std::min(least, body.inverseMass);
-    most = std::max(most, body.inverseMass);
-  }
-  return most > 0.0 ? most / least : 1.0;
-}
-
 // Passes over the active points: so many, and in rigid mode up to as many times more as the island's largest mass is that of its
 // smallest, until the last leaves blocks to get into one another by no more than a share of a height in the substep. A light
 // block between heavy ones takes so many passes.
@@ -121,7 +108,7 @@ void runPasses(IslandStep& step, RigidIsland& island, const Pass& pass, int pass
   const int affordable = static_cast<int>(static_cast<std::size_t>(tuning::kConvergingEvaluations) / active);
   const bool converges = !isRigid(step.simulation.scene.settings.method);
   const int limit = std::max({passes, tuning::kConvergingPasses, affordable});
-  const int most = converges ? static_cast<int>(std::min(static_cast<double>(limit), massRatioOf(island) * passes)) : 0;
+  const int most = converges ? static_cast<int>(std::min(static_cast<double>(limit), island.massRatio * passes)) : 0;
   const double heightsLeft = pass.push ? tuning::kMaxApproachLeft : tuning::kMaxRelaxationLeft;
   const double enough = heightsLeft * step.simulation.lengths.blockHeight_m / pass.step_s;
   double left = 0.0;

@@ -21,6 +21,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace springtower {
 
@@ -115,6 +116,18 @@ void writeVelocities(IslandStep& step) {
     for (std::size_t c = 0; c < kCorners; ++c)
       state.velocity.set(b, c, body.velocity + body.spin.cross(state.position.at(b, c) - body.place));
   }
+}
+
+// The largest mass of a body over the smallest.
+double massRatioOf(const RigidIsland& island) {
+  double least = std::numeric_limits<double>::infinity();
+  double most = 0.0;
+  for (const RigidBody& body : island.bodies) {
+    if (body.inverseMass == 0.0) continue;  // driven
+    least = std::min(least, body.inverseMass);
+    most = std::max(most, body.inverseMass);
+  }
+  return most > 0.0 ? most / least : 1.0;
 }
 
 // A step of the LCP or the position-based method.
@@ -355,6 +368,7 @@ IslandOutcome runRigidSteps(IslandStep& step, int steps, double begin_s) {
   forgetPoints(island);
   island.rebounds = false;
   island.stands = !isMostlyFallen(step);
+  island.massRatio = massRatioOf(island);
   island.gained_j = 0.0;
   outcome.inside = runSteps(step, count, substeps, begin_s);
   if (sequential && outcome.inside) storeInManifolds(step, island, step.drift_s / substeps);

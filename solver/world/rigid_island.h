@@ -147,6 +147,7 @@ struct RigidIsland {
   double energyBefore_j = 0.0;                ///< kinetic energy before the step plus the work of gravity in it
   bool rebounds = false;                      ///< whether blocks have met in the frame so fast that they rebound
   bool stands = false;                        ///< whether half of the blocks at least have not fallen since they slept last
+  double massRatio = 1.0;                     ///< of its heaviest to its lightest body, of those that impulses move
   double gained_j = 0.0;                      ///< kinetic energy in the frame so far beyond the work of gravity; < 0: lost
   bool touches = false;                       ///< whether any contact pushes in the step
   LcpWorkspace pivoting;

@@ -56,7 +56,7 @@ std::vector<PinnedScene> pinnedFalls() {
       {"DropFlat", 60, [] { return droppedBlockScene(0.05); }},
       {"DropOnCorner", 90, [] { return droppedBlockScene(0.1, ontoACorner()); }},
       {"DroppedBlock", 90, [] { return sceneOfFile("dropped_block"); }},
-      {"HeapOf8", 120, [] { return randomPileScene(8); }},
+      {"HeapOf8", 120, [] { return shaftScene(8); }},
       {"CollapseAndBack", 180, [] { return collapse(18); }},
       {"RowsThatLand", 60, rowsThatLand},
       {"RowsApart", 60, rowsApart},

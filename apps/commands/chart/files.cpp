@@ -141,8 +141,7 @@ void writeChartCsv(std::ostream& stream, const Chart& chart) {
                           r.what.iterations, csvText(nameOf(r.outcome)), csvText(r.note), r.simulated_s, r.from_s, r.frames,
                           r.samples, csvNumber(r.frame_ms), csvNumber(1e-3 * kFramesInASecond * r.frame_ms));
     for (const double value : r.measured) stream << ',' << csvNumber(value);
-    stream << fmt::format(",{},{},{},{},{}\n", from.commit, csvText(from.compiler), csvText(from.flags), csvText(from.processor),
-                          from.date);
+    stream << fmt::format(",{}\n", csvText(from));
   }
   for (const PeerResult& peer : chart.peers) {
     stream << fmt::format("elsewhere,{},{},{},settings,{},,{},,,,,,{},{}", nameOf(peer.scene), sizeText(peer.scene, chart.limits),

@@ -1,5 +1,6 @@
 // The table of falls, for people and as CSV.
 #include "apps/commands/profile/falls.h"
+#include "apps/commands/profile/named_row.h"
 #include "apps/commands/profile/stacks.h"
 #include "apps/common/output_file.h"
 
@@ -12,36 +13,16 @@ namespace {
 
 constexpr double kBytesPerKb = 1000.0;
 
-// The results of falls with one preparation, on each number of threads.
-std::vector<std::vector<const ProfileResult*>> fallsOfProfile(const Profile& profile) {
-  std::vector<std::vector<const ProfileResult*>> falls;
-  for (const ProfileResult& result : profile.results) {
-    if (!isFall(result.what.scene)) continue;
-    const auto same = [&](const std::vector<const ProfileResult*>& fall) {
-      ProfileCase what = fall.front()->what;
-      what.threads = result.what.threads;
-      return what == result.what;
-    };
-    const auto found = std::find_if(falls.begin(), falls.end(), same);
-    if (found == falls.end()) {
-      falls.push_back({&result});
-    } else {
-      found->push_back(&result);
-    }
-  }
-  return falls;
-}
-
-const ProfileResult* onThreads(const std::vector<const ProfileResult*>& fall, int threads) {
-  const auto found = std::find_if(fall.begin(), fall.end(),
-                                  [&](const ProfileResult* one) { return one->what.threads == threads && one->failure.empty(); });
-  return found == fall.end() ? nullptr : *found;
+// Null where it was not timed on so many threads, or failed.
+const ProfileResult* timedOn(const NamedRow& fall, int threads) {
+  const ProfileResult* const result = fall.on(threads);
+  return result != nullptr && result->failure.empty() ? result : nullptr;
 }
 
 // How many times as fast two threads are as one, in the median of wall time; empty where one of them was not timed.
-std::optional<double> twoThreadsOf(const std::vector<const ProfileResult*>& fall) {
-  const ProfileResult* const one = onThreads(fall, 1);
-  const ProfileResult* const two = onThreads(fall, 2);
+std::optional<double> twoThreadsOf(const NamedRow& fall) {
+  const ProfileResult* const one = timedOn(fall, 1);
+  const ProfileResult* const two = timedOn(fall, 2);
   if (one == nullptr || two == nullptr || two->wall_ms.median <= 0.0) return {};
   return one->wall_ms.median / two->wall_ms.median;
 }
@@ -53,13 +34,13 @@ const FallGoal* fallGoalOf(const std::string& fall) {
 }
 
 // "meets", "meets, goal too", or what it misses. Only the usual method is held to anything.
-std::string fallVerdict(const std::vector<const ProfileResult*>& fall) {
+std::string fallVerdict(const NamedRow& fall) {
   constexpr double kGoalDepth_mm = 0.5;
-  const ProfileResult& result = *fall.front();
+  const ProfileResult& result = fall.first();
   if (!result.failure.empty()) return result.failure;
   if (result.what.method != Settings{}.method) return "-";
   const FallGoal* const goal = fallGoalOf(result.what.named);
-  const ProfileResult* const one = onThreads(fall, 1);
+  const ProfileResult* const one = timedOn(fall, 1);
   std::string misses;
   const auto miss = [&](bool missed, std::string_view what) {
     if (missed) misses += fmt::format("{}{}", misses.empty() ? "misses: " : ", ", what);
@@ -79,8 +60,8 @@ std::string fallVerdict(const std::vector<const ProfileResult*>& fall) {
   return goalToo ? "meets, goal too" : "meets";
 }
 
-void printFall(const std::vector<const ProfileResult*>& fall) {
-  const ProfileResult& result = *fall.front();
+void printFall(const NamedRow& fall) {
+  const ProfileResult& result = fall.first();
   std::string name = result.what.named;
   if (result.what.method != Settings{}.method) name += " " + result.methodName;
   fmt::print("{:<14}{:>7}", name, result.blocks);
@@ -106,7 +87,7 @@ void printFall(const std::vector<const ProfileResult*>& fall) {
 }  // namespace
 
 void printFalls(const Profile& profile) {
-  const auto falls = fallsOfProfile(profile);
+  const std::vector<NamedRow> falls = rowsOf(profile, isFall);
   if (falls.empty()) return;
   fmt::print(
       "\nfalls, all blocks awake: ms a frame in the median and in the worst frame but the first (processor time on one thread,\n"
@@ -117,19 +98,17 @@ void printFalls(const Profile& profile) {
       kLeastTwoThreads, kTwoThreadsBlocks, kMaxFallEnergyRise, kMaxFallBytes / kBytesPerKb);
   fmt::print("{:<14}{:>7}{:>10}{:>9}{:>8}  {:>12}  {:>10}{:>9}{:>10}{:>7}  {:<34}  {}\n", "fall", "blocks", "ms median", "worst",
              "2 thr.", "required", "goal", "depth", "energy", "kB", "verdict", "Bullet");
-  for (const auto& fall : falls) printFall(fall);
+  for (const NamedRow& fall : falls) printFall(fall);
 }
 
 void writeFallsCsv(std::ostream& stream, const Profile& profile) {
-  const Provenance& from = profile.provenance;
   stream << "engine,fall,blocks,method,tolerance_m,threads,substeps,wall_ms_median,wall_ms_max,cpu_ms_median,cpu_ms_max,"
             "penetration_mm,energy_rise,bytes_per_block,simulated_s,required_ms,required_worst_ms,goal_ms,goal_worst_ms,verdict,"
             "commit,compiler,flags,cpu,date\n";
-  const std::string origin = fmt::format("{},{},{},{},{}\n", from.commit, csvText(from.compiler), csvText(from.flags),
-                                         csvText(from.processor), from.date);
-  for (const auto& fall : fallsOfProfile(profile)) {
-    const FallGoal* const goal = fallGoalOf(fall.front()->what.named);
-    for (const ProfileResult* result : fall) {
+  const std::string origin = csvText(profile.provenance) + "\n";
+  for (const NamedRow& fall : rowsOf(profile, isFall)) {
+    const FallGoal* const goal = fallGoalOf(fall.first().what.named);
+    for (const ProfileResult* result : fall.results) {
       const std::string goals =
           goal == nullptr || result->what.threads != 1
               ? ",,,"
@@ -140,10 +119,9 @@ void writeFallsCsv(std::ostream& stream, const Profile& profile) {
                             result->penetration_mm, result->energyRise, result->allBytes, result->frames * Settings{}.frame_s,
                             goals, csvText(fallVerdict(fall)), origin);
     }
-    for (const PeerFigures& peer : fall.front()->peers) {
-      stream << fmt::format("{},{},{},,,1,{},,,{},{},{},,,{},,,,,,{}", peer.engine, fall.front()->what.named,
-                            fall.front()->blocks, peer.substeps, peer.frame_ms, peer.worst_ms, peer.penetration_mm,
-                            peer.simulated_s, origin);
+    for (const PeerFigures& peer : fall.first().peers) {
+      stream << fmt::format("{},{},{},,,1,{},,,{},{},{},,,{},,,,,,{}", peer.engine, fall.first().what.named, fall.first().blocks,
+                            peer.substeps, peer.frame_ms, peer.worst_ms, peer.penetration_mm, peer.simulated_s, origin);
     }
   }
 }

@@ -214,8 +214,7 @@ void writeProfileCsv(std::ostream& stream, const Profile& profile) {
     stream << fmt::format(",{},{},{},{},{},{},{},{},{},{},{}", result.substeps, result.stiffness_n_m, result.penetration_mm,
                           result.compression_mm, result.stands ? "yes" : "no", result.stateBytes, result.contactBytes,
                           result.allBytes, result.pairBytes, result.touchingBytes, result.touchingStepBytes);
-    stream << fmt::format(",{},{},{},{},{}\n", from.commit, csvText(from.compiler), csvText(from.flags), csvText(from.processor),
-                          from.date);
+    stream << fmt::format(",{}\n", csvText(from));
   }
 }
 

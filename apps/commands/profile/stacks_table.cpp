@@ -1,4 +1,5 @@
 // The table of walls and pyramids, for people and as CSV.
+#include "apps/commands/profile/named_row.h"
 #include "apps/commands/profile/stacks.h"
 #include "apps/common/output_file.h"
 
@@ -10,39 +11,9 @@
 namespace springtower {
 namespace {
 
-// A stack with one method and tolerance: its results on each number of threads, of which the first has what is common to all.
-struct StackRow {
-  std::vector<const ProfileResult*> results;
-  [[nodiscard]] const ProfileResult& first() const { return *results.front(); }
-  [[nodiscard]] const ProfileResult* on(int threads) const {
-    const auto found = std::find_if(results.begin(), results.end(),
-                                    [&](const ProfileResult* result) { return result->what.threads == threads; });
-    return found == results.end() ? nullptr : *found;
-  }
-};
-
-std::vector<StackRow> rowsOf(const Profile& profile) {
-  std::vector<StackRow> rows;
-  for (const ProfileResult& result : profile.results) {
-    if (!isStack(result.what.scene)) continue;
-    const auto same = [&](const StackRow& row) {
-      ProfileCase what = row.first().what;
-      what.threads = result.what.threads;
-      return what == result.what;
-    };
-    const auto found = std::find_if(rows.begin(), rows.end(), same);
-    if (found == rows.end()) {
-      rows.push_back({{&result}});
-    } else {
-      found->results.push_back(&result);
-    }
-  }
-  return rows;
-}
-
-std::vector<int> threadsOf(const std::vector<StackRow>& rows) {
+std::vector<int> threadsOf(const std::vector<NamedRow>& rows) {
   std::vector<int> threads;
-  for (const StackRow& row : rows) {
+  for (const NamedRow& row : rows) {
     for (const ProfileResult* result : row.results) threads.push_back(result->what.threads);
   }
   std::sort(threads.begin(), threads.end());
@@ -62,7 +33,7 @@ void add(std::string& list, const std::string& text) {
 
 // A frame's time on one thread and on two, as far as they are measured, against bounds; what is above them goes to `misses`.
 // Returns whether there was anything to judge.
-bool judgeTimes(const StackRow& row, const std::array<double, 2>& bounds_ms, std::string& misses) {
+bool judgeTimes(const NamedRow& row, const std::array<double, 2>& bounds_ms, std::string& misses) {
   bool judged = false;
   for (std::size_t i = 0; i < bounds_ms.size(); ++i) {
     const int threads = static_cast<int>(i) + 1;
@@ -75,7 +46,7 @@ bool judgeTimes(const StackRow& row, const std::array<double, 2>& bounds_ms, std
 }
 
 // "meets", "meets, goal too", or what it misses. Only the usual method is held to anything but standing.
-std::string verdictOf(const StackRow& row) {
+std::string verdictOf(const NamedRow& row) {
   const ProfileResult& result = row.first();
   std::string misses;
   if (!result.stands) add(misses, "it fell");
@@ -101,13 +72,13 @@ std::string boundsText(const std::array<double, 2>& bounds) {
   return text.empty() ? "-" : text;
 }
 
-std::string requiredText(const StackRow& row) {
+std::string requiredText(const NamedRow& row) {
   const StackGoal* const goal = goalOf(row.first().what.named);
   if (goal == nullptr || std::isnan(goal->required_ms[0])) return "-";
   return fmt::format("{} ({})", boundsText(goal->required_ms), boundsText(goal->goal_ms));
 }
 
-std::string firstText(const StackRow& row) {
+std::string firstText(const NamedRow& row) {
   const StackGoal* const goal = goalOf(row.first().what.named);
   const std::string measured = fmt::format("{:.2g}", row.first().equilibrium_s);
   return goal == nullptr || std::isnan(goal->equilibrium_s) ? measured : fmt::format("{} ({:g})", measured, goal->equilibrium_s);
@@ -120,7 +91,7 @@ std::string peerText(const ProfileResult& result) {
   return fmt::format("{} steps, {:.3g} ms, {} ({:.2g} s)", peer->substeps, peer->frame_ms, depth, peer->simulated_s);
 }
 
-void printRow(const StackRow& row, const std::vector<int>& threads) {
+void printRow(const NamedRow& row, const std::vector<int>& threads) {
   const ProfileResult& result = row.first();
   std::string name = result.what.named;
   if (result.what.method != Settings{}.method) name += " " + result.methodName;
@@ -152,7 +123,7 @@ void printGrowth(const Profile& profile) {
 }  // namespace
 
 void printStacks(const Profile& profile) {
-  const std::vector<StackRow> rows = rowsOf(profile);
+  const std::vector<NamedRow> rows = rowsOf(profile, isStack);
   if (rows.empty()) return;
   const std::vector<int> threads = threadsOf(rows);
   fmt::print(
@@ -164,19 +135,17 @@ void printStacks(const Profile& profile) {
   fmt::print("{:<14}{:>7}", "stack", "blocks");
   for (const int count : threads) fmt::print("  {:>8}{:>8}{:>8}", fmt::format("{} thr.", count), "p99", "cpu");
   fmt::print("  {:>16}{:>10}{:>9}  {:>11}  {:<20}  {}\n", "required (goal)", "depth", "creep", "prepare", "verdict", "Bullet");
-  for (const StackRow& row : rows) printRow(row, threads);
+  for (const NamedRow& row : rows) printRow(row, threads);
   printGrowth(profile);
 }
 
 void writeStacksCsv(std::ostream& stream, const Profile& profile) {
-  const Provenance& from = profile.provenance;
   stream << "engine,stack,blocks,method,tolerance_m,threads,substeps,wall_ms_median,wall_ms_p99,cpu_ms_median,cpu_ms_p99,"
             "penetration_mm,creep_mm_per_minute,equilibrium_s,simulated_s,stands,required_ms,goal_ms,first_frame_allowed_s,"
             "verdict,commit,compiler,flags,cpu,date\n";
-  const std::string origin = fmt::format("{},{},{},{},{}\n", from.commit, csvText(from.compiler), csvText(from.flags),
-                                         csvText(from.processor), from.date);
+  const std::string origin = csvText(profile.provenance) + "\n";
   const auto set = [](double bound) { return std::isnan(bound) ? std::string() : fmt::format("{:g}", bound); };
-  for (const StackRow& row : rowsOf(profile)) {
+  for (const NamedRow& row : rowsOf(profile, isStack)) {
     const StackGoal* const goal = goalOf(row.first().what.named);
     for (const ProfileResult* result : row.results) {
       const ProfileCase& what = result->what;
