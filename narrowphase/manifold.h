@@ -46,8 +46,8 @@ inline double stiffestOf(const PenaltyRow& row) {
 struct ImpulseRow {
   FourVectors friction;    ///< N, mean over the step, on upper
   FourValues normalForce;  ///< N, mean over the step
-  FourValues restDepth;    ///< m, overlap of springs without force
-  FourValues heldDepth;    ///< m, allowed overlap of islands in rigid mode: rest depth, and strain of the springs
+  FourValues restDepth;    ///< m, overlap without force
+  FourValues unused;       ///< 0; in the place of the springs' stiffening
   FourValues untouched;    ///< 0: no springs store energy
   FourValues slipping;     ///< non-zero where friction is at its bound
 };

@@ -40,9 +40,10 @@ std::size_t firstPoint(const Manifold& outline) {
   return first;
 }
 
-// Points of the incident block's face over the reference face. `onA`: whether the incident block is a.
+// Points of the incident block's face over the reference face, none of them deeper than `least` (a gap). `onA`: whether the
+// incident block is a.
 void addFacePoints(const CornerView& incident, const CornerView& reference, int referenceFace, const ManifoldLimits& limits,
-                   bool onA, NearPoints& points) {
+                   double least, bool onA, NearPoints& points) {
   const FaceFrame face = faceFrame(reference, referenceFace);
   Manifold outline;
   buildFaceManifold(incident, reference, incidentFaceOf(incident, face.normal), referenceFace, limits, outline);
@@ -51,7 +52,7 @@ void addFacePoints(const CornerView& incident, const CornerView& reference, int 
   for (std::size_t i = 0; i < count; ++i) {
     const Vec3 place = pointOnIncidentFace(outline, incident, (first + i) % count);
     const double gap = face.normal.dot(place - face.centre);
-    if (gap > limits.reach) continue;
+    if (gap > limits.reach || gap < least) continue;
     const Vec3 below = place - gap * face.normal;
     if (onA) {
       points.add({place, below, face.normal, NormalOf::b});
@@ -61,9 +62,9 @@ void addFacePoints(const CornerView& incident, const CornerView& reference, int 
   }
 }
 
-// Where two edges come nearest, within their ends. Of edges that are nearly parallel this would be anywhere, and the ends of both
-// are among the points of faces.
-void addCrossing(const CornerView& a, const CornerView& b, const Separation& apart, NearPoints& points) {
+// Where two edges come nearest, within their ends, if not deeper than `least`. Of edges that are nearly parallel this would be
+// anywhere, and the ends of both are among the points of faces.
+void addCrossing(const CornerView& a, const CornerView& b, const Separation& apart, double least, NearPoints& points) {
   const auto& cornersA = kEdgeCorners[static_cast<std::size_t>(apart.edgeOfA)];
   const auto& cornersB = kEdgeCorners[static_cast<std::size_t>(apart.edgeOfB)];
   const Vec3 fromA = a.at(cornersA[0]);
@@ -78,22 +79,20 @@ void addCrossing(const CornerView& a, const CornerView& b, const Separation& apa
   if (determinant < (1.0 - tuning::kParallelFaces * tuning::kParallelFaces) * aa * bb) return;
   const double onA = (bb * between.dot(alongA) - ab * between.dot(alongB)) / determinant;
   const double onB = (ab * between.dot(alongA) - aa * between.dot(alongB)) / determinant;
-  points.add(
-      {fromA + std::clamp(onA, 0.0, 1.0) * alongA, fromB + std::clamp(onB, 0.0, 1.0) * alongB, apart.normalEdge, NormalOf::b});
+  const Vec3 placeA = fromA + std::clamp(onA, 0.0, 1.0) * alongA;
+  const Vec3 placeB = fromB + std::clamp(onB, 0.0, 1.0) * alongB;
+  if (apart.normalEdge.dot(placeA - placeB) < least) return;
+  points.add({placeA, placeB, apart.normalEdge, NormalOf::b});
 }
 
-}  // namespace
-
-void findNearPoints(const CornerView& a, const CornerView& b, const Separation& apart, double reach, double mergeRadius,
-                    NearPoints& points) {
-  points.count = 0;
-  const double least = apart.best() - reach;
-  if (apart.best() > reach) return;
-  const ManifoldLimits limits{mergeRadius, reach};
-  const bool isFaceOfB = apart.faceB + mergeRadius >= apart.faceA;  // of two that are alike always the same
+// The points along all directions whose separation is within reach of the best, none deeper than `deepest`.
+void addPoints(const CornerView& a, const CornerView& b, const Separation& apart, const ManifoldLimits& limits, double deepest,
+               NearPoints& points) {
+  const double least = apart.best() - limits.reach;
+  const bool isFaceOfB = apart.faceB + limits.mergeRadius >= apart.faceA;  // of two that are alike always the same
   const auto addFaces = [&](bool ofB) {
     if ((ofB ? apart.faceB : apart.faceA) < least) return;
-    addFacePoints(ofB ? a : b, ofB ? b : a, ofB ? apart.faceOfB : apart.faceOfA, limits, ofB, points);
+    addFacePoints(ofB ? a : b, ofB ? b : a, ofB ? apart.faceOfB : apart.faceOfA, limits, deepest, ofB, points);
   };
   addFaces(isFaceOfB);
   // Of parallel faces both outlines are the same.
@@ -101,7 +100,20 @@ void findNearPoints(const CornerView& a, const CornerView& b, const Separation& 
   if (points.count == 0 || !parallel) addFaces(!isFaceOfB);
   if (!std::isfinite(apart.edge) || apart.edge < least) return;
   const Vec3& face = isFaceOfB ? apart.normalFaceB : apart.normalFaceA;
-  if (points.count == 0 || apart.normalEdge.dot(face) < tuning::kParallelFaces) addCrossing(a, b, apart, points);
+  if (points.count == 0 || apart.normalEdge.dot(face) < tuning::kParallelFaces) addCrossing(a, b, apart, deepest, points);
+}
+
+}  // namespace
+
+void findNearPoints(const CornerView& a, const CornerView& b, const Separation& apart, double reach, double mergeRadius,
+                    NearPoints& points) {
+  points.count = 0;
+  if (apart.best() > reach) return;
+  const ManifoldLimits limits{mergeRadius, reach};
+  // What lies deeper below a face than the blocks are in one another lies beside it: no contact holds it there.
+  addPoints(a, b, apart, limits, std::min(apart.best(), 0.0) - mergeRadius, points);
+  // Nearly parallel edges have no crossing; then faces hold them.
+  if (points.count == 0) addPoints(a, b, apart, limits, -std::numeric_limits<double>::infinity(), points);
 }
 
 void findNearFloorPoints(const CornerView& block, double reach, NearPoints& points) {

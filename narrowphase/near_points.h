@@ -32,9 +32,10 @@ struct NearPoints {
 /// The points at which two blocks may touch before any of their points has moved by `reach` (m, > 0) against the other block:
 /// corners of the overlap of a's nearest face with b's outline along the normal of that face, likewise of b's face with a's, and
 /// the crossing of the nearest edges; as far as their gap is at most `reach`, and only along directions whose separation is
-/// within `reach` of the best. A manifold (narrowphase/manifold.h) has the points of one of these directions alone, which is
-/// enough where it is renewed before another direction matters. `apart`: their separation; `mergeRadius`: points of a face closer
-/// than this (m) are one. Preconditions: as of findSeparation.
+/// within `reach` of the best. A point that overlaps by more than the blocks do along the best direction lies beside what it
+/// seems to rest on, and is left out unless there is no other. A manifold (narrowphase/manifold.h) has the points of one of these
+/// directions alone, which is enough where it is renewed before another direction matters. `apart`: their separation;
+/// `mergeRadius`: points of a face closer than this (m) are one. Preconditions: as of findSeparation.
 void findNearPoints(const CornerView& a, const CornerView& b, const Separation& apart, double reach, double mergeRadius,
                     NearPoints& points);
 

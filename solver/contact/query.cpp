@@ -42,7 +42,7 @@ struct ManifoldNow {
 };
 
 // Energy stored in a manifold's springs, Maxwell branches and friction displacements, J.
-double energyOf(const ManifoldNow& now, const ContactLaw& law) {
+double energyOf(const Simulation& simulation, const ManifoldNow& now, const ContactLaw& law) {
   const ContactView m = now.manifold;
   const double stiffness = law.stiffnessOf(m.upper, m.lower);
   double energy = 0.0;
@@ -51,7 +51,7 @@ double energyOf(const ManifoldNow& now, const ContactLaw& law) {
     const PenaltyRow& row = m.penalty(i);
     const double elastic = now.points.depth[i] - row.restDepth[lane];
     if (m.kind != PointKind::penalty) {
-      const double pressed = m.kind == PointKind::impulse ? heldStrain(m, i, now.points.depth[i]) : 0.0;
+      const double pressed = m.kind == PointKind::impulse ? springStrain(simulation, m, i, now.points.depth[i]) : 0.0;
       energy += 0.5 * stiffness * pressed * pressed;
       continue;
     }
@@ -153,7 +153,7 @@ Energy energy(const Simulation& simulation) {
     const ContactView contact = contactOf(*simulation.engine, at);
     if (contact.phase == PairPhase::separated) continue;
     const ManifoldNow now(simulation, law, contact);
-    energy.contacts += energyOf(now, law);
+    energy.contacts += energyOf(simulation, now, law);
     addForce(now.force.upper, contactForce[static_cast<std::size_t>(contact.upper)]);
     if (contact.lower >= 0) addForce(now.force.lower, contactForce[static_cast<std::size_t>(contact.lower)]);
   }

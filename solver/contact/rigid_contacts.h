@@ -39,11 +39,10 @@ inline double springDepthOfForce(const Simulation& simulation, const ContactView
   return std::min(manifold.impulse(point).normalForce[laneOf(point)] / stiffness, simulation.tolerance_m);
 }
 
-/// Strain of a point's springs in rigid mode, m.
-inline double heldStrain(const ContactView& manifold, std::size_t point, double depth_m) {
-  const ImpulseRow& row = manifold.impulse(point);
-  const std::size_t lane = laneOf(point);
-  return std::max(0.0, std::min(row.heldDepth[lane], depth_m) - row.restDepth[lane]);
+/// Depth to which they are compressed at an overlap of `depth_m`: no deeper than from where they are without force.
+inline double springStrain(const Simulation& simulation, const ContactView& manifold, std::size_t point, double depth_m) {
+  const double room = depth_m - manifold.impulse(point).restDepth[laneOf(point)];
+  return std::max(0.0, std::min(springDepthOfForce(simulation, manifold, point), room));
 }
 
 /// Coefficient of restitution of two blocks, the second -1 for the floor.

@@ -86,8 +86,9 @@ void penaltyToImpulse(const IslandStep& step, std::int32_t contact, const Contac
     const double restDepth = row.penalty.touching[lane] != 0.0 ? std::max(0.0, row.penalty.restDepth[lane]) : depth;
     row.impulse.normalForce[lane] = points.normal[i];
     for (std::size_t k = 0; k < 3; ++k) row.impulse.friction[k][lane] = points.friction[i][k];
-    row.impulse.restDepth[lane] = restDepth;
-    row.impulse.heldDepth[lane] = depth;
+    // As deep as it is, whatever the force is now: to push it out because that has become less would be energy out of nothing.
+    row.impulse.restDepth[lane] = std::max(restDepth, depth - springDepthOfForce(step.simulation, manifold, i));
+    row.impulse.unused[lane] = 0.0;
     row.impulse.untouched[lane] = 0.0;
   }
   step.engine.contacts.shape(contact).kind = PointKind::impulse;
@@ -103,8 +104,7 @@ void impulseToPenalty(const IslandStep& step, std::int32_t contact, const Contac
     const std::size_t lane = laneOf(i);
     PointRow& row = *rows[rowOf(i)];
     const bool touches = points.depth[i] > 0.0;
-    const double pressed = springDepthOfForce(step.simulation, manifold, i);
-    const double elastic = touches ? std::min(pressed, heldStrain(manifold, i, points.depth[i])) : 0.0;
+    const double elastic = touches ? springStrain(step.simulation, manifold, i, points.depth[i]) : 0.0;
     const double share = elastic > 0.0 ? -elastic * stiffness / (row.impulse.normalForce[lane] * tangential) : 0.0;
     const Vec3 friction = vectorAt(row.impulse.friction, i);
     row.penalty.touching[lane] = elastic > 0.0 ? 1.0 : (touches ? kTouchingWithoutForce : 0.0);

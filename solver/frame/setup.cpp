@@ -7,6 +7,7 @@
 #include "solver/frame/pairs.h"
 #include "solver/implicit/run.h"
 #include "solver/rigid/run.h"
+#include "solver/rigid/shapes.h"
 #include "solver/world/engine.h"
 #include "solver/world/simulation.h"
 #include "solver/world/stiffness.h"
@@ -198,6 +199,7 @@ Simulation::Simulation(const Scene& given) : scene(given), engine(std::make_uniq
     prepareRigid(*this);
   } else {
     prepareImplicit(*this);  // explicit methods start in the equilibrium that implicit steps find
+    if (isImplicit(scene.settings.method)) prepareShapes(*this);
   }
   if (traits.multiStage) {
     e.memo.carried.resize(count);

@@ -66,7 +66,14 @@ SPRINGTOWER_INLINE void placeNormal(const LanePlace& upper, const LanePlace& low
   normal.z = own.turnsUpper ? byUpper.z : (own.turnsLower ? byLower.z : own.normal.z);
 }
 
-SPRINGTOWER_INLINE void placePoint(const LanePlace& upper, const LanePlace& lower, const PackedPlace& own, PackedPoint& p) {
+// How soft contacts are in a substep.
+struct Springs {
+  double step_s;
+  double tolerance_m;
+};
+
+SPRINGTOWER_INLINE void placePoint(const LanePlace& upper, const LanePlace& lower, const PackedPlace& own, const Springs& springs,
+                                   PackedPoint& p) {
   LaneVector onUpper, onLower;
   turned(upper, own.upper, onUpper);
   add(upper.centre, onUpper);
@@ -76,7 +83,9 @@ SPRINGTOWER_INLINE void placePoint(const LanePlace& upper, const LanePlace& lowe
   LaneVector apart = onUpper;
   subtract(onLower, apart);
   dot(p.normal, apart, p.gap);
-  p.gap += own.allowed;
+  p.gap += own.rest;
+  p.give = own.compliance / springs.step_s;
+  smallerOf(p.give * p.push, springs.tolerance_m + Lanes{0.0, 0.0, 0.0, 0.0}, p.deepest);
   p.armUpper = {0.5 * (onUpper.x + onLower.x), 0.5 * (onUpper.y + onLower.y), 0.5 * (onUpper.z + onLower.z)};
   p.armLower = p.armUpper;
   subtract(upper.centre, p.armUpper);
@@ -95,7 +104,7 @@ SPRINGTOWER_INLINE void placePoint(const LanePlace& upper, const LanePlace& lowe
 }
 
 SPRINGTOWER_KERNEL
-void placePacks(const BodyPlace* places, PackedPoints& packed, std::size_t first, std::size_t last) {
+void placePacks(const BodyPlace* places, const Springs& springs, PackedPoints& packed, std::size_t first, std::size_t last) {
   for (std::size_t i = first; i < last; ++i) {
     PackedPair& pair = packed.pairs[i];
     LanePlace upper{};
@@ -107,7 +116,8 @@ void placePacks(const BodyPlace* places, PackedPoints& packed, std::size_t first
     pair.inertiaUpper = upper.inertia;
     pair.inertiaLower = lower.inertia;
     for (std::int32_t row = pair.first; row < pair.first + pair.rows; ++row)
-      placePoint(upper, lower, packed.places[static_cast<std::size_t>(row)], packed.points[static_cast<std::size_t>(row)]);
+      placePoint(upper, lower, packed.places[static_cast<std::size_t>(row)], springs,
+                 packed.points[static_cast<std::size_t>(row)]);
   }
 }
 
@@ -129,8 +139,9 @@ void moveGapsOf(const BodyMotion* moved, PackedPoints& packed, std::size_t first
 
 }  // namespace
 
-void placeConstraints(const RigidIsland& island, PackedPoints& packed) {
-  overPacks(packed, [&](std::size_t first, std::size_t last) { placePacks(island.places.data(), packed, first, last); });
+void placeConstraints(const RigidIsland& island, double step_s, double tolerance_m, PackedPoints& packed) {
+  const Springs springs{step_s, tolerance_m};
+  overPacks(packed, [&](std::size_t first, std::size_t last) { placePacks(island.places.data(), springs, packed, first, last); });
 }
 
 void moveGaps(RigidIsland& island) {

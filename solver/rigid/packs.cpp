@@ -128,23 +128,24 @@ void distribute(const RigidIsland& island, ActingPoints& list) {
 void clearRow(PackedPoint& point, PackedPlace& place) {
   const Lanes zero = {0.0, 0.0, 0.0, 0.0};
   place = PackedPlace{};
-  place.allowed = zero + std::numeric_limits<double>::max();
+  place.rest = zero + std::numeric_limits<double>::max();
   setZero(point.friction);
   setZero(point.towardsCentre);
-  point.push = point.normalMass = point.impact = point.before = zero;
+  point.push = point.normalMass = point.impact = point.before = point.give = point.deepest = zero;
   point.idle = zero == zero;
   point.sliding = zero != zero;
 }
 
-void fillLane(const ContactConstraint& from, int lane, PackedPoint& point, PackedPlace& place) {
+void fillLane(const ContactConstraint& from, double compliance, int lane, PackedPoint& point, PackedPlace& place) {
   setLane(place.upper, lane, from.placeUpper);
   setLane(place.lower, lane, from.placeLower);
   setLane(place.normal, lane, from.ownNormal);
   place.turnsUpper[lane] = from.normalOf == NormalOf::a ? -1 : 0;
   place.turnsLower[lane] = from.normalOf == NormalOf::b ? -1 : 0;
-  place.allowed[lane] = from.allowed;
+  place.rest[lane] = from.rest;
   setLane(point.friction, lane, from.friction);
   point.push[lane] = from.push;
+  place.compliance[lane] = compliance;
   point.normalMass[lane] = 1.0;
   point.idle[lane] = from.idle ? -1 : 0;
   point.sliding[lane] = from.sliding ? -1 : 0;
@@ -168,8 +169,10 @@ void fillPack(const IslandStep& step, const RigidIsland& island, ActingPoints& l
     pair.staticFriction[lane] = friction.staticFriction;
     pair.kineticFriction[lane] = friction.kineticFriction;
     pair.restitution[lane] = any.restitution;
+    const bool soft = !isRigid(step.simulation.scene.settings.method);
+    const double compliance = soft ? 1.0 / pairStiffness(step.simulation.stiffness, key.a, key.b) : 0.0;
     for (std::int32_t i = 0; i < group.count; ++i)
-      fillLane(list.points[packedRow(group.first, i)], lane, packed.points[packedRow(pair.first, i)],
+      fillLane(list.points[packedRow(group.first, i)], compliance, lane, packed.points[packedRow(pair.first, i)],
                packed.places[packedRow(pair.first, i)]);
   }
 }
@@ -215,7 +218,7 @@ void disablePacked(PackedPoints& packed, const PointGroup& group) {
   for (std::int32_t i = 0; i < group.count; ++i) {
     const auto row = packedRow(pair.first, i);
     PackedPoint& point = packed.points[row];
-    packed.places[row].allowed[group.lane] = std::numeric_limits<double>::max();
+    packed.places[row].rest[group.lane] = std::numeric_limits<double>::max();
     point.push[group.lane] = 0.0;
     point.friction.x[group.lane] = point.friction.y[group.lane] = point.friction.z[group.lane] = 0.0;
     point.idle[group.lane] = -1;

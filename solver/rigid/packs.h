@@ -109,6 +109,13 @@ SPRINGTOWER_INLINE void relativeAt(const PackMotion& motion, const PackedPoint& 
   subtract(turningLower, relative);
 }
 
+/// How far the blocks are apart, m, beyond what their push may compress the springs; negative where they are to be pushed apart.
+SPRINGTOWER_INLINE void slackOf(const PackedPoint& p, Lanes& slack) {
+  Lanes compressed;
+  smallerOf(p.give * p.push, p.deepest, compressed);
+  slack = p.gap + compressed;
+}
+
 /// A symmetric matrix times a vector.
 SPRINGTOWER_INLINE void times(const LaneMatrix& m, const LaneVector& v, LaneVector& to) {
   to.x = m.xx * v.x + m.xy * v.y + m.xz * v.z;

@@ -21,22 +21,26 @@ struct Aim {
 };
 
 SPRINGTOWER_INLINE void aimOf(const Pass& pass, const PackedPoint& p, Aim& aim) {
-  const LaneMask apart = p.gap > -pass.rounding;
-  Lanes open;
-  largerOf(p.gap, kNone, open);
+  Lanes slack, open;
+  slackOf(p, slack);
+  largerOf(slack, kNone, open);
+  const LaneMask apart = slack > -pass.rounding;
   const Lanes approach = -open / pass.step_s;
+  // A greater push compresses the springs farther, which takes a part of what it is for.
+  const Lanes give = p.give * p.push < p.deepest ? p.give * p.normalMass : kNone;
+  const Lanes stiff = 1.0 / (1.0 + give / pass.step_s);
   if (pass.push) {
     const Lanes most = kNone + pass.most;
     Lanes pushed;
-    smallerOf(-pass.soft.rate * p.gap, most, pushed);
+    smallerOf(-pass.soft.rate * slack, most, pushed);
     aim.least = apart ? approach : pushed;
-    aim.share = apart ? kNone + 1.0 : kNone + pass.soft.mass;
+    aim.share = apart ? stiff : pass.soft.mass / (1.0 + pass.soft.rate * give);
     aim.released = apart ? kNone : kNone + pass.soft.impulse;
     return;
   }
   const Lanes least = apart ? approach : kNone;
   largerOf(least, p.rebound, aim.least);
-  aim.share = kNone + 1.0;
+  aim.share = slack > kNone ? stiff : kNone + 1.0;
   aim.released = kNone;
 }
 

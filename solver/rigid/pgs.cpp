@@ -24,11 +24,15 @@ Softness softness(double step_s) {
   return {omega / a, b / (1.0 + b), 1.0 / (1.0 + b)};
 }
 
-// Depth of the deepest overlap beyond what is allowed, m.
+// Depth of the deepest overlap beyond what compresses the springs, m.
 double deepestOverlap(const RigidIsland& island) {
   Lanes least = {0.0, 0.0, 0.0, 0.0};
   for (const PackedPoints* packed : packsOf(island)) {
-    for (const PackedPoint& p : packed->points) smallerOf(p.gap, least, least);
+    for (const PackedPoint& p : packed->points) {
+      Lanes slack;
+      slackOf(p, slack);
+      smallerOf(slack, least, least);
+    }
   }
   return -std::min(std::min(least[0], least[1]), std::min(least[2], least[3]));
 }
@@ -128,7 +132,9 @@ double workOfPushOut(const RigidIsland& island, double rate) {
   Lanes sum4 = {0.0, 0.0, 0.0, 0.0};
   for (const PackedPoints* packed : packsOf(island)) {
     for (const PackedPoint& p : packed->points) {
-      const Lanes overlap = p.gap < 0.0 ? -p.gap : Lanes{0.0, 0.0, 0.0, 0.0};
+      Lanes slack;
+      slackOf(p, slack);
+      const Lanes overlap = slack < 0.0 ? -slack : Lanes{0.0, 0.0, 0.0, 0.0};
       sum4 += p.push * overlap;
     }
   }
@@ -224,7 +230,7 @@ void stepImpulses(IslandStep& step, RigidIsland& island) {
   }
   island.energyBefore_j = kineticEnergy(island.bodies);
   readBodies(island);
-  for (PackedPoints* packed : packsOf(island)) placeConstraints(island, *packed);
+  for (PackedPoints* packed : packsOf(island)) placeConstraints(island, step.drift_s, step.simulation.tolerance_m, *packed);
   setImpacts(step, island);
   choosePatchFriction(step, island);
   applyForces(step);

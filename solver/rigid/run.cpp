@@ -12,13 +12,13 @@
 #include "solver/rigid/list_points.h"
 #include "solver/rigid/methods.h"
 #include "solver/rigid/rebound.h"
+#include "solver/rigid/shapes.h"
 #include "solver/rigid/warm_start.h"
 #include "solver/world/checkpoint.h"
 #include "solver/world/driven_blocks.h"
 #include "solver/world/over_island.h"
 #include "solver/world/stage_clock.h"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -26,16 +26,6 @@
 namespace springtower {
 
 namespace {
-
-// Inertia tensor of a cuboid, m (b^2 + c^2) / 12; with the mass in eight corners three times as much.
-Eigen::Matrix3d momentOf(const Simulation& simulation, std::size_t block, const RigidBody& body) {
-  Eigen::Matrix3d moment = Eigen::Matrix3d::Zero();
-  for (std::size_t c = 0; c < kCorners; ++c) {
-    const Vec3 arm(body.corner[0][c], body.corner[1][c], body.corner[2][c]);
-    moment += arm.squaredNorm() * Eigen::Matrix3d::Identity() - arm * arm.transpose();
-  }
-  return simulation.model.mass[block] / inverseMass(simulation.scene.settings.inertia).own * moment;
-}
 
 // Driven blocks are bodies behind those of the island, of no inverse mass and inertia.
 void readDriven(IslandStep& step, RigidIsland& island) {
@@ -62,7 +52,8 @@ void driveBodies(IslandStep& step, double at_s, double step_s) {
   }
 }
 
-void readPoses(IslandStep& step) {
+// Poses at the start of a time (s).
+void readPoses(IslandStep& step, double time_s) {
   const Simulation& simulation = step.simulation;
   const bool undeformed = isRigid(simulation.scene.settings.method);
   RigidIsland& island = rigidIslandOf(step);
@@ -83,12 +74,11 @@ void readPoses(IslandStep& step) {
         body.corner[a][c] = undeformed ? 0.5 * cornerSide(c, a) * simulation.model.dimensions[b][axis] : arm[axis];
       }
     }
-    body.moment = momentOf(simulation, b, body);
-    body.inverseMoment = body.moment.inverse();
     body.inverseMass = 1.0 / simulation.model.mass[b];
-    body.radius_m = Vec3(body.corner[0][0], body.corner[1][0], body.corner[2][0]).norm();
+    setMoments(simulation.scene.settings.inertia, simulation.model.mass[b], body);
     step.engine.scratch.nodeOf[b] = static_cast<std::int32_t>(i);
   }
+  if (!undeformed) relaxShapes(step, time_s, island);
   readDriven(step, island);
 }
 
@@ -360,7 +350,7 @@ IslandOutcome runRigidSteps(IslandStep& step, int steps, double begin_s) {
   outcome.substeps = steps;
   step.drift_s = (step.part.end_s - begin_s) / count;
   step.kick_s = step.advance_s = step.drift_s;
-  readPoses(step);
+  readPoses(step, step.part.end_s - begin_s);
   computeFrames(simulation.state.position, step.blocks, step.engine.memo.frames);
   step.usesActiveList = true;
   step.activeListSteps = 0;

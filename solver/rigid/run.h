@@ -20,7 +20,8 @@ int rigidSubsteps(const Settings& settings);
 /// poses from the particles, solves and moves by the method (by sequential impulses for an island of another method in rigid
 /// mode), and looks for contacts, with sequential impulses after every few solutions, between which the points are known that may
 /// touch (list_points.h). What is followed by an unforeseen contact is repeated with it, so that blocks stop at the surface.
-/// Blocks keep their present shape. Sets `inside` to false if a block has left its swept box. Throws DivergenceError.
+/// Blocks keep the shape with which the frame begins (shapes.h). Sets `inside` to false if a block has left its swept box. Throws
+/// DivergenceError.
 IslandOutcome runRigidSteps(IslandStep& step, int steps, double begin_s);
 
 /// The island's working data.

@@ -41,7 +41,6 @@ void clearForces(const PointRows& rows, std::int32_t count) {
     row.friction = {};
     row.slipping = {};
     row.restDepth = {};
-    row.heldDepth = {};
   }
 }
 
@@ -53,20 +52,6 @@ void addForce(const ContactConstraint& p, double rate, bool swapped, std::size_t
   for (std::size_t k = 0; k < 3; ++k) row.friction[k][lane] += (swapped ? -rate : rate) * p.friction[static_cast<int>(k)];
   if (p.sliding) row.slipping[lane] = 1.0;
   row.restDepth[lane] = std::max(row.restDepth[lane], p.rest);
-  row.heldDepth[lane] = std::max(row.heldDepth[lane], p.allowed);
-}
-
-// Rest depth and strain of a point's springs after a frame, which began with the overlap `found` (m). Strain grows as far as the
-// blocks have sunk in since under the force that the point has now: so the fall has paid for it.
-void strainSprings(const Simulation& simulation, const ContactView& manifold, std::size_t i, double found, double depth,
-                   const PointRows& rows) {
-  ImpulseRow& row = rows[rowOf(i)]->impulse;
-  const std::size_t lane = laneOf(i);
-  const double held = row.heldDepth[lane];
-  const double explained = row.restDepth[lane] + springDepthOfForce(simulation, manifold, i);
-  const double sunk = std::max(0.0, depth - std::max(found, held));
-  row.heldDepth[lane] = std::clamp(depth, 0.0, std::max(held, std::min(explained, held + sunk)));
-  row.restDepth[lane] = std::min(row.restDepth[lane], row.heldDepth[lane]);
 }
 
 // Finds the manifold of a pair at the present positions; returns whether it touches.
@@ -94,19 +79,19 @@ void storePair(IslandStep& step, const RigidIsland& island, std::size_t at, std:
   if (manifold.count == 0) return;
   const PointForces now = manifoldPoints(step, manifold);
   const bool swapped = manifold.upper != step.engine.pairs.key[at].a;
-  std::array<double, kManifoldPoints> found{};
   for (const ContactConstraint& p : points) {
-    if (!(p.push > 0.0) && !(p.allowed > 0.0)) continue;
+    if (!(p.push > 0.0) && !(p.rest > 0.0)) continue;
     const Vec3 place = placeOf(island, p);
     std::size_t nearest = 0;
     for (std::size_t i = 1; i < static_cast<std::size_t>(manifold.count); ++i) {
       if ((now.place[i] - place).squaredNorm() < (now.place[nearest] - place).squaredNorm()) nearest = i;
     }
     addForce(p, rate, swapped, nearest, rows);
-    found[nearest] = std::max(found[nearest], p.found);
   }
-  for (std::size_t i = 0; i < static_cast<std::size_t>(manifold.count); ++i)
-    strainSprings(step.simulation, manifold, i, found[i], now.depth[i], rows);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(manifold.count); ++i) {
+    double& rest = rows[rowOf(i)]->impulse.restDepth[laneOf(i)];
+    rest = std::clamp(now.depth[i], 0.0, rest);
+  }
 }
 
 }  // namespace
@@ -133,8 +118,6 @@ void warmStartFromKnown(const IslandStep& step, const KnownGroup& known, std::sp
     p.idle = !(p.push > 0.0);
     if (!p.idle) p.friction = q.friction;
     p.rest = q.rest;
-    p.allowed = q.allowed;
-    p.found = q.found;
     p.sliding = q.sliding;
   }
 }
@@ -163,9 +146,6 @@ void warmStartFromManifold(const IslandStep& step, const RigidIsland& island, st
     p.idle = !(p.push > 0.0);
     if (!p.idle) p.friction = sign * Lanes{row.friction[0][lane], row.friction[1][lane], row.friction[2][lane], 0.0};
     p.rest = row.restDepth[lane];
-    // As deep as it was, whatever the force is now: to push it out because that has become less would be energy out of nothing.
-    p.allowed = std::max(p.rest, row.heldDepth[lane]);
-    p.found = std::max(0.0, -p.gap);
     p.sliding = slipsAt(manifold, from);
   }
 }

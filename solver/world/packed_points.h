@@ -69,13 +69,15 @@ struct alignas(32) PackedPoint {
   Lanes push;                ///< N s along the normal
   Lanes normalMass;          ///< kg, effective along the normal; 0 of a lane without a point
   Lanes acrossMass;          ///< kg, lower bound of the effective tangential mass
-  Lanes gap;                 ///< m at the start of the substep; negative where the blocks overlap by more than the allowed depth
+  Lanes gap;                 ///< m at the start of the substep; negative where the blocks overlap by more than without force
   Lanes coefficient;         ///< of friction: static, or kinetic where all points of the pair slip
   Lanes rebound;             ///< m/s, speed at which the blocks part after an impact; the lowest number where there is none
   LaneMask idle;             ///< whether its normal and friction impulses are zero so far
   LaneMask sliding;          ///< whether friction is at its bound
   Lanes impact;              ///< m/s, speed at which the blocks meet if they do in the substep; 0: too slow to rebound
   Lanes before;              ///< N s, push with which the substep began
+  Lanes give;                ///< m/(N s), how much deeper the springs overlap by a push; 0 in the rigid methods
+  Lanes deepest;             ///< m, how deep they are at most by it: as deep as by the push with which the substep began
   LaneVector towardsCentre;  ///< m, from the point to where its friction acts; read where PackedPair::slips is set
 };
 
@@ -86,7 +88,8 @@ struct alignas(32) PackedPlace {
   LaneVector normal;    ///< in the axes of the body that it turns with, or the world's
   LaneMask turnsUpper;  ///< whether it turns with the upper body
   LaneMask turnsLower;  ///< or with the lower one
-  Lanes allowed;        ///< m, overlap that is not pushed out
+  Lanes rest;           ///< m, overlap without force
+  Lanes compliance;     ///< m/N, of its springs; 0 in the rigid methods
 };
 
 /// The points of a list, packed for the substeps of a step.

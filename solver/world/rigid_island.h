@@ -25,11 +25,12 @@ struct RigidPose {
 /// A block in the rigid methods, while its island is stepped through a frame. Between frames the particles are the state: poses
 /// are read from them when a frame begins; positions are written back after every step, velocities at the end of the frame.
 struct RigidBody : RigidPose {
-  std::array<std::array<double, kCorners>, 3> corner{};      ///< m, corners relative to the centre along its own axes
-  Eigen::Matrix3d moment = Eigen::Matrix3d::Zero();          ///< kg m2, of inertia, own axes
-  Eigen::Matrix3d inverseMoment = Eigen::Matrix3d::Zero();   ///< 1/(kg m2)
-  double inverseMass = 0.0;                                  ///< 1/kg
-  double radius_m = 0.0;                                     ///< of its farthest corner from the centre
+  std::array<std::array<double, kCorners>, 3> corner{};     ///< m, corners relative to the centre along its own axes
+  Eigen::Matrix3d moment = Eigen::Matrix3d::Zero();         ///< kg m2, of inertia, own axes
+  Eigen::Matrix3d inverseMoment = Eigen::Matrix3d::Zero();  ///< 1/(kg m2)
+  double inverseMass = 0.0;                                 ///< 1/kg
+  double radius_m = 0.0;                                    ///< of its farthest corner from the centre
+  Eigen::Matrix3d load = Eigen::Matrix3d::Zero();  ///< J, of its contacts as the frame begins (solver/block/static_shape.h)
   Eigen::Matrix3d inverseInertia = Eigen::Matrix3d::Zero();  ///< 1/(kg m2), world axes
   RigidPose before;                                          ///< at the start of the step
   Vec3 velocityBefore = Vec3::Zero();                        ///< m/s, at the start of the substep
@@ -64,17 +65,15 @@ struct RigidContact {
 /// One point of two blocks in sequential impulses, as it lasts from substep to substep; `upper` is the pair's first block, or
 /// what does not move. Vectors fill three of four lanes. The point is fixed to its blocks.
 struct alignas(32) ContactConstraint {
-  Lanes placeUpper;      ///< m, in the body's axes from its centre; in the world on what does not move
-  Lanes placeLower;      ///< m, likewise
-  Lanes ownNormal;       ///< the normal in the axes of the body that it turns with, or in the world's
-  Lanes friction{};      ///< N s, on upper, tangential
-  double push = 0.0;     ///< N s along the normal
-  double gap;            ///< m as it was found; negative where the blocks overlap
-  double rest = 0.0;     ///< m, overlap of springs without force
-  double allowed = 0.0;  ///< m, overlap that is not pushed out: rest depth, and strain of the springs
-  double found = 0.0;    ///< m, overlap as the frame began
-  double restitution;    ///< of the pair
-  std::int32_t upper;    ///< index of its body in the island; the last index stands for what does not move
+  Lanes placeUpper;    ///< m, in the body's axes from its centre; in the world on what does not move
+  Lanes placeLower;    ///< m, likewise
+  Lanes ownNormal;     ///< the normal in the axes of the body that it turns with, or in the world's
+  Lanes friction{};    ///< N s, on upper, tangential
+  double push = 0.0;   ///< N s along the normal
+  double gap;          ///< m as it was found; negative where the blocks overlap
+  double rest = 0.0;   ///< m, overlap without force
+  double restitution;  ///< of the pair
+  std::int32_t upper;  ///< index of its body in the island; the last index stands for what does not move
   std::int32_t lower;
   NormalOf normalOf;     ///< a: upper, b: lower
   bool sliding = false;  ///< whether friction is at its bound

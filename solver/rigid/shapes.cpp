@@ -1,0 +1,98 @@
+#include "solver/rigid/shapes.h"
+
+#include "solver/block/inertia.h"
+#include "solver/block/static_shape.h"
+#include "solver/contact/query.h"
+#include "solver/contact/rigid_contacts.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+
+namespace springtower {
+
+namespace {
+
+// The body of a block of the island; null of any other.
+RigidBody* bodyOf(const IslandStep& step, std::int32_t block, RigidIsland& island) {
+  if (sleeps(step.simulation, block)) return nullptr;
+  const auto node = static_cast<std::size_t>(step.engine.scratch.nodeOf[static_cast<std::size_t>(block)]);
+  return node < step.blocks.size() && step.blocks[node] == block ? &island.bodies[node] : nullptr;
+}
+
+void addForce(const Vec3& place, const Vec3& force, RigidBody* body) {
+  if (body == nullptr) return;
+  const Vec3 arm = body->axes.transpose() * (place - body->place);
+  const Vec3 own = body->axes.transpose() * force;
+  body->load += arm * own.transpose();
+}
+
+// The part of a point's forces that compresses its springs by no more than the tolerance.
+double lastingShare(const Simulation& simulation, const ContactView& manifold, double normalForce) {
+  const double most = simulation.tolerance_m * pairStiffness(simulation.stiffness, manifold.upper, manifold.lower);
+  return normalForce > most ? most / normalForce : 1.0;
+}
+
+void addLoads(const IslandStep& step, RigidIsland& island) {
+  for (const std::int32_t pair : step.pairs) {
+    const auto at = static_cast<std::size_t>(pair);
+    if (!step.engine.pairs.touches(at)) continue;
+    const ContactView manifold = contactOf(step.engine, at);
+    if (manifold.kind != PointKind::impulse) continue;
+    RigidBody* upper = bodyOf(step, manifold.upper, island);
+    RigidBody* lower = bodyOf(step, manifold.lower, island);
+    const PointForces points = forcesNow(step.simulation, manifold);
+    for (std::size_t i = 0; i < static_cast<std::size_t>(manifold.count); ++i) {
+      if (!(points.normal[i] > 0.0)) continue;
+      const Vec3 whole = points.normal[i] * points.direction + vectorAt(manifold.impulse(i).friction, i);
+      const Vec3 force = lastingShare(step.simulation, manifold, points.normal[i]) * whole;
+      addForce(points.place[i], force, upper);
+      addForce(points.lowerPlace[i], -force, lower);
+    }
+  }
+}
+
+}  // namespace
+
+void setMoments(Inertia inertia, double mass_kg, RigidBody& body) {
+  Eigen::Matrix3d moment = Eigen::Matrix3d::Zero();
+  for (std::size_t c = 0; c < kCorners; ++c) {
+    const Vec3 arm(body.corner[0][c], body.corner[1][c], body.corner[2][c]);
+    moment += arm.squaredNorm() * Eigen::Matrix3d::Identity() - arm * arm.transpose();
+  }
+  body.moment = mass_kg / inverseMass(inertia).own * moment;
+  body.inverseMoment = body.moment.inverse();
+  body.radius_m = Vec3(body.corner[0][0], body.corner[1][0], body.corner[2][0]).norm();
+}
+
+void prepareShapes(Simulation& simulation) {
+  const BlockModel& model = simulation.model;
+  const std::vector<double>& edge_n_m = simulation.stiffness.edge_n_m;
+  std::vector<StaticResponse>& response = simulation.engine->staticResponse;
+  response.clear();
+  for (std::size_t b = 0; b < model.blockCount(); ++b) {
+    const bool equal = b > 0 && model.dimensions[b] == model.dimensions[b - 1] && model.mass[b] == model.mass[b - 1] &&
+                       edge_n_m[b] == edge_n_m[b - 1];
+    response.push_back(equal ? response.back() : staticResponse(model, simulation.scene.settings.inertia, b));
+  }
+}
+
+void relaxShapes(const IslandStep& step, double time_s, RigidIsland& island) {
+  const Simulation& simulation = step.simulation;
+  const double share = time_s / (time_s + simulation.lengths.fallTime_s);
+  for (RigidBody& body : island.bodies) body.load.setZero();
+  addLoads(step, island);
+  OwnCorners shape;
+  for (std::size_t i = 0; i < step.blocks.size(); ++i) {
+    const auto b = static_cast<std::size_t>(step.blocks[i]);
+    RigidBody& body = island.bodies[i];
+    staticShape(step.engine.staticResponse[b], simulation.model.dimensions[b], body.load, shape);
+    const Vec3 momentum = body.moment * (body.axes.transpose() * body.spin);
+    for (std::size_t a = 0; a < 3; ++a) {
+      for (std::size_t c = 0; c < kCorners; ++c) body.corner[a][c] += share * (shape[a][c] - body.corner[a][c]);
+    }
+    setMoments(simulation.scene.settings.inertia, simulation.model.mass[b], body);
+    body.spin = body.axes * (body.inverseMoment * momentum);
+  }
+}
+
+}  // namespace springtower
