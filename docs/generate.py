@@ -3,7 +3,8 @@
 
 BIN_DIR holds springtower and springtower-viewer: build/release/bin, build/ci/bin. From their help, `springtower scenes`,
 `springtower settings`, core/tuning.def, docs/data (recorded by docs/measure.py) and bench/data/peers it writes the marked parts of
-pages, docs/tuning.md and docs/claims.md. --check writes nothing and names what differs from what it would write; exit code 1 then.
+pages, docs/tuning.md, docs/claims.md, the manual pages of docs/man and the completions of docs/completion. --check writes nothing
+and names what differs from what it would write; exit code 1 then.
 """
 import difflib
 import pathlib
@@ -11,7 +12,7 @@ import sys
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
-from generator import markdown, recorded, reference  # noqa: E402
+from generator import completion, man, markdown, recorded, reference  # noqa: E402
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 DOCS = ROOT / "docs"
@@ -43,6 +44,8 @@ def files(folder):
     }
     for page, parts in marked_parts(commands, viewer, scenes, settings).items():
         written[page] = markdown.replace_parts(page, (ROOT / page).read_text(), parts)
+    written |= man.pages(commands, viewer[0])
+    written |= completion.scripts(completion.words(program, viewer_program, commands, viewer[0], scenes))
     return written
 
 
