@@ -4,7 +4,8 @@
 - every relative link leads to a file, and its anchor to a heading of that file;
 - every path between backticks is there (build outputs and placeholders in capitals aside);
 - every option of `springtower COMMAND`, of the viewer, and every other word that begins with two dashes is one that the help lists;
-- every constant kName between backticks is in the sources.
+- every constant kName between backticks is in the sources;
+- every work that a page or a source cites by name and year is in docs/references.bib.
 
 Prints one line for each fault, with file and line; exit code 1 where there is any.
 """
@@ -30,6 +31,7 @@ OTHER_OPTIONS = {
     "--help", "--help-all", "--version",
 }
 SKIPPED_FOLDERS = ("build/", "out/", "lib/", "figures/", "/")
+MONTHS = ("January", "February", "March", "April", "May", "June", "July", "August", "September", "October", "November", "December")
 SOURCES = ("core", "broadphase", "narrowphase", "solver", "scenarios", "api", "include", "apps", "bench", "examples", "tests")
 
 
@@ -129,6 +131,46 @@ def bad_constants(line, known):
             yield f"expected a constant of the sources, got '{name}'"
 
 
+CITATION = re.compile(r"\b((?:[A-Z][\w']+(?:, | and | & | et al\.,? )?)+) ?\(?((?:18|19|20)\d\d)\b(?!-)")
+
+
+def plain(name):
+    """A name without the ways to write its umlauts."""
+    return name.replace("ü", "u").replace("ö", "o").replace("ue", "u").replace("oe", "o")
+
+
+def works():
+    """(surname, year) of every author of docs/references.bib."""
+    found = set()
+    for entry in (ROOT / "docs" / "references.bib").read_text().split("\n@"):
+        authors, year = re.search(r"author\s*= \{(.*)\},", entry), re.search(r"year\s*= \{(\d+)\}", entry)
+        if authors and year:
+            for author in authors.group(1).split(" and "):
+                surname = re.sub(r"[{}\\\"']", "", author.split(",")[0])
+                found.add((plain(surname.split()[-1]), year.group(1)))
+            title = re.search(r"title\s*= \{+(\w+)", entry)  # a talk or a page may be cited by it
+            found.add((plain(title.group(1)), year.group(1)))
+    return found
+
+
+def bad_citations(line, known):
+    for match in CITATION.finditer(line):
+        names = re.findall(r"[A-Z][\w'é]+", match.group(1))
+        if names[-1] in MONTHS or names == ["The"] or names == ["Debian"]:
+            continue
+        if not any((plain(name), match.group(2)) in known for name in names):
+            yield f"expected a work of docs/references.bib, got '{match.group(0)}'"
+
+
+def cited_in_sources(known):
+    for folder in SOURCES:
+        for path in sorted((ROOT / folder).rglob("*")):
+            if path.suffix in (".h", ".cpp", ".def"):
+                for number, line in enumerate(path.read_text(errors="replace").split("\n"), 1):
+                    if "//" in line or "evidence" in line or path.suffix == ".def":
+                        yield from ((path, number, fault) for fault in bad_citations(line, known))
+
+
 def main():
     if len(sys.argv) != 2:
         sys.exit(__doc__)
@@ -136,15 +178,18 @@ def main():
     commands = help_text.read(program) + help_text.read(program + "-viewer")
     options = {command.name: {name for option in command.options + command.former for name in option.names} for command in commands
                if not command.commands}
-    known = constants()
+    known, cited = constants(), works()
     faults = 0
+    for path, number, fault in cited_in_sources(cited):
+        print(f"{path.relative_to(ROOT)}:{number}: {fault}")
+        faults += 1
     for path in pages():
         # The change log names what is gone.
         history = path.name == "CHANGELOG.md"
         for number, line in enumerate(path.read_text().split("\n"), 1):
             found = list(bad_links(path, line))
             if not history:
-                found += [*bad_paths(path, line), *bad_options(line, options), *bad_constants(line, known)]
+                found += [*bad_paths(path, line), *bad_options(line, options), *bad_constants(line, known), *bad_citations(line, cited)]
             for fault in found:
                 print(f"{path.relative_to(ROOT)}:{number}: {fault}")
             faults += len(found)
