@@ -26,6 +26,7 @@ def marked_parts(commands, viewer, scenes, settings):
                      and row["engine"] in ("Box3D", "Jolt")]
     peers_stacks = recorded.read_csv(PEERS / "stacks.csv")
     return {
+        "README.md": {"claims": recorded.claims_line(recorded.read_json(DATA / "validation.json"))},
         "docs/command-line.md": {"options": reference.command_options(commands + viewer)},
         "docs/scenes.md": {"scenes": reference.scene_names(scenes), "settings": reference.settings(settings)},
         "docs/validation.md": {"claims": recorded.claims_summary(recorded.read_json(DATA / "validation.json"))},

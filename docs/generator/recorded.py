@@ -51,6 +51,13 @@ def claims_summary(data):
     return text
 
 
+def claims_line(data):
+    """How many claims hold, for README."""
+    form = "springtower validate --full" if data["long_form"] else "springtower validate"
+    total = data["passed"] + data["failed"]
+    return f"{data['passed']} of {total} claims of `{form}` hold: [those that fail](docs/validation.md#claims)."
+
+
 def runs(rows):
     """18 rows at rest, for docs/performance.md."""
     def command(arguments):

@@ -136,7 +136,7 @@ CITATION = re.compile(r"\b((?:[A-Z][\w']+(?:, | and | & | et al\.,? )?)+) ?\(?((
 
 def plain(name):
     """A name without the ways to write its umlauts."""
-    return name.replace("ü", "u").replace("ö", "o").replace("ue", "u").replace("oe", "o")
+    return name.replace("\u00fc", "u").replace("\u00f6", "o").replace("u" + "e", "u").replace("o" + "e", "o")
 
 
 def works():
