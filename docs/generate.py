@@ -20,6 +20,18 @@ DATA = DOCS / "data"
 PEERS = ROOT / "bench" / "data" / "peers"
 
 
+def measurements(peers_stacks):
+    """Tables of docs/performance.md, of what docs/measure.py has recorded so far."""
+    tables = {"runs": recorded.runs, "rows": recorded.rows, "motion": recorded.motion, "towers": recorded.towers,
+              "stacks": lambda rows: recorded.stacks(rows, peers_stacks), "falls": recorded.falls}
+    parts = {}
+    for name, table in tables.items():
+        if (DATA / f"{name}.csv").exists():
+            rows = recorded.read_csv(DATA / f"{name}.csv")
+            parts[name] = table(rows) + "\n\n" + recorded.condition(rows)
+    return parts
+
+
 def marked_parts(commands, viewer, scenes, settings):
     """{page: {name of the part: text}}."""
     peers_at_rest = [row for row in recorded.read_csv(PEERS / "records.csv") if row["scene"] == "uniform" and row["rows"] == "18"
@@ -30,6 +42,7 @@ def marked_parts(commands, viewer, scenes, settings):
         "docs/command-line.md": {"options": reference.command_options(commands + viewer)},
         "docs/scenes.md": {"scenes": reference.scene_names(scenes), "settings": reference.settings(settings)},
         "docs/validation.md": {"claims": recorded.claims_summary(recorded.read_json(DATA / "validation.json"))},
+        "docs/performance.md": measurements(peers_stacks),
         "docs/accuracy.md": {"peers-at-rest": recorded.peers_at_rest(peers_at_rest),
                              "peers-stacks": recorded.peers_stacks(peers_stacks)},
     }

@@ -1,16 +1,16 @@
 #!/usr/bin/env python3
-"""Records what the tables of docs/ are made of: docs/measure.py BIN_DIR [PART ...], all parts in an hour on two quiet cores.
+"""Records what the tables of docs/ are made of: docs/measure.py BIN_DIR [PART ...], all parts in some tens of minutes.
 
 BIN_DIR holds springtower (build/release/bin, of a commit without changes; run ./run.sh before). Each part writes files of
-docs/data, as the program wrote them; docs/generate.py makes tables of them. Parts:
+docs/data, as the program wrote them; docs/generate.py makes tables of them. Beside builds times came out up to twice as long: run it
+on a quiet machine. Parts:
 
-  runs      docs/data/runs.csv         18 rows at rest in six ways: reports of `run`
+  runs      docs/data/runs.csv         18 rows at rest in nine ways: reports of `run`
   rows      docs/data/rows.csv         towers of 9 to 144 rows, implicit and explicit
   motion    docs/data/motion.csv       18 rows in motion
   towers    docs/data/towers.csv       64 and 640 towers, one thread and two
   stacks    docs/data/stacks.csv       walls and pyramids, with Bullet
   falls     docs/data/falls.csv        what moves in large numbers, with Bullet
-  chart     docs/data/chart.csv        speed against accuracy, every method
   validate  docs/data/validation.json  the claims, in the long form
 """
 import csv
@@ -47,7 +47,6 @@ PARTS = {
                "towers.csv"),
     "stacks": ("profile --scenes walls,pyramids", "stacks.csv", "stacks.csv"),
     "falls": ("profile --scenes topple,hit,heaps,piles,rain", "falls.csv", "falls.csv"),
-    "chart": ("chart", "chart.csv", "chart.csv"),
     "validate": ("validate --full", "validation.json", "validation.json"),
 }
 

@@ -4,6 +4,8 @@ import re
 
 BEGIN = "<!-- generated: {} (docs/generate.py) -->"
 END = "<!-- end of generated -->"
+# What stands for BEGIN where nothing is recorded yet: the part between is typed until docs/measure.py has been run.
+PENDING = "<!-- to be generated from docs/data/{0}.csv: {0} (docs/measure.py) -->"
 
 
 def cell(text):
@@ -20,6 +22,8 @@ def table(head, rows):
 def replace_parts(path, text, parts):
     """The page with each marked part replaced by parts[name]; ends with a message where a marker or a part is missing."""
     found = set()
+    for name in parts:
+        text = text.replace(PENDING.format(name), BEGIN.format(name))
     def part(match):
         name = match.group(1)
         if name not in parts:
