@@ -1,0 +1,89 @@
+#!/usr/bin/env python3
+"""Writes what is generated in the documents: docs/generate.py BIN_DIR [--check]
+
+BIN_DIR holds springtower and springtower-viewer: build/release/bin, build/ci/bin. From their help, `springtower scenes`,
+`springtower settings`, core/tuning.def, docs/data (recorded by docs/measure.py) and bench/data/peers it writes the marked parts of
+pages, docs/tuning.md, docs/claims.md, the manual pages of docs/man and the completions of docs/completion. --check writes nothing
+and names what differs from what it would write; exit code 1 then.
+"""
+import difflib
+import pathlib
+import sys
+
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+from generator import completion, man, markdown, recorded, reference  # noqa: E402
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+DOCS = ROOT / "docs"
+DATA = DOCS / "data"
+PEERS = ROOT / "bench" / "data" / "peers"
+
+
+def measurements(peers_stacks):
+    """Tables of docs/performance.md, of what docs/measure.py has recorded so far."""
+    tables = {"runs": recorded.runs, "rows": recorded.rows, "motion": recorded.motion, "towers": recorded.towers,
+              "stacks": lambda rows: recorded.stacks(rows, peers_stacks), "falls": recorded.falls}
+    parts = {}
+    for name, table in tables.items():
+        if (DATA / f"{name}.csv").exists():
+            rows = recorded.read_csv(DATA / f"{name}.csv")
+            parts[name] = table(rows) + "\n\n" + recorded.condition(rows)
+    return parts
+
+
+def marked_parts(commands, viewer, scenes, settings):
+    """{page: {name of the part: text}}."""
+    peers_at_rest = [row for row in recorded.read_csv(PEERS / "records.csv") if row["scene"] == "uniform" and row["rows"] == "18"
+                     and row["engine"] in ("Box3D", "Jolt")]
+    peers_stacks = recorded.read_csv(PEERS / "stacks.csv")
+    return {
+        "README.md": {"claims": recorded.claims_line(recorded.read_json(DATA / "validation.json"))},
+        "docs/command-line.md": {"options": reference.command_options(commands + viewer)},
+        "docs/scenes.md": {"scenes": reference.scene_names(scenes), "settings": reference.settings(settings)},
+        "docs/validation.md": {"claims": recorded.claims_summary(recorded.read_json(DATA / "validation.json"))},
+        "docs/performance.md": measurements(peers_stacks),
+        "docs/accuracy.md": {"peers-at-rest": recorded.peers_at_rest(peers_at_rest),
+                             "peers-stacks": recorded.peers_stacks(peers_stacks)},
+    }
+
+
+def files(folder):
+    """{path from the root: text} of all that is generated."""
+    program, viewer_program = (str(pathlib.Path(folder, name)) for name in ("springtower", "springtower-viewer"))
+    commands, viewer, scenes, settings, constants = reference.read(program, viewer_program)
+    written = {
+        "docs/tuning.md": reference.tuning(constants, (ROOT / "core" / "tuning.def").read_text()),
+        "docs/claims.md": recorded.claims_page(recorded.read_json(DATA / "validation.json")),
+    }
+    for page, parts in marked_parts(commands, viewer, scenes, settings).items():
+        written[page] = markdown.replace_parts(page, (ROOT / page).read_text(), parts)
+    written |= man.pages(commands, viewer[0])
+    written |= completion.scripts(completion.words(program, viewer_program, commands, viewer[0], scenes))
+    return written
+
+
+def main():
+    arguments = [argument for argument in sys.argv[1:] if argument != "--check"]
+    if len(arguments) != 1 or arguments[0].startswith("-"):
+        sys.exit(__doc__)
+    differing = 0
+    for name, text in files(arguments[0]).items():
+        path = ROOT / name
+        present = path.read_text() if path.exists() else ""
+        if present == text:
+            continue
+        differing += 1
+        if "--check" in sys.argv[1:]:
+            print(f"{name}: expected what docs/generate.py writes, got something else (- here, + generated)")
+            print("\n".join(list(difflib.unified_diff(present.split("\n"), text.split("\n"), lineterm="", n=0))[2:12]))
+        else:
+            path.parent.mkdir(exist_ok=True)
+            path.write_text(text)
+            print(f"{name} written")
+    if differing and "--check" in sys.argv[1:]:
+        sys.exit(f"{differing} files differ; run docs/generate.py {arguments[0]} and commit them")
+
+
+if __name__ == "__main__":
+    main()
