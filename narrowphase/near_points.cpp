@@ -12,6 +12,11 @@ namespace springtower {
 
 namespace {
 
+// Numbers of the separating axes.
+constexpr std::uint8_t kFaceOfA = 0;
+constexpr std::uint8_t kFaceOfB = 1;
+constexpr std::uint8_t kEdges = 2;
+
 // The corner of an outline from which its points are listed: rounding may decide with which corner clipping begins, and the order
 // of points is that in which they are solved. The first one counterclockwise of a direction in which no corner of rectangles that
 // lie flush or across lies, seen from the middle.
@@ -40,10 +45,9 @@ std::size_t firstPoint(const Manifold& outline) {
   return first;
 }
 
-// Points of the incident block's face over the reference face, none of them deeper than `least` (a gap). `onA`: whether the
-// incident block is a.
+// Points of the incident block's face over the reference face. `onA`: whether the incident block is a.
 void addFacePoints(const CornerView& incident, const CornerView& reference, int referenceFace, const ManifoldLimits& limits,
-                   double least, bool onA, NearPoints& points) {
+                   bool onA, NearPoints& points) {
   const FaceFrame face = faceFrame(reference, referenceFace);
   Manifold outline;
   buildFaceManifold(incident, reference, incidentFaceOf(incident, face.normal), referenceFace, limits, outline);
@@ -52,19 +56,19 @@ void addFacePoints(const CornerView& incident, const CornerView& reference, int 
   for (std::size_t i = 0; i < count; ++i) {
     const Vec3 place = pointOnIncidentFace(outline, incident, (first + i) % count);
     const double gap = face.normal.dot(place - face.centre);
-    if (gap > limits.reach || gap < least) continue;
+    if (gap > limits.reach) continue;
     const Vec3 below = place - gap * face.normal;
     if (onA) {
-      points.add({place, below, face.normal, NormalOf::b});
+      points.add({place, below, face.normal, NormalOf::b, kFaceOfB});
     } else {
-      points.add({below, place, -face.normal, NormalOf::a});
+      points.add({below, place, -face.normal, NormalOf::a, kFaceOfA});
     }
   }
 }
 
-// Where two edges come nearest, within their ends, if not deeper than `least`. Of edges that are nearly parallel this would be
-// anywhere, and the ends of both are among the points of faces.
-void addCrossing(const CornerView& a, const CornerView& b, const Separation& apart, double least, NearPoints& points) {
+// Where two edges come nearest, within their ends. Of edges that are nearly parallel this would be anywhere, and the ends of both
+// are among the points of faces.
+void addCrossing(const CornerView& a, const CornerView& b, const Separation& apart, NearPoints& points) {
   const auto& cornersA = kEdgeCorners[static_cast<std::size_t>(apart.edgeOfA)];
   const auto& cornersB = kEdgeCorners[static_cast<std::size_t>(apart.edgeOfB)];
   const Vec3 fromA = a.at(cornersA[0]);
@@ -79,28 +83,28 @@ void addCrossing(const CornerView& a, const CornerView& b, const Separation& apa
   if (determinant < (1.0 - tuning::kParallelFaces * tuning::kParallelFaces) * aa * bb) return;
   const double onA = (bb * between.dot(alongA) - ab * between.dot(alongB)) / determinant;
   const double onB = (ab * between.dot(alongA) - aa * between.dot(alongB)) / determinant;
-  const Vec3 placeA = fromA + std::clamp(onA, 0.0, 1.0) * alongA;
-  const Vec3 placeB = fromB + std::clamp(onB, 0.0, 1.0) * alongB;
-  if (apart.normalEdge.dot(placeA - placeB) < least) return;
-  points.add({placeA, placeB, apart.normalEdge, NormalOf::b});
+  points.add({fromA + std::clamp(onA, 0.0, 1.0) * alongA, fromB + std::clamp(onB, 0.0, 1.0) * alongB, apart.normalEdge,
+              NormalOf::b, kEdges});
 }
 
-// The points along all directions whose separation is within reach of the best, none deeper than `deepest`.
-void addPoints(const CornerView& a, const CornerView& b, const Separation& apart, const ManifoldLimits& limits, double deepest,
-               NearPoints& points) {
-  const double least = apart.best() - limits.reach;
-  const bool isFaceOfB = apart.faceB + limits.mergeRadius >= apart.faceA;  // of two that are alike always the same
-  const auto addFaces = [&](bool ofB) {
-    if ((ofB ? apart.faceB : apart.faceA) < least) return;
-    addFacePoints(ofB ? a : b, ofB ? b : a, ofB ? apart.faceOfB : apart.faceOfA, limits, deepest, ofB, points);
-  };
-  addFaces(isFaceOfB);
-  // Of parallel faces both outlines are the same.
-  const bool parallel = apart.normalFaceA.dot(apart.normalFaceB) > tuning::kParallelFaces;
-  if (points.count == 0 || !parallel) addFaces(!isFaceOfB);
-  if (!std::isfinite(apart.edge) || apart.edge < least) return;
-  const Vec3& face = isFaceOfB ? apart.normalFaceB : apart.normalFaceA;
-  if (points.count == 0 || apart.normalEdge.dot(face) < tuning::kParallelFaces) addCrossing(a, b, apart, deepest, points);
+double gapOf(const NearPoint& point) {
+  return point.normal.dot(point.onA - point.onB);
+}
+
+// By how much the separation along each axis is less than the gaps of its points. Of edges that cross along the normal of a face
+// the crossing is somewhere else after a small rotation: that they are apart says nothing.
+void setBeside(const Separation& apart, NearPoints& points) {
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  std::array<double, kSeparatingAxes> least = {kNone, kNone, kNone};
+  for (std::size_t i = 0; i < points.count; ++i)
+    least[points.point[i].axis] = std::min(least[points.point[i].axis], gapOf(points.point[i]));
+  const double along = std::max(apart.normalEdge.dot(apart.normalFaceA), apart.normalEdge.dot(apart.normalFaceB));
+  const double edge = along < tuning::kLastingCrossing ? apart.edge : -kNone;
+  const std::array<double, kSeparatingAxes> separation = {apart.faceA, apart.faceB, edge};
+  for (std::size_t i = 0; i < points.count; ++i) {
+    const std::size_t axis = points.point[i].axis;
+    points.point[i].beside = std::min(0.0, separation[axis] - least[axis]);
+  }
 }
 
 }  // namespace
@@ -108,12 +112,22 @@ void addPoints(const CornerView& a, const CornerView& b, const Separation& apart
 void findNearPoints(const CornerView& a, const CornerView& b, const Separation& apart, double reach, double mergeRadius,
                     NearPoints& points) {
   points.count = 0;
+  const double least = apart.best() - reach;
   if (apart.best() > reach) return;
   const ManifoldLimits limits{mergeRadius, reach};
-  // What lies deeper below a face than the blocks are in one another lies beside it: no contact holds it there.
-  addPoints(a, b, apart, limits, std::min(apart.best(), 0.0) - mergeRadius, points);
-  // Nearly parallel edges have no crossing; then faces hold them.
-  if (points.count == 0) addPoints(a, b, apart, limits, -std::numeric_limits<double>::infinity(), points);
+  const bool isFaceOfB = apart.faceB + mergeRadius >= apart.faceA;  // of two that are alike always the same
+  const auto addFaces = [&](bool ofB) {
+    if ((ofB ? apart.faceB : apart.faceA) < least) return;
+    addFacePoints(ofB ? a : b, ofB ? b : a, ofB ? apart.faceOfB : apart.faceOfA, limits, ofB, points);
+  };
+  addFaces(isFaceOfB);
+  // Of parallel faces both outlines are the same.
+  const bool parallel = apart.normalFaceA.dot(apart.normalFaceB) > tuning::kParallelFaces;
+  if (points.count == 0 || !parallel) addFaces(!isFaceOfB);
+  const Vec3& face = isFaceOfB ? apart.normalFaceB : apart.normalFaceA;
+  const bool crosses = std::isfinite(apart.edge) && apart.edge >= least;
+  if (crosses && (points.count == 0 || apart.normalEdge.dot(face) < tuning::kParallelFaces)) addCrossing(a, b, apart, points);
+  setBeside(apart, points);
 }
 
 void findNearFloorPoints(const CornerView& block, double reach, NearPoints& points) {
@@ -121,7 +135,7 @@ void findNearFloorPoints(const CornerView& block, double reach, NearPoints& poin
   for (int c = 0; c < static_cast<int>(kCorners); ++c) {
     const Vec3 corner = block.at(c);
     if (corner.z() > reach) continue;
-    points.add({corner, Vec3(corner.x(), corner.y(), 0.0), Vec3::UnitZ(), NormalOf::world});
+    points.add({corner, Vec3(corner.x(), corner.y(), 0.0), Vec3::UnitZ(), NormalOf::world, kFaceOfB});
   }
 }
 

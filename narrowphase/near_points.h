@@ -18,7 +18,11 @@ struct NearPoint {
   Vec3 onB;
   Vec3 normal;
   NormalOf normalOf = NormalOf::world;
+  std::uint8_t axis = 0;  ///< points of one separating axis have one number: a face of a, one of b or the floor, two edges
+  double beside = 0.0;    ///< m, separation along that axis less the least gap of its points: 0 where its nearest corner is one
 };
+
+inline constexpr std::size_t kSeparatingAxes = 3;
 
 /// The outlines of both blocks' nearest faces have at most eight corners each, and a pair of edges crosses once.
 inline constexpr std::size_t kMostNearPoints = 17;
@@ -32,10 +36,9 @@ struct NearPoints {
 /// The points at which two blocks may touch before any of their points has moved by `reach` (m, > 0) against the other block:
 /// corners of the overlap of a's nearest face with b's outline along the normal of that face, likewise of b's face with a's, and
 /// the crossing of the nearest edges; as far as their gap is at most `reach`, and only along directions whose separation is
-/// within `reach` of the best. A point that overlaps by more than the blocks do along the best direction lies beside what it
-/// seems to rest on, and is left out unless there is no other. A manifold (narrowphase/manifold.h) has the points of one of these
-/// directions alone, which is enough where it is renewed before another direction matters. `apart`: their separation;
-/// `mergeRadius`: points of a face closer than this (m) are one. Preconditions: as of findSeparation.
+/// within `reach` of the best. A manifold (narrowphase/manifold.h) has the points of one of these directions alone, which is
+/// enough where it is renewed before another direction matters. `apart`: their separation; `mergeRadius`: points of a face closer
+/// than this (m) are one. Preconditions: as of findSeparation.
 void findNearPoints(const CornerView& a, const CornerView& b, const Separation& apart, double reach, double mergeRadius,
                     NearPoints& points);
 

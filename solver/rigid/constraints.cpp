@@ -2,6 +2,8 @@
 
 #include "solver/rigid/packs.h"
 
+#include <limits>
+
 namespace springtower {
 
 namespace {
@@ -70,6 +72,7 @@ SPRINGTOWER_INLINE void placeNormal(const LanePlace& upper, const LanePlace& low
 struct Springs {
   double step_s;
   double tolerance_m;
+  double rounding_m;
 };
 
 SPRINGTOWER_INLINE void placePoint(const LanePlace& upper, const LanePlace& lower, const PackedPlace& own, const Springs& springs,
@@ -85,7 +88,9 @@ SPRINGTOWER_INLINE void placePoint(const LanePlace& upper, const LanePlace& lowe
   dot(p.normal, apart, p.gap);
   p.gap += own.rest;
   p.give = own.compliance / springs.step_s;
-  smallerOf(p.give * p.push, springs.tolerance_m + Lanes{0.0, 0.0, 0.0, 0.0}, p.deepest);
+  Lanes lasting;
+  smallerOf(p.push, own.lasting, lasting);
+  smallerOf(p.give * lasting, springs.tolerance_m + Lanes{}, p.deepest);
   p.armUpper = {0.5 * (onUpper.x + onLower.x), 0.5 * (onUpper.y + onLower.y), 0.5 * (onUpper.z + onLower.z)};
   p.armLower = p.armUpper;
   subtract(upper.centre, p.armUpper);
@@ -103,6 +108,35 @@ SPRINGTOWER_INLINE void placePoint(const LanePlace& upper, const LanePlace& lowe
   removeAlong(p.normal, p.friction);
 }
 
+// Two blocks are apart by the largest separation along any of their axes. Points of another axis that lie deeper lie beside what
+// they seem to touch: they hold nothing before the blocks have come nearer by as much as they are apart.
+SPRINGTOWER_INLINE void openBeside(const PackedPair& pair, const Springs& springs, PackedPoints& packed) {
+  const Lanes zero{};
+  const Lanes none = zero + std::numeric_limits<double>::max();
+  Lanes separation[kSeparatingAxes] = {none, none, none};
+  for (std::int32_t row = pair.first; row < pair.first + pair.rows; ++row) {
+    const PackedPlace& own = packed.places[static_cast<std::size_t>(row)];
+    const Lanes gap = packed.points[static_cast<std::size_t>(row)].gap - own.rest + own.beside;
+    for (std::size_t k = 0; k < kSeparatingAxes; ++k) {
+      const Lanes along = own.axis[k] & (own.rest < none) ? gap : none;
+      smallerOf(along, separation[k], separation[k]);
+    }
+  }
+  Lanes apart = zero;
+  for (const Lanes& along : separation) {
+    const Lanes listed = along < none ? along : zero;
+    largerOf(listed, apart, apart);
+  }
+  if (!any(apart > zero)) return;
+  for (std::int32_t row = pair.first; row < pair.first + pair.rows; ++row) {
+    const PackedPlace& own = packed.places[static_cast<std::size_t>(row)];
+    PackedPoint& p = packed.points[static_cast<std::size_t>(row)];
+    LaneMask isBeside{};
+    for (std::size_t k = 0; k < kSeparatingAxes; ++k) isBeside |= own.axis[k] & (separation[k] < apart - springs.rounding_m);
+    p.gap = isBeside & (apart > zero) & (p.gap < apart) ? apart : p.gap;
+  }
+}
+
 SPRINGTOWER_KERNEL
 void placePacks(const BodyPlace* places, const Springs& springs, PackedPoints& packed, std::size_t first, std::size_t last) {
   for (std::size_t i = first; i < last; ++i) {
@@ -118,6 +152,7 @@ void placePacks(const BodyPlace* places, const Springs& springs, PackedPoints& p
     for (std::int32_t row = pair.first; row < pair.first + pair.rows; ++row)
       placePoint(upper, lower, packed.places[static_cast<std::size_t>(row)], springs,
                  packed.points[static_cast<std::size_t>(row)]);
+    openBeside(pair, springs, packed);
   }
 }
 
@@ -139,8 +174,8 @@ void moveGapsOf(const BodyMotion* moved, PackedPoints& packed, std::size_t first
 
 }  // namespace
 
-void placeConstraints(const RigidIsland& island, double step_s, double tolerance_m, PackedPoints& packed) {
-  const Springs springs{step_s, tolerance_m};
+void placeConstraints(const RigidIsland& island, double step_s, double tolerance_m, double rounding_m, PackedPoints& packed) {
+  const Springs springs{step_s, tolerance_m, rounding_m};
   overPacks(packed, [&](std::size_t first, std::size_t last) { placePacks(island.places.data(), springs, packed, first, last); });
 }
 

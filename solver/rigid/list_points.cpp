@@ -66,6 +66,8 @@ void addConstraint(const RigidIsland& island, const PairBodies& of, const NearPo
   own(p.lower, near.onB, p.placeLower);
   const std::int32_t turning = near.normalOf == NormalOf::a ? p.upper : p.lower;
   p.normalOf = near.normalOf;
+  p.axis = near.axis;
+  p.beside = near.beside;
   if (near.normalOf == NormalOf::world || turning == unmovedBody(island)) {
     p.normalOf = NormalOf::world;
     toLanes(near.normal, p.ownNormal);

@@ -143,9 +143,12 @@ void fillLane(const ContactConstraint& from, double compliance, int lane, Packed
   place.turnsUpper[lane] = from.normalOf == NormalOf::a ? -1 : 0;
   place.turnsLower[lane] = from.normalOf == NormalOf::b ? -1 : 0;
   place.rest[lane] = from.rest;
+  place.beside[lane] = from.beside;
+  for (std::size_t k = 0; k < kSeparatingAxes; ++k) place.axis[k][lane] = from.axis == k ? -1 : 0;
   setLane(point.friction, lane, from.friction);
   point.push[lane] = from.push;
   place.compliance[lane] = compliance;
+  place.lasting[lane] = from.lasting;
   point.normalMass[lane] = 1.0;
   point.idle[lane] = from.idle ? -1 : 0;
   point.sliding[lane] = from.sliding ? -1 : 0;

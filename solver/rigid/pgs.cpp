@@ -230,7 +230,8 @@ void stepImpulses(IslandStep& step, RigidIsland& island) {
   }
   island.energyBefore_j = kineticEnergy(island.bodies);
   readBodies(island);
-  for (PackedPoints* packed : packsOf(island)) placeConstraints(island, step.drift_s, step.simulation.tolerance_m, *packed);
+  for (PackedPoints* packed : packsOf(island))
+    placeConstraints(island, step.drift_s, step.simulation.tolerance_m, step.simulation.lengths.contactError_m, *packed);
   setImpacts(step, island);
   choosePatchFriction(step, island);
   applyForces(step);

@@ -118,6 +118,7 @@ void warmStartFromKnown(const IslandStep& step, const KnownGroup& known, std::sp
     p.idle = !(p.push > 0.0);
     if (!p.idle) p.friction = q.friction;
     p.rest = q.rest;
+    p.lasting = q.lasting;
     p.sliding = q.sliding;
   }
 }
@@ -146,6 +147,7 @@ void warmStartFromManifold(const IslandStep& step, const RigidIsland& island, st
     p.idle = !(p.push > 0.0);
     if (!p.idle) p.friction = sign * Lanes{row.friction[0][lane], row.friction[1][lane], row.friction[2][lane], 0.0};
     p.rest = row.restDepth[lane];
+    p.lasting = p.push;
     p.sliding = slipsAt(manifold, from);
   }
 }

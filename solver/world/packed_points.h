@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/lane_vector.h"
+#include "narrowphase/near_points.h"
 
 #include <array>
 #include <cstddef>
@@ -77,19 +78,22 @@ struct alignas(32) PackedPoint {
   Lanes impact;              ///< m/s, speed at which the blocks meet if they do in the substep; 0: too slow to rebound
   Lanes before;              ///< N s, push with which the substep began
   Lanes give;                ///< m/(N s), how much deeper the springs overlap by a push; 0 in the rigid methods
-  Lanes deepest;             ///< m, how deep they are at most by it: as deep as by the push with which the substep began
+  Lanes deepest;             ///< m, how deep they are at most by it: as by the pushes with which the frame and the substep began
   LaneVector towardsCentre;  ///< m, from the point to where its friction acts; read where PackedPair::slips is set
 };
 
 /// Where its blocks have it. Own axes are those of a body; of what does not move the world's.
 struct alignas(32) PackedPlace {
-  LaneVector upper;     ///< m, from the upper body's centre in its axes
-  LaneVector lower;     ///< m, likewise
-  LaneVector normal;    ///< in the axes of the body that it turns with, or the world's
-  LaneMask turnsUpper;  ///< whether it turns with the upper body
-  LaneMask turnsLower;  ///< or with the lower one
-  Lanes rest;           ///< m, overlap without force
-  Lanes compliance;     ///< m/N, of its springs; 0 in the rigid methods
+  LaneVector upper;                ///< m, from the upper body's centre in its axes
+  LaneVector lower;                ///< m, likewise
+  LaneVector normal;               ///< in the axes of the body that it turns with, or the world's
+  LaneMask turnsUpper;             ///< whether it turns with the upper body
+  LaneMask turnsLower;             ///< or with the lower one
+  Lanes rest;                      ///< m, overlap without force
+  Lanes beside;                    ///< m, of its separating axis (NearPoint::beside)
+  LaneMask axis[kSeparatingAxes];  ///< whether that is the first, second or third
+  Lanes compliance;                ///< m/N, of its springs; 0 in the rigid methods
+  Lanes lasting;                   ///< N s along the normal, of the force with which the frame began
 };
 
 /// The points of a list, packed for the substeps of a step.
