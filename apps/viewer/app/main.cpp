@@ -13,6 +13,7 @@
 #include "core/version.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <charconv>
 #include <chrono>
 #include <exception>
@@ -26,15 +27,15 @@ namespace {
 constexpr int kReplayDiffers = 1;
 
 constexpr std::string_view kFooter = R"help(examples:
-  springtower-viewer                                 the tower of 18 rows, heights varying by 0.2 mm
-  springtower-viewer --scene tower:12 --players 2    the game
+  springtower-viewer                                 how high can you build? 18 rows, heights varying by 0.2 mm
+  springtower-viewer --scene tower:12 --players 2    the game of two
   springtower-viewer --scene "(111)-(1L1)-(111)"     a tower with a loose block
   springtower-viewer --headless --frames 60 --png out --overlay load
 mouse: a drag on a block pulls it out along its own axis, carries it once it is free, and lays it down where the outline is when
        it is let go; the wheel, Q and E turn it. A drag beside the blocks goes round. With shift held the block moves in all six
        axes: left drag in the plane of the screen, right drag along the view, wheel and Q E W S A D turn it.
 keys:  space pause, n one frame, r reset, t slow motion, backspace undo, [ ] back and forth, o colour by, f contact forces,
-       tab panels, p screenshot, v record video, i writes what is seen and all poses, escape ends
+       tab play or lab, p screenshot, v record video, i writes what is seen and all poses, escape ends
 A signal (Ctrl-C) ends it as escape does, with exit code 130 or 143. A recording that a killed viewer leaves, FILE.partial, can be
 replayed.)help";
 
@@ -54,6 +55,7 @@ struct Command {
   std::string overlay = "wood";
   bool arrows = false;
   bool paused = false;
+  std::optional<std::string> mode;
   bool noPanels = false;
   std::string size = "1280x800";
   std::optional<std::string> camera;
@@ -69,7 +71,8 @@ void define(CLI::App& app, Command& c) {
   app.add_option("--scene", c.scene,
                  "a .toml file, a bit code such as (111)-(1L1), or NAME:SIZE as springtower scenes lists them (default tower:18)")
       ->type_name("SCENE");
-  addWholeNumber(app, "--players", c.players, {0, kMaxPlayers, ""}, "plays the game; 0 lets every block be taken (default)");
+  addWholeNumber(app, "--players", c.players, {0, kMaxPlayers, ""},
+                 "plays the game; 0 lets every block be taken (default: one where there is a full row above another)");
   addNumber(app, "--heights-sigma", c.heightsSigma_m, kHeightsSigmaRange, "METRES",
             "standard deviation of the blocks' heights (default 0.0002 for tower:ROWS, else none)");
   addNumber(app, "--mass-sigma", c.massSigma_kg, kMassSigmaRange, "KG", "standard deviation of the masses");
@@ -85,7 +88,10 @@ void define(CLI::App& app, Command& c) {
       ->type_name("NAME");
   app.add_flag("--arrows", c.arrows, "shows contact forces");
   app.add_flag("--paused", c.paused, "starts paused");
-  app.add_flag("--no-panels", c.noPanels, "starts without panels");
+  app.add_option("--mode", c.mode,
+                 "what stands over the picture: play, lab, replay or bare (default play in a window, bare without one)")
+      ->type_name("NAME");
+  app.add_flag("--no-panels", c.noPanels, "the same as --mode bare");
   app.add_option("--size", c.size, "of the picture in pixels (default 1280x800)")->type_name("WxH");
   app.add_option("--camera", c.camera, "where the camera stands: degrees from +x over +y, degrees up, metres off")
       ->type_name("AZ:UP:DIST");
@@ -156,6 +162,22 @@ Tuning tuningOf(const Command& command, const SceneChoice& choice) {
   return tuning;
 }
 
+Mode modeOf(const Command& command) {
+  if (!command.mode) return command.noPanels || command.headless ? Mode::bare : command.replay ? Mode::replay : Mode::play;
+  const auto* found = std::find(kModeNames.begin(), kModeNames.end(), *command.mode);
+  if (found == kModeNames.end())
+    throw InputError(fmt::format("--mode: found {}, allowed play, lab, replay or bare", inQuotes(*command.mode)));
+  return static_cast<Mode>(found - kModeNames.begin());
+}
+
+// A player who chose nothing builds alone, where the scene has something to take.
+void offerGame(const Command& command, Viewer& viewer) {
+  if (command.players || command.replay || viewer.mode != Mode::play) return;
+  SceneChoice choice = viewer.choice;
+  choice.players = newGame(viewer.session.simulation, 1, 0).topRow > 0 ? 1 : 0;
+  if (choice.players > 0) restart(viewer, choice);
+}
+
 Viewer viewerOf(const Command& command) {
   std::optional<Replay> replay;
   if (command.replay) replay = Replay{readRecording(*command.replay), {}};
@@ -169,10 +191,11 @@ Viewer viewerOf(const Command& command) {
   viewer.overlay = overlayFromName(command.overlay);
   viewer.arrows = command.arrows;
   viewer.paused = command.paused;
-  viewer.panels = !command.noPanels;
+  viewer.mode = modeOf(command);
   viewer.limit_n = command.grip_n.value_or(tuning::kGripForce_n);
   viewer.watch.measures = command.files.report.has_value();
   placeCamera(command, viewer.controls.camera);
+  offerGame(command, viewer);
   return viewer;
 }
 

@@ -208,10 +208,14 @@ void Renderer::draw(const Picture& picture, const Camera& camera, const Viewport
     upload(floor);
     glDrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(floor.size()));
   }
-  if (picture.marks.empty()) return;
-  upload(picture.marks);
   glUseProgram(plain_);
   setMatrix(plain_, "clipFromWorld", clip);
+  if (!picture.ground.empty()) {
+    upload(picture.ground);
+    glDrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(picture.ground.size()));
+  }
+  if (picture.marks.empty()) return;
+  upload(picture.marks);
   glDisable(GL_DEPTH_TEST);
   glDrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(picture.marks.size()));
   glEnable(GL_DEPTH_TEST);
