@@ -56,6 +56,7 @@ struct Command {
   bool arrows = false;
   bool paused = false;
   std::optional<std::string> mode;
+  std::optional<double> scale;
   bool noPanels = false;
   std::string size = "1280x800";
   std::optional<std::string> camera;
@@ -63,6 +64,7 @@ struct Command {
   std::optional<std::int64_t> frames;
   std::optional<std::int64_t> every;
   std::optional<std::string> png;
+  std::optional<std::string> mouse;
   std::optional<std::string> replay;
   ViewerFiles files;
 };
@@ -91,6 +93,7 @@ void define(CLI::App& app, Command& c) {
   app.add_option("--mode", c.mode,
                  "what stands over the picture: play, lab, replay or bare (default play in a window, bare without one)")
       ->type_name("NAME");
+  addNumber(app, "--scale", c.scale, {0.5, 4, ""}, "FACTOR", "size of words and buttons (default: the screen's, 1 without one)");
   app.add_flag("--no-panels", c.noPanels, "the same as --mode bare");
   app.add_option("--size", c.size, "of the picture in pixels (default 1280x800)")->type_name("WxH");
   app.add_option("--camera", c.camera, "where the camera stands: degrees from +x over +y, degrees up, metres off")
@@ -99,6 +102,8 @@ void define(CLI::App& app, Command& c) {
   addWholeNumber(app, "--frames", c.frames, {1, 1e7, ""}, "frames to step without a window (default 60, or the whole replay)");
   addWholeNumber(app, "--png-every", c.every, {1, 1e7, ""}, "writes every Nth frame, and the last (default 1)");
   app.add_option("--png", c.png, "folder for pictures frame-00001.png ...")->type_name("DIR");
+  app.add_option("--mouse", c.mouse, "a mouse for --headless: lines PICTURE X Y and press, release, hints, skip or nothing")
+      ->type_name("FILE");
   app.add_option("--video", c.files.film, "records a video, a file .mp4 or .gif (needs ffmpeg)")->type_name("FILE");
   app.add_option("--record", c.files.record, "writes the input of all frames, as they pass")->type_name("FILE");
   app.add_option("--replay", c.replay, "plays a recording, and says in which frame its states differ")->type_name("FILE");
@@ -192,6 +197,7 @@ Viewer viewerOf(const Command& command) {
   viewer.arrows = command.arrows;
   viewer.paused = command.paused;
   viewer.mode = modeOf(command);
+  if (command.scale) viewer.scale = static_cast<float>(*command.scale);
   viewer.limit_n = command.grip_n.value_or(tuning::kGripForce_n);
   viewer.watch.measures = command.files.report.has_value();
   placeCamera(command, viewer.controls.camera);
@@ -247,14 +253,15 @@ void play(const Command& command, Viewer& viewer, const ViewerFiles& files, cons
   const std::size_t recorded = viewer.replay ? viewer.replay->recording.frames.size() : 60;
   runHeadless(viewer, files, size,
               {static_cast<int>(command.frames.value_or(static_cast<std::int64_t>(recorded))),
-               static_cast<int>(command.every.value_or(1)), command.png},
+               static_cast<int>(command.every.value_or(1)), command.png,
+               command.mouse ? readMouseScript(*command.mouse) : std::vector<MouseStep>{}},
               started);
 }
 
 int runViewer(const Command& command, std::chrono::steady_clock::time_point started) {
   const Viewport size = sizeOf(command);
-  if (!command.headless && (command.frames || command.png || command.every)) {
-    throw InputError("--frames, --png and --png-every: allowed only with --headless");
+  if (!command.headless && (command.frames || command.png || command.every || command.mouse)) {
+    throw InputError("--frames, --png, --png-every and --mouse: allowed only with --headless");
   }
   const auto threads = static_cast<std::size_t>(command.threads.value_or(threadCount({})));
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);

@@ -16,6 +16,7 @@
 #include <epoxy/gl.h>
 #include <filesystem>
 #include <fmt/format.h>
+#include <future>
 #include <imgui.h>
 
 namespace springtower {
@@ -150,7 +151,7 @@ void onPressedKey(Desk& desk, int key) {
       viewer.paused = !viewer.paused && viewer.session.failure.empty();
       return;
     case GLFW_KEY_R:
-      return restart(viewer, viewer.choice);
+      return again(viewer);
     case GLFW_KEY_T:
       viewer.pacer.rate = nextRate(viewer.pacer.rate);
       return;
@@ -265,6 +266,7 @@ void updateStyle(Desk& desk) {
   if (!std::exchange(desk.styleWanted, false)) return;
   float content = 1.0F;
   glfwGetWindowContentScale(desk.window, &content, nullptr);
+  content = desk.viewer.scale.value_or(content);
   int units = 1;
   int pixels = 1;
   glfwGetWindowSize(desk.window, &units, nullptr);
@@ -279,7 +281,7 @@ void drawWindow(Desk& desk) {
   Viewport& viewport = viewer.controls.viewport;
   glfwGetFramebufferSize(desk.window, &viewport.width, &viewport.height);
   viewport = {std::max(viewport.width, 1), std::max(viewport.height, 1)};
-  followStatics(viewer, false);
+  if (viewer.watch.pictures > 0) followStatics(viewer, false);  // the first picture has the processors for itself
   const Picture picture = pictureOf(viewer);
   desk.renderer->draw(picture, viewer.controls.camera, viewport);
   updateStyle(desk);
@@ -344,6 +346,8 @@ GLFWwindow* openedWindow(const Viewport& size) {
 }  // namespace
 
 void runWindow(Viewer& viewer, const ViewerFiles& files, const Viewport& size, Clock::time_point started) {
+  // The window opens meanwhile.
+  std::future<void> prepared = std::async(std::launch::async, [&] { prepareStart(viewer.session); });
   startGlfw();
   Desk desk{viewer, files, LabDraft(viewer.choice)};
   desk.window = openedWindow(size);
@@ -358,14 +362,21 @@ void runWindow(Viewer& viewer, const ViewerFiles& files, const Viewport& size, C
   desk.renderer = std::make_unique<Renderer>();
   if (files.film) tell(desk, [&] { toggleFilm(desk); });
 
+  prepared.get();
   Clock::time_point last = Clock::now();
+  Clock::time_point shown = last;
   while (glfwWindowShouldClose(desk.window) == GLFW_FALSE && !interrupted()) {
     glfwPollEvents();
     boundPointer(desk);
     advance(viewer, std::chrono::duration<double>(Clock::now() - std::exchange(last, Clock::now())).count());
+    if (viewer.watch.firstFrame_s == 0.0 && viewer.session.frame > 0) viewer.watch.firstFrame_s = secondsSince(shown);
     if (files.recorder != nullptr) tell(desk, [&] { files.recorder->follow(viewer.choice, viewer.session); });
     drawWindow(desk);
     if (++viewer.watch.pictures > 1) continue;
+    shown = Clock::now();
+    // The clock starts with the picture: one frame is due now.
+    last =
+        shown - std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(viewer.session.scene.settings.frame_s));
     viewer.watch.firstPicture_s = secondsSince(started);
     fmt::print("first picture after {:.3f} s\n", viewer.watch.firstPicture_s);
     std::fflush(stdout);

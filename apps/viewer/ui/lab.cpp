@@ -24,7 +24,7 @@ void runPanel(Viewer& viewer) {
   ImGui::SameLine();
   if (ImGui::Button("Step")) viewer.paused = viewer.once = true;
   ImGui::SameLine();
-  if (ImGui::Button("Reset")) restart(viewer, viewer.choice);
+  if (ImGui::Button("Reset")) again(viewer);
   ImGui::SameLine();
   if (ImGui::Button("Undo")) undo(viewer);
   ImGui::SameLine();

@@ -33,8 +33,8 @@ float marginWidth() {
   return kMargin * ImGui::GetFontSize();
 }
 
-void again(Viewer& viewer, PanelWishes&) {
-  restart(viewer, viewer.choice);
+void beginAgain(Viewer& viewer, PanelWishes&) {
+  again(viewer);
 }
 
 void takeBack(Viewer& viewer, PanelWishes&) {
@@ -53,7 +53,7 @@ std::string playersInWords(int players) {
 
 std::vector<Action> playActions(const Viewer& viewer) {
   const Game& game = viewer.session.game;
-  std::vector<Action> actions = {{"Again", again}};
+  std::vector<Action> actions = {{"Again", beginAgain}};
   if (game.players > 0) actions.push_back({"Take back", takeBack});
   actions.push_back({viewer.overlay == Overlay::hints ? "No hints" : "Hints",
                      [](Viewer& v, PanelWishes&) { v.overlay = v.overlay == Overlay::hints ? Overlay::wood : Overlay::hints; }});
@@ -81,7 +81,7 @@ std::vector<Action> barActions(const Viewer& viewer) {
 }
 
 std::vector<Action> cardActions() {
-  return {{"Again", again},
+  return {{"Again", beginAgain},
           {"Take back", takeBack},
           {"Watch", [](Viewer& viewer, PanelWishes&) { watchFall(viewer); }},
           {"Save", [](Viewer&, PanelWishes& wishes) { wishes.recording = true; }}};
@@ -228,9 +228,7 @@ struct Parts {
 Parts partsOf(const Viewer& viewer) {
   const ImGuiIO& io = ImGui::GetIO();
   const bool inside = ImGui::IsMousePosValid() && !io.WantCaptureMouse;
-  const bool isBare = viewer.mode == Mode::bare;
-  return {notices(viewer), wordsAt(viewer, inside), isBare ? std::vector<LegendRow>{} : legendRows(viewer), barActions(viewer),
-          cardLines(viewer)};
+  return {notices(viewer), wordsAt(viewer, inside), legendRows(viewer), barActions(viewer), cardLines(viewer)};
 }
 
 }  // namespace

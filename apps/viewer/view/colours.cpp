@@ -1,5 +1,6 @@
 #include "apps/viewer/view/colours.h"
 
+#include "apps/common/look.h"
 #include "broadphase/islands.h"
 #include "core/error.h"
 #include "core/limits.h"
@@ -12,7 +13,6 @@
 namespace springtower {
 namespace {
 
-constexpr Colour kWood = {0.80F, 0.62F, 0.40F};
 constexpr Colour kAsleep = {0.35F, 0.42F, 0.55F};
 constexpr Colour kAwake = {0.95F, 0.72F, 0.30F};
 constexpr Colour kFree = {0.55F, 0.75F, 0.95F};
@@ -54,12 +54,9 @@ Colour onMap(std::span<const Colour> map, double share) {
   return colour;
 }
 
-// Each block's own shade, in steps of the golden section so that neighbours differ.
 Colour woodOf(std::size_t block) {
-  const auto bright = static_cast<float>(std::fmod(0.618033988749895 * static_cast<double>(block), 1.0) - 0.5);
-  const auto warm = static_cast<float>(std::fmod(0.754877666246693 * static_cast<double>(block), 1.0) - 0.5);
-  return {kWood[0] * (1.0F + 0.14F * bright + 0.04F * warm), kWood[1] * (1.0F + 0.14F * bright),
-          kWood[2] * (1.0F + 0.14F * bright - 0.10F * warm)};
+  const look::Rgb wood = look::woodOf(static_cast<std::uint32_t>(block));
+  return {static_cast<float>(wood[0]), static_cast<float>(wood[1]), static_cast<float>(wood[2])};
 }
 
 void byValue(Overlay overlay, const std::vector<double>& values, std::string unit, BlockColours& result) {
@@ -130,7 +127,7 @@ double blockStrain(const BlockModel& model, const ParticleArray& position, std::
 BlockColours blockColours(const Session& session, Overlay overlay) {
   const Simulation& simulation = session.simulation;
   BlockColours result;
-  result.colour.assign(simulation.model.blockCount(), kWood);
+  result.colour.resize(simulation.model.blockCount());
   std::vector<double> values(result.colour.size());
   switch (overlay) {
     case Overlay::wood:

@@ -10,8 +10,8 @@
 
 namespace springtower {
 
-// What the colours of the picture mean. Each is told from its neighbours by brightness or by blue against yellow, not by red
-// against green, so that colour-blind eyes read them too.
+// What the colours of the picture mean. Neighbours differ in brightness or as blue and yellow do, not as red and green alone, so
+// that colour-blind eyes read them too.
 
 using Colour = std::array<float, 3>;
 

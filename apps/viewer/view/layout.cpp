@@ -6,6 +6,8 @@
 namespace springtower {
 namespace {
 
+constexpr float kCardDown = 0.1F;  // of the room: what has fallen lies below
+
 bool isInside(const Rect& rect, const Extent& window, float margin) {
   return rect.x >= margin && rect.y >= margin && rect.x + rect.width <= window.width - margin &&
          rect.y + rect.height <= window.height - margin;
@@ -74,8 +76,8 @@ Layout layoutOf(const Extent& window, const Wanted& wanted, const Extent& at, fl
   for (const Rect* below : {&layout.bar, &layout.legend}) {
     if (!isEmpty(*below)) floor = std::min(floor, below->y - margin);
   }
-  layout.card = {middle(wanted.card.width), std::max(top, 0.5F * (top + floor - wanted.card.height)), wanted.card.width,
-                 wanted.card.height};
+  layout.card = {middle(wanted.card.width), std::max(top, top + kCardDown * (floor - top - wanted.card.height)),
+                 wanted.card.width, wanted.card.height};
   if (!isEmpty({0.0F, 0.0F, wanted.words.width, wanted.words.height}))
     layout.words = besidePlace(window, layout, wanted.words, at, margin);
   return layout;

@@ -45,7 +45,7 @@ struct Layout {
 };
 
 /// Lays the parts out: the bar below on the left, the legend below on the right or over the bar, the panel on the left above, the
-/// notices in the middle above of what is left of the width, the card in the middle, the words beside the place that they are
+/// notices in the middle above of what is left of the width, the card below them, the words beside the place that they are
 /// about (`at`), on whichever side there is room. `margin`: between parts, and to the window's sides.
 Layout layoutOf(const Extent& window, const Wanted& wanted, const Extent& at, float margin);
 

@@ -26,24 +26,20 @@ void addTriangle(const Vec3& a, const Vec3& b, const Vec3& c, const Colour& colo
 
 void blockMesh(const ParticleArray& position, std::span<const Colour> colours, std::vector<Vertex>& mesh) {
   for (std::size_t b = 0; b < position.blockCount(); ++b) {
+    std::array<float, 3> half{};
+    for (std::size_t a = 0; a < 3; ++a) half[a] = static_cast<float>(0.5 * meanEdge(position, b, a).norm());
     for (std::size_t t = 0; t < kTriangles; ++t) {
       std::array<Vec3, 3> corner;
       for (std::size_t i = 0; i < 3; ++i) corner[i] = position.at(b, static_cast<std::size_t>(kTriangleCorners[t][i]));
       const Vec3 normal = (corner[1] - corner[0]).cross(corner[2] - corner[0]).normalized();
-      const std::size_t across = t / 4;
-      const std::size_t u = across == 0 ? 1 : 0;
-      const std::size_t v = across == 2 ? 1 : 2;
-      const auto halfU = static_cast<float>(0.5 * meanEdge(position, b, u).norm());
-      const auto halfV = static_cast<float>(0.5 * meanEdge(position, b, v).norm());
       for (std::size_t i = 0; i < 3; ++i) {
         const auto number = static_cast<std::size_t>(kTriangleCorners[t][i]);
         Vertex vertex{};
         for (std::size_t a = 0; a < 3; ++a) {
           vertex.position[a] = static_cast<float>(corner[i][static_cast<Eigen::Index>(a)]);
           vertex.normal[a] = static_cast<float>(normal[static_cast<Eigen::Index>(a)]);
+          vertex.local[a] = half[a] * static_cast<float>(cornerSide(number, a));
         }
-        vertex.half = {halfU, halfV};
-        vertex.inFace = {static_cast<float>(cornerSide(number, u)) * halfU, static_cast<float>(cornerSide(number, v)) * halfV};
         vertex.colour = colours[b];
         vertex.block = static_cast<std::int32_t>(b);
         mesh.push_back(vertex);

@@ -17,8 +17,7 @@ namespace springtower {
 struct Vertex {
   std::array<float, 3> position;
   std::array<float, 3> normal;
-  std::array<float, 2> inFace;  ///< m from the middle of the face
-  std::array<float, 2> half;    ///< m, half the sides of the face
+  std::array<float, 3> local;  ///< m from the block's middle, along its axes
   Colour colour;
   std::int32_t block;  ///< or -1
 };

@@ -84,6 +84,20 @@ void fadeMessage(Viewer& viewer, double elapsed_s) {
   viewer.lastMessage = viewer.message;
 }
 
+// The table is as large as the scene at its start needs, with room for what falls off; what blocks darken on it is found anew.
+void layTable(const Viewer& viewer, Picture& picture) {
+  constexpr double kLeast_m = 0.55;
+  constexpr double kRoom = 2.6;  // its radius, of the scene's
+  constexpr double kDarkened_m = 0.7;
+  Camera whole;
+  showAll(whole, viewer.start);
+  const double radius = 0.5 * whole.distance * whole.fieldOfView;
+  picture.table = Vec3(whole.target.x(), whole.target.y(), 0.0);
+  picture.tableRadius = std::max(kLeast_m, kRoom * radius);
+  picture.nearby = nearbyOf(viewer.shown);
+  picture.floorOpen = floorOpenness(picture.nearby, picture.table, std::max(kDarkened_m, 2.5 * radius));
+}
+
 }  // namespace
 
 Viewer::Viewer(SceneChoice given, const Tuning& wanted)
@@ -116,6 +130,28 @@ void advance(Viewer& viewer, double elapsed_s) {
   updateHover(viewer.controls, viewer.session);
 }
 
+namespace {
+
+// What is left of the play so far, gone.
+void clearPlay(Viewer& viewer) {
+  viewer.message.clear();
+  viewer.replay.reset();
+  endFall(viewer);
+  viewer.tower.known = viewer.hovered.known = false;
+  if (viewer.mode == Mode::replay) viewer.mode = Mode::play;
+  viewer.pacer.waiting_s = 0.0;
+  letGo(viewer.controls);
+}
+
+}  // namespace
+
+void again(Viewer& viewer) {
+  const bool same = viewer.tuning == viewer.session.keyframes.front().tuning;
+  if (!same || viewer.choice.name.ends_with(".toml")) return restart(viewer, SceneChoice(viewer.choice));
+  startAgain(viewer.session);
+  clearPlay(viewer);
+}
+
 void restart(Viewer& viewer, const SceneChoice& choice) {
   try {
     const Scene scene = sceneOf(choice);
@@ -126,13 +162,7 @@ void restart(Viewer& viewer, const SceneChoice& choice) {
     viewer.start = viewer.session.simulation.state.position;
     viewer.fresh = true;
     if (another) showAll(viewer.controls.camera, viewer.start);
-    viewer.message.clear();
-    viewer.replay.reset();
-    endFall(viewer);
-    viewer.tower.known = viewer.hovered.known = false;
-    if (viewer.mode == Mode::replay) viewer.mode = Mode::play;
-    viewer.pacer.waiting_s = 0.0;
-    letGo(viewer.controls);
+    clearPlay(viewer);
   } catch (const InputError& error) {
     viewer.message = error.what();
   }
@@ -221,6 +251,7 @@ Picture pictureOf(Viewer& viewer) {
                                                                 : controls.guide.block;
   picture.highlighted = selected == kFloor ? -1 : static_cast<std::int32_t>(selected);
   blockMesh(viewer.shown, blockColours(session, viewer.overlay).colour, picture.blocks);
+  layTable(viewer, picture);
   if (showsMargin(viewer) && viewer.tower.known) addMargin(viewer.start, viewer.tower.margin, picture.ground);
   if (past) return picture;
   if (viewer.arrows) addContactArrows(session, viewer.controls.camera, picture.marks);
@@ -245,6 +276,7 @@ void writeViewerReport(std::ostream& stream, const Viewer& viewer) {
                {"frames_stepped", watch.frames},
                {"pictures", watch.pictures},
                {"first_picture_s", watch.firstPicture_s},
+               {"first_frame_s", watch.firstFrame_s},
                {"finite", finite},
                {"divergences", watch.failures},
                {"interrupted", watch.interrupted},

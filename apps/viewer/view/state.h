@@ -58,6 +58,7 @@ struct Watch {
   std::uint64_t frames = 0;  ///< stepped, over all resets and ways back
   std::uint64_t pictures = 0;
   double firstPicture_s = 0.0;  ///< from the program's start
+  double firstFrame_s = 0.0;    ///< from the first picture on, until a frame was stepped
   int failures = 0;             ///< divergences
   bool interrupted = false;     ///< a signal has ended it
 };
@@ -80,10 +81,11 @@ struct Viewer {
   bool heldOnce = false;  ///< a block has been held since the program began
   Poses poses;            ///< of the last frames
   FallReplay fall;
-  StaticsAnswer hovered;  ///< statics without the block under the mouse
-  StaticsAnswer tower;    ///< and of the tower, without what the hand holds
-  Extent window;          ///< that words and panels were last laid out for
-  Layout layout;          ///< where they lay
+  StaticsAnswer hovered;       ///< statics without the block under the mouse
+  StaticsAnswer tower;         ///< and of the tower, without what the hand holds
+  std::optional<float> scale;  ///< of words and buttons; empty: the screen's
+  Extent window;               ///< that words and panels were last laid out for
+  Layout layout;               ///< where they lay
   double limit_n = tuning::kGripForce_n;
   std::optional<Replay> replay;
   std::string message;      ///< what the user is shown, for kMessage_s unless it is paused
@@ -103,6 +105,10 @@ void advance(Viewer& viewer, double elapsed_s);
 
 /// Begins anew with this scene. A scene that is wrong leaves the old one and says so in `message`.
 void restart(Viewer& viewer, const SceneChoice& choice);
+
+/// Begins anew with the same scene; at once where it can be made from its name alone and the tuning is as it was. A file is read
+/// again.
+void again(Viewer& viewer);
 
 /// Goes to a frame of the log, pausing; the hand lets go.
 void travel(Viewer& viewer, std::uint64_t frame);

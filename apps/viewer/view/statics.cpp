@@ -6,9 +6,13 @@
 namespace springtower {
 namespace {
 
+constexpr int kRest = 3;  // times as long as an answer took
+
 void take(StaticsAnswer& answer) {
   answer.margin = answer.coming.get();
   answer.known = true;
+  const auto now = std::chrono::steady_clock::now();
+  answer.next = now + kRest * (now - answer.started);
 }
 
 }  // namespace
@@ -21,10 +25,15 @@ void followStatics(StaticsAnswer& answer, const Session& session, BlockId withou
   }
   const bool same = answer.without == without;
   if (!same) answer.known = false;
-  const bool fresh = same && answer.known && answer.frame <= session.frame && session.frame < answer.frame + every;
-  if (fresh) return;
+  const bool recent = answer.frame <= session.frame && (answer.asleep || session.frame < answer.frame + every);
+  const bool asleep = allAsleep(session.simulation);
+  if (same && answer.known && recent && (!answer.asleep || asleep)) return;
+  const auto now = std::chrono::steady_clock::now();
+  if (!waits && same && now < answer.next) return;
   answer.without = without;
   answer.frame = session.frame;
+  answer.asleep = asleep;
+  answer.started = now;
   auto question = withoutBlock(session.simulation, session.contacts, without);
   if (!question) {
     answer.known = false;

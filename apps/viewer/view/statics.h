@@ -2,6 +2,7 @@
 
 #include "apps/viewer/session/session.h"
 
+#include <chrono>
 #include <cstdint>
 #include <future>
 #include <optional>
@@ -15,7 +16,10 @@ struct StaticsAnswer {
   BlockId without = kFloor;
   std::uint64_t frame = 0;  ///< when it was started
   bool known = false;
-  std::optional<StabilityMargin> margin;  ///< empty where there is no equilibrium at all; see marginOf
+  bool asleep = false;  ///< all blocks slept then: nothing changes until one wakes
+  std::chrono::steady_clock::time_point started{};
+  std::chrono::steady_clock::time_point next{};  ///< not before that it is started again: statics takes a quarter of a processor
+  std::optional<StabilityMargin> margin;         ///< empty where there is no equilibrium at all; see marginOf
   std::future<std::optional<StabilityMargin>> coming;
 };
 

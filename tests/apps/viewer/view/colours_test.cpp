@@ -42,7 +42,7 @@ double difference(const Colour& a, const Colour& b, const Eigen::Matrix3d& eye) 
 
 constexpr double kApart = 20.0;  // of L*a*b*, in which 2 can just be seen: clearly another colour
 
-// Brightness alone tells where on a scale a colour is.
+// Brightness alone gives the place of a colour on its scale.
 TEST(ViewerColours, ScalesGoOneWayInBrightnessForAllEyes) {
   for (const Eigen::Matrix3d& eye : eyes()) {
     for (const Overlay overlay : {Overlay::load, Overlay::strain, Overlay::hints}) {
