@@ -18,6 +18,12 @@ picture collapse 38 -14:20:1.0 --scene "$scratch/tilted.toml" --no-sleep
 picture load 120 -52:18:0.44 --scene tower:9 --overlay load --arrows
 picture hints 120 -52:18:0.44 --scene tower:9 --overlay hints
 
+# The viewer as it opens, with the mouse on a block. What it was before that is opens_before.png, of commit fd7d2a2.
+printf '%s\n' '1 60 120' '60 380 330' >"$scratch/mouse"
+"$viewer" --headless --scene tower:18 --seed 1 --mode play --players 1 --mouse "$scratch/mouse" --size 800x600 \
+  --frames 120 --png-every 120 --png "$scratch"
+mv "$scratch/frame-00120.png" docs/pictures/opens.png
+
 build/release/bin/springtower chart --scenes uniform,wall --out "$scratch/chart" \
   --peers bench/data/peers/records.csv,bench/data/peers/stacks.csv
 cp "$scratch/chart/uniform_penetration_mm.png" docs/pictures/speed_accuracy.png
