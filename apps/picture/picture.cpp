@@ -1,5 +1,6 @@
 #include "apps/picture/picture.h"
 
+#include "apps/common/look.h"
 #include "apps/picture/raster.h"
 #include "apps/plot/canvas.h"
 #include "core/error.h"
@@ -23,11 +24,14 @@ using LinearColour = Eigen::Array3d;
 constexpr double kRadians = std::numbers::pi / 180.0;
 constexpr int kSamples = 3;        // a pixel is the mean of 3 x 3 samples
 constexpr int kShadowSize = 2048;  // of the shadow map, a side
-const LinearColour kBackground(0.975, 0.972, 0.965);
-const LinearColour kFloorColour(0.935, 0.928, 0.915);
-const LinearColour kGridColour(0.80, 0.79, 0.775);
-const LinearColour kWood(0.900, 0.735, 0.505);
-const LinearColour kEdge(0.36, 0.24, 0.13);
+
+LinearColour colourOf(const look::Rgb& rgb) {
+  return {rgb[0], rgb[1], rgb[2]};
+}
+const LinearColour kBackground = colourOf(look::kBackdrop);
+const LinearColour kFloorColour = colourOf(look::kTable);
+const LinearColour kGridColour = 0.82 * kFloorColour;
+const LinearColour kEdgeColour = colourOf(look::kEdge);
 
 // What is drawn: all blocks but those far away from the rest.
 struct Subject {
@@ -112,20 +116,6 @@ double edgeWidth(const ParticleArray& position, const View& view) {
   return std::min(0.7 * kSamples, 0.05 * least * view.scale);
 }
 
-// A number from 0 to 1 that looks random, the same for a block in every picture.
-double noise(std::uint32_t block, std::uint32_t salt) {
-  std::uint32_t x = block * 0x9e3779b9U + salt * 0x85ebca6bU + 1U;
-  x = (x ^ (x >> 16U)) * 0x7feb352dU;
-  x = (x ^ (x >> 15U)) * 0x846ca68bU;
-  return static_cast<double>(x ^ (x >> 16U)) / 4294967296.0;
-}
-
-LinearColour woodOf(std::uint32_t block) {
-  const double light = 0.93 + 0.11 * noise(block, 1);
-  const double warm = 0.05 * (noise(block, 2) - 0.5);
-  return (kWood + LinearColour(warm, 0.0, -warm)) * light;
-}
-
 // Draws samples of a scene: light, shadow, floor.
 class Painter {
  public:
@@ -182,15 +172,17 @@ class Painter {
     Look look;
     look.normal = (corner(2) - corner(0)).cross(corner(3) - corner(1)).normalized();
     const bool end = face < 2;
-    look.wood = woodOf(static_cast<std::uint32_t>(block)) * (end ? 0.93 : 1.0);
-    look.edge = 0.5 * look.wood + 0.5 * kEdge;
+    look.wood = colourOf(look::woodOf(static_cast<std::uint32_t>(block))) * (end ? look::kEndGrain : 1.0);
+    look.edge = 0.5 * look.wood + 0.5 * kEdgeColour;
     look.shade = 0.66 + 0.06 * look.normal.z();
     look.sun = 0.36 * std::max(0.0, look.normal.dot(light_.back));
     return look;
   }
 
   // The sun stands behind the viewer's left shoulder.
-  static Vec3 light(const View& view) { return view.back - 0.75 * view.right + 1.05 * Vec3::UnitZ(); }
+  static Vec3 light(const View& view) {
+    return look::kSun[0] * view.back + look::kSun[1] * view.right + look::kSun[2] * Vec3::UnitZ();
+  }
 
   [[nodiscard]] double toLine(double value) const { return std::abs(value - square_ * std::round(value / square_)); }
 

@@ -13,6 +13,7 @@
 #include "core/version.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <charconv>
 #include <chrono>
 #include <exception>
@@ -26,15 +27,15 @@ namespace {
 constexpr int kReplayDiffers = 1;
 
 constexpr std::string_view kFooter = R"help(examples:
-  springtower-viewer                                 the tower of 18 rows, heights varying by 0.2 mm
-  springtower-viewer --scene tower:12 --players 2    the game
+  springtower-viewer                                 how high can you build? 18 rows, heights varying by 0.2 mm
+  springtower-viewer --scene tower:12 --players 2    the game of two
   springtower-viewer --scene "(111)-(1L1)-(111)"     a tower with a loose block
   springtower-viewer --headless --frames 60 --png out --overlay load
 mouse: a drag on a block pulls it out along its own axis, carries it once it is free, and lays it down where the outline is when
        it is let go; the wheel, Q and E turn it. A drag beside the blocks goes round. With shift held the block moves in all six
        axes: left drag in the plane of the screen, right drag along the view, wheel and Q E W S A D turn it.
 keys:  space pause, n one frame, r reset, t slow motion, backspace undo, [ ] back and forth, o colour by, f contact forces,
-       tab panels, p screenshot, v record video, i writes what is seen and all poses, escape ends
+       tab play or lab, p screenshot, v record video, i writes what is seen and all poses, escape ends
 A signal (Ctrl-C) ends it as escape does, with exit code 130 or 143. A recording that a killed viewer leaves, FILE.partial, can be
 replayed.)help";
 
@@ -54,6 +55,8 @@ struct Command {
   std::string overlay = "wood";
   bool arrows = false;
   bool paused = false;
+  std::optional<std::string> mode;
+  std::optional<double> scale;
   bool noPanels = false;
   std::string size = "1280x800";
   std::optional<std::string> camera;
@@ -61,6 +64,7 @@ struct Command {
   std::optional<std::int64_t> frames;
   std::optional<std::int64_t> every;
   std::optional<std::string> png;
+  std::optional<std::string> mouse;
   std::optional<std::string> replay;
   ViewerFiles files;
 };
@@ -69,7 +73,8 @@ void define(CLI::App& app, Command& c) {
   app.add_option("--scene", c.scene,
                  "a .toml file, a bit code such as (111)-(1L1), or NAME:SIZE as springtower scenes lists them (default tower:18)")
       ->type_name("SCENE");
-  addWholeNumber(app, "--players", c.players, {0, kMaxPlayers, ""}, "plays the game; 0 lets every block be taken (default)");
+  addWholeNumber(app, "--players", c.players, {0, kMaxPlayers, ""},
+                 "plays the game; 0 lets every block be taken (default: one where there is a full row above another)");
   addNumber(app, "--heights-sigma", c.heightsSigma_m, kHeightsSigmaRange, "METRES",
             "standard deviation of the blocks' heights (default 0.0002 for tower:ROWS, else none)");
   addNumber(app, "--mass-sigma", c.massSigma_kg, kMassSigmaRange, "KG", "standard deviation of the masses");
@@ -85,7 +90,11 @@ void define(CLI::App& app, Command& c) {
       ->type_name("NAME");
   app.add_flag("--arrows", c.arrows, "shows contact forces");
   app.add_flag("--paused", c.paused, "starts paused");
-  app.add_flag("--no-panels", c.noPanels, "starts without panels");
+  app.add_option("--mode", c.mode,
+                 "what stands over the picture: play, lab, replay or bare (default play in a window, bare without one)")
+      ->type_name("NAME");
+  addNumber(app, "--scale", c.scale, {0.5, 4, ""}, "FACTOR", "size of words and buttons (default: the screen's, 1 without one)");
+  app.add_flag("--no-panels", c.noPanels, "the same as --mode bare");
   app.add_option("--size", c.size, "of the picture in pixels (default 1280x800)")->type_name("WxH");
   app.add_option("--camera", c.camera, "where the camera stands: degrees from +x over +y, degrees up, metres off")
       ->type_name("AZ:UP:DIST");
@@ -93,6 +102,8 @@ void define(CLI::App& app, Command& c) {
   addWholeNumber(app, "--frames", c.frames, {1, 1e7, ""}, "frames to step without a window (default 60, or the whole replay)");
   addWholeNumber(app, "--png-every", c.every, {1, 1e7, ""}, "writes every Nth frame, and the last (default 1)");
   app.add_option("--png", c.png, "folder for pictures frame-00001.png ...")->type_name("DIR");
+  app.add_option("--mouse", c.mouse, "a mouse for --headless: lines PICTURE X Y and press, release, hints, skip or nothing")
+      ->type_name("FILE");
   app.add_option("--video", c.files.film, "records a video, a file .mp4 or .gif (needs ffmpeg)")->type_name("FILE");
   app.add_option("--record", c.files.record, "writes the input of all frames, as they pass")->type_name("FILE");
   app.add_option("--replay", c.replay, "plays a recording, and says in which frame its states differ")->type_name("FILE");
@@ -156,6 +167,22 @@ Tuning tuningOf(const Command& command, const SceneChoice& choice) {
   return tuning;
 }
 
+Mode modeOf(const Command& command) {
+  if (!command.mode) return command.noPanels || command.headless ? Mode::bare : command.replay ? Mode::replay : Mode::play;
+  const auto* found = std::find(kModeNames.begin(), kModeNames.end(), *command.mode);
+  if (found == kModeNames.end())
+    throw InputError(fmt::format("--mode: found {}, allowed play, lab, replay or bare", inQuotes(*command.mode)));
+  return static_cast<Mode>(found - kModeNames.begin());
+}
+
+// A player who chose nothing builds alone, where the scene has something to take.
+void offerGame(const Command& command, Viewer& viewer) {
+  if (command.players || command.replay || viewer.mode != Mode::play) return;
+  SceneChoice choice = viewer.choice;
+  choice.players = newGame(viewer.session.simulation, 1, 0).topRow > 0 ? 1 : 0;
+  if (choice.players > 0) restart(viewer, choice);
+}
+
 Viewer viewerOf(const Command& command) {
   std::optional<Replay> replay;
   if (command.replay) replay = Replay{readRecording(*command.replay), {}};
@@ -169,10 +196,12 @@ Viewer viewerOf(const Command& command) {
   viewer.overlay = overlayFromName(command.overlay);
   viewer.arrows = command.arrows;
   viewer.paused = command.paused;
-  viewer.panels = !command.noPanels;
+  viewer.mode = modeOf(command);
+  if (command.scale) viewer.scale = static_cast<float>(*command.scale);
   viewer.limit_n = command.grip_n.value_or(tuning::kGripForce_n);
   viewer.watch.measures = command.files.report.has_value();
   placeCamera(command, viewer.controls.camera);
+  offerGame(command, viewer);
   return viewer;
 }
 
@@ -224,14 +253,15 @@ void play(const Command& command, Viewer& viewer, const ViewerFiles& files, cons
   const std::size_t recorded = viewer.replay ? viewer.replay->recording.frames.size() : 60;
   runHeadless(viewer, files, size,
               {static_cast<int>(command.frames.value_or(static_cast<std::int64_t>(recorded))),
-               static_cast<int>(command.every.value_or(1)), command.png},
+               static_cast<int>(command.every.value_or(1)), command.png,
+               command.mouse ? readMouseScript(*command.mouse) : std::vector<MouseStep>{}},
               started);
 }
 
 int runViewer(const Command& command, std::chrono::steady_clock::time_point started) {
   const Viewport size = sizeOf(command);
-  if (!command.headless && (command.frames || command.png || command.every)) {
-    throw InputError("--frames, --png and --png-every: allowed only with --headless");
+  if (!command.headless && (command.frames || command.png || command.every || command.mouse)) {
+    throw InputError("--frames, --png, --png-every and --mouse: allowed only with --headless");
   }
   const auto threads = static_cast<std::size_t>(command.threads.value_or(threadCount({})));
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);

@@ -4,6 +4,8 @@
 #include "apps/common/output_file.h"
 #include "apps/common/poses.h"
 #include "apps/viewer/ui/panels.h"
+#include "apps/viewer/ui/style.h"
+#include "apps/viewer/view/fall.h"
 #include "core/error.h"
 
 #define GLFW_INCLUDE_NONE
@@ -14,6 +16,7 @@
 #include <epoxy/gl.h>
 #include <filesystem>
 #include <fmt/format.h>
+#include <future>
 #include <imgui.h>
 
 namespace springtower {
@@ -31,7 +34,7 @@ double secondsSince(Clock::time_point start) {
 struct Desk {
   Viewer& viewer;
   const ViewerFiles& files;
-  PanelDraft draft;
+  LabDraft draft;
   GLFWwindow* window = nullptr;
   std::unique_ptr<Renderer> renderer = nullptr;
   std::unique_ptr<Film> film = nullptr;
@@ -41,6 +44,7 @@ struct Desk {
   bool shotWanted = false;
   bool inspectionWanted = false;
   bool filmWanted = false;
+  bool styleWanted = true;  // the screen's scale has changed
 };
 
 Desk& deskOf(GLFWwindow* window) {
@@ -143,10 +147,11 @@ void onPressedKey(Desk& desk, int key) {
   Viewer& viewer = desk.viewer;
   switch (key) {
     case GLFW_KEY_SPACE:
+      if (viewer.fall.stage != FallStage::none) return skipFall(viewer);
       viewer.paused = !viewer.paused && viewer.session.failure.empty();
       return;
     case GLFW_KEY_R:
-      return restart(viewer, viewer.choice);
+      return again(viewer);
     case GLFW_KEY_T:
       viewer.pacer.rate = nextRate(viewer.pacer.rate);
       return;
@@ -159,8 +164,7 @@ void onPressedKey(Desk& desk, int key) {
       viewer.arrows = !viewer.arrows;
       return;
     case GLFW_KEY_TAB:
-      viewer.panels = !viewer.panels;
-      return;
+      return setMode(viewer, viewer.mode == Mode::lab ? Mode::play : Mode::lab);
     case GLFW_KEY_P:
       desk.shotWanted = true;
       return;
@@ -257,14 +261,30 @@ void writePicture(Desk& desk, const Picture& picture, const PanelWishes& wishes)
   desk.film->add(Renderer::read(viewport));
 }
 
+// Fonts and sizes for the screen that the window is on. In a window whose units are larger than pixels, the units grow with them.
+void updateStyle(Desk& desk) {
+  if (!std::exchange(desk.styleWanted, false)) return;
+  float content = 1.0F;
+  glfwGetWindowContentScale(desk.window, &content, nullptr);
+  content = desk.viewer.scale.value_or(content);
+  int units = 1;
+  int pixels = 1;
+  glfwGetWindowSize(desk.window, &units, nullptr);
+  glfwGetFramebufferSize(desk.window, &pixels, nullptr);
+  useStyle(content, units > 0 && pixels > 0 ? static_cast<float>(pixels) / static_cast<float>(units) : 1.0F);
+  ImGui_ImplOpenGL3_DestroyFontsTexture();  // it is made anew with the next frame
+}
+
 void drawWindow(Desk& desk) {
   const Clock::time_point start = Clock::now();
   Viewer& viewer = desk.viewer;
   Viewport& viewport = viewer.controls.viewport;
   glfwGetFramebufferSize(desk.window, &viewport.width, &viewport.height);
   viewport = {std::max(viewport.width, 1), std::max(viewport.height, 1)};
+  if (viewer.watch.pictures > 0) followStatics(viewer, false);  // the first picture has the processors for itself
   const Picture picture = pictureOf(viewer);
   desk.renderer->draw(picture, viewer.controls.camera, viewport);
+  updateStyle(desk);
   ImGui_ImplOpenGL3_NewFrame();
   ImGui_ImplGlfw_NewFrame();
   ImGui::NewFrame();
@@ -326,8 +346,10 @@ GLFWwindow* openedWindow(const Viewport& size) {
 }  // namespace
 
 void runWindow(Viewer& viewer, const ViewerFiles& files, const Viewport& size, Clock::time_point started) {
+  // The window opens meanwhile.
+  std::future<void> prepared = std::async(std::launch::async, [&] { prepareStart(viewer.session); });
   startGlfw();
-  Desk desk{viewer, files, PanelDraft(viewer.choice)};
+  Desk desk{viewer, files, LabDraft(viewer.choice)};
   desk.window = openedWindow(size);
   glfwSwapInterval(1);
   glfwSetWindowUserPointer(desk.window, &desk);
@@ -335,18 +357,26 @@ void runWindow(Viewer& viewer, const ViewerFiles& files, const Viewport& size, C
   glfwSetMouseButtonCallback(desk.window, onButton);
   glfwSetScrollCallback(desk.window, onScroll);
   glfwSetKeyCallback(desk.window, onKey);
+  glfwSetWindowContentScaleCallback(desk.window, [](GLFWwindow* window, float, float) { deskOf(window).styleWanted = true; });
   const ImGuiUse imgui(desk.window);
   desk.renderer = std::make_unique<Renderer>();
   if (files.film) tell(desk, [&] { toggleFilm(desk); });
 
+  prepared.get();
   Clock::time_point last = Clock::now();
+  Clock::time_point shown = last;
   while (glfwWindowShouldClose(desk.window) == GLFW_FALSE && !interrupted()) {
     glfwPollEvents();
     boundPointer(desk);
     advance(viewer, std::chrono::duration<double>(Clock::now() - std::exchange(last, Clock::now())).count());
+    if (viewer.watch.firstFrame_s == 0.0 && viewer.session.frame > 0) viewer.watch.firstFrame_s = secondsSince(shown);
     if (files.recorder != nullptr) tell(desk, [&] { files.recorder->follow(viewer.choice, viewer.session); });
     drawWindow(desk);
     if (++viewer.watch.pictures > 1) continue;
+    shown = Clock::now();
+    // The clock starts with the picture: one frame is due now.
+    last =
+        shown - std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(viewer.session.scene.settings.frame_s));
     viewer.watch.firstPicture_s = secondsSince(started);
     fmt::print("first picture after {:.3f} s\n", viewer.watch.firstPicture_s);
     std::fflush(stdout);

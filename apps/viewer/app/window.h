@@ -1,5 +1,6 @@
 #pragma once
 
+#include "apps/viewer/input/mouse_script.h"
 #include "apps/viewer/io/output.h"
 #include "apps/viewer/view/state.h"
 
@@ -7,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace springtower {
 
@@ -25,11 +27,13 @@ struct ViewerFiles {
 void runWindow(Viewer& viewer, const ViewerFiles& files, const Viewport& size, std::chrono::steady_clock::time_point started);
 
 /// Steps a number of frames, or up to a signal, without a window and writes every `every`th picture and the last as
-/// frame-00001.png ... into a folder.
+/// frame-00001.png ... into a folder. A mouse that follows a script plays as in the window, a picture each 1/60 s: `frames` are
+/// then pictures.
 struct HeadlessRun {
   int frames = 60;
   int every = 1;
   std::optional<std::string> folder;
+  std::vector<MouseStep> mouse = {};  ///< may be empty
 };
 void runHeadless(Viewer& viewer, const ViewerFiles& files, const Viewport& size, const HeadlessRun& run,
                  std::chrono::steady_clock::time_point started);

@@ -40,14 +40,21 @@ class Renderer {
  private:
   void upload(std::span<const Vertex> vertices);
   void drawShadows(const Picture& picture, const Eigen::Matrix4f& lightFromWorld);
+  void uploadNearby(const Picture& picture);
+  void drawBlocks(const Picture& picture, const Camera& camera, const Eigen::Matrix4f& clip, const Eigen::Matrix4f& light);
+  void drawFloor(const Picture& picture, const Camera& camera, const Eigen::Matrix4f& clip, const Eigen::Matrix4f& light);
 
   int shadowSize_;      // pixels a side; less where a processor draws
-  unsigned shade_ = 0;  // programs
+  unsigned block_ = 0;  // programs
+  unsigned floor_ = 0;
   unsigned plain_ = 0;
   unsigned number_ = 0;
   unsigned vertexArray_ = 0;
   unsigned vertexBuffer_ = 0;
   unsigned shadowMap_ = 0;
+  unsigned floorOpen_ = 0;
+  unsigned nearbyBuffers_[2] = {0, 0};  // boxes, and which are near which
+  unsigned nearbyTextures_[2] = {0, 0};
   unsigned shadowFrame_ = 0;
 };
 

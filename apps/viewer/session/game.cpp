@@ -4,12 +4,12 @@
 #include "core/tuning.h"
 #include "solver/block/inertia.h"
 #include "solver/statics/loose.h"
-#include "solver/statics/tilt_margin.h"
 
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <numeric>
+#include <string_view>
 
 namespace springtower {
 namespace {
@@ -44,6 +44,7 @@ void beginTurn(Game& game, const Simulation& simulation, std::uint64_t frame) {
   const std::size_t blocks = simulation.model.blockCount();
   game.phase = Phase::choose;
   game.block = kFloor;
+  game.held = kFloor;
   game.quiet_s = 0.0;
   game.turnFrame = frame;
   game.turnCentre.resize(blocks);
@@ -82,6 +83,10 @@ bool quiet(const Simulation& simulation) {
   return true;
 }
 
+std::string counted(int number, std::string_view noun) {
+  return fmt::format("{} {}{}", number, noun, number == 1 ? "" : "s");
+}
+
 }  // namespace
 
 int rowOf(const Simulation& simulation, std::size_t block) {
@@ -112,6 +117,7 @@ bool mayTake(const Game& game, BlockId block) {
 
 bool followGame(Game& game, const Simulation& simulation, BlockId held, std::uint64_t frame) {
   if (game.players == 0 || game.phase == Phase::over) return false;
+  if (held != kFloor) game.held = held;
   if (game.phase == Phase::choose && held != kFloor) {
     const std::size_t b = index(held);
     const double moved = (centre(simulation.state.position, b) - game.turnCentre[b]).norm();
@@ -139,18 +145,29 @@ bool followGame(Game& game, const Simulation& simulation, BlockId held, std::uin
 }
 
 std::string describe(const Game& game) {
-  if (game.players == 0) return "no game: take any block";
-  const int player = game.player + 1;
+  if (game.players == 0) return "No game: take any block.";
+  const std::string who = game.players == 1 ? fmt::format("{} laid on top.", counted(game.moves, "block"))
+                                            : fmt::format("Player {}:", game.player + 1);
+  const std::string verb = game.players == 1 ? "Take" : "take";
   switch (game.phase) {
     case Phase::choose:
-      if (game.topRow < 1) return fmt::format("player {}: there is no block below a complete row", player);
-      return fmt::format("player {}: draw a block from the lowest {} rows", player, game.topRow);
+      if (game.topRow < 1) return fmt::format("{} there is no block below a full row.", who);
+      return fmt::format("{} {} a block from the lowest {} rows.", who, verb, game.topRow);
     case Phase::moving:
-      return fmt::format("player {}: lay block {} on top", player, index(game.block));
+      return game.players == 1 ? fmt::format("{} Lay block {} on top.", who, index(game.block))
+                               : fmt::format("{} lay block {} on top.", who, index(game.block));
     case Phase::over:
-      return fmt::format("player {} loses after {} moves: block {} fell", player, game.moves, index(game.fallen));
+      if (game.players == 1)
+        return fmt::format("It fell after {}: block {} lies below.", counted(game.moves, "move"), index(game.fallen));
+      return fmt::format("Player {} loses after {}: block {} fell.", game.player + 1, counted(game.moves, "move"),
+                         index(game.fallen));
   }
   return {};
+}
+
+std::string causeInWords(const Game& game) {
+  if (game.phase != Phase::over || game.held == kFloor) return {};
+  return fmt::format("Block {} did it: it was {} last.", index(game.held), game.block == game.held ? "taken out" : "pulled");
 }
 
 std::vector<Hint> hints(const Simulation& simulation, std::span<const ContactForce> contacts) {
@@ -201,18 +218,22 @@ std::optional<WithoutBlock> withoutBlock(const Simulation& simulation, std::span
   const auto renumbered = [&](BlockId b) { return b == kFloor || index(b) < index(block) ? b : blockId(index(b) - 1); };
   std::vector<FacePair> facings;
   for (const ContactForce& contact : contacts) {
-    if (contact.upper == block || contact.lower == block) continue;
+    if (block != kFloor && (contact.upper == block || contact.lower == block)) continue;
     facings.push_back({renumbered(contact.upper), renumbered(contact.lower), contact.normal, {{contact.point, 0.0}}});
   }
   return WithoutBlock{staticsModel(rest, facings), gravity.normalized()};
 }
 
-double tiltBorne(const WithoutBlock& question) {
+std::optional<StabilityMargin> marginOf(const WithoutBlock& question) {
   constexpr double kTolerance_deg = 0.05;
-  constexpr double kNever_deg = -90.0;
   std::vector<std::size_t> usable(question.model.points.size());
   std::iota(usable.begin(), usable.end(), std::size_t{0});
-  const std::optional<StabilityMargin> margin = tiltMargin(question.model, usable, question.gravity, kTolerance_deg);
+  return tiltMargin(question.model, usable, question.gravity, kTolerance_deg);
+}
+
+double tiltBorne(const WithoutBlock& question) {
+  constexpr double kNever_deg = -90.0;
+  const std::optional<StabilityMargin> margin = marginOf(question);
   return margin ? margin->tilt_deg : kNever_deg;
 }
 

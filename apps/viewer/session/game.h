@@ -2,6 +2,7 @@
 
 #include "solver/hand/grip.h"
 #include "solver/statics/model.h"
+#include "solver/statics/tilt_margin.h"
 
 #include <cstdint>
 #include <optional>
@@ -33,6 +34,7 @@ struct Game {
   std::vector<Vec3> turnCentre;       ///< m, the blocks' centres when it began
   std::vector<int> turnRow;           ///< the row each block was in when it began, or -1
   std::vector<std::uint8_t> onFloor;  ///< 1 where a block may touch the floor: it did when the game began
+  BlockId held = kFloor;              ///< the last block that was held in this turn
   BlockId fallen = kFloor;            ///< over: a block that touches the floor
 };
 
@@ -51,8 +53,12 @@ bool mayTake(const Game& game, BlockId block);
 /// has begun.
 bool followGame(Game& game, const Simulation& simulation, BlockId held, std::uint64_t frame);
 
-/// One line for the players: whose turn it is and what there is to do, or who lost and why.
+/// One line for the players: whose turn it is and what there is to do, or who lost and why. A single player builds as high as
+/// may be.
 std::string describe(const Game& game);
+
+/// What brought the tower down, in a sentence; empty where no block was held.
+std::string causeInWords(const Game& game);
 
 /// How a block could be taken, judged from the forces.
 struct Hint {
@@ -75,12 +81,15 @@ struct WithoutBlock {
   Vec3 gravity = -Vec3::UnitZ();  ///< unit
 };
 
-/// The question. Blocks that would lean until they touch something else are not looked for: these are the present contacts.
-/// Empty when there is no gravity or no other block.
+/// The question. Blocks that would lean until they touch something else are not looked for: these are the present contacts. With
+/// kFloor it is about all blocks. Empty when there is no gravity or no other block.
 std::optional<WithoutBlock> withoutBlock(const Simulation& simulation, std::span<const ContactForce> contacts, BlockId block);
 
-/// The answer: by how many degrees gravity may turn towards its worst side before rigid blocks with friction cannot rest on these
-/// contacts; negative when they cannot as it is (then -90 where no gravity will do). Takes some milliseconds.
+/// The answer: by how much gravity may turn towards its worst side before rigid blocks with friction cannot rest on these
+/// contacts, to 0.05 degrees; negative when they cannot as it is, empty where no gravity will do. Takes some milliseconds.
+std::optional<StabilityMargin> marginOf(const WithoutBlock& question);
+
+/// The same as an angle alone, degrees; -90 where no gravity will do.
 double tiltBorne(const WithoutBlock& question);
 
 }  // namespace springtower

@@ -149,6 +149,29 @@ Scene withTuning(Scene scene, const Tuning& tuning) {
   return scene;
 }
 
+void prepareStart(Session& session) {
+  if (session.frame > 0 || !session.failure.empty() || isPrepared(session.simulation)) return;
+  try {
+    prepare(session.simulation);
+  } catch (const DivergenceError&) {
+    return;  // the first frame finds it again, and says so
+  }
+  session.before = session.simulation.state.position;
+  session.contacts = contactForces(session.simulation);
+  session.keyframes.clear();
+  keep(session);
+}
+
+void startAgain(Session& session) {
+  restore(session, session.keyframes.front());
+  session.failure.clear();
+  session.gripForce = {};
+  session.log.clear();
+  session.logKept = 0;
+  session.turns = {0};
+  session.keyframes.resize(1);
+}
+
 void step(Session& session, const FrameInput& input) {
   if (!session.failure.empty()) return;
   while (session.keyframes.back().frame > session.frame) session.keyframes.pop_back();

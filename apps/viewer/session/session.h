@@ -79,6 +79,13 @@ Tuning tuningOf(const Scene& scene);
 /// The scene with a tuning put over it.
 Scene withTuning(Scene scene, const Tuning& tuning);
 
+/// Finds the equilibrium that the first frame starts from, ahead of it: for uneven towers that takes as long as many frames. Does
+/// nothing after the first frame, and leaves a divergence to that.
+void prepareStart(Session& session);
+
+/// Goes back to the start and forgets what was played. Takes no longer than a frame where the start was prepared.
+void startAgain(Session& session);
+
 /// Steps one frame. A hand that the game does not allow to take its block is left out. Does nothing after a failure; a divergence
 /// becomes one. What was logged after the present frame is forgotten.
 void step(Session& session, const FrameInput& input);

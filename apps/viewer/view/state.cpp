@@ -1,6 +1,7 @@
 #include "apps/viewer/view/state.h"
 
 #include "apps/common/json_values.h"
+#include "apps/viewer/view/fall.h"
 #include "core/error.h"
 #include "core/version.h"
 #include "solver/metrics/measures.h"
@@ -40,6 +41,7 @@ void measure(Viewer& viewer) {
 void stepOnce(Viewer& viewer) {
   Session& session = viewer.session;
   if (!viewer.replay) leadHand(viewer.controls, session, viewer.limit_n);
+  viewer.heldOnce = viewer.heldOnce || viewer.controls.hand.block != kFloor;
   FrameInput input{viewer.controls.hand, viewer.tuning};
   if (viewer.replay) {
     const std::optional<FrameInput> recorded = nextInput(*viewer.replay, session);
@@ -62,6 +64,7 @@ void stepOnce(Viewer& viewer) {
     return;
   }
   ++viewer.watch.frames;
+  if (viewer.mode == Mode::play) viewer.poses.add(session.simulation.state.position);
   keepBar(viewer, before);
   if (viewer.replay) compare(*viewer.replay, session);
   if (!session.failure.empty()) {
@@ -81,6 +84,20 @@ void fadeMessage(Viewer& viewer, double elapsed_s) {
   viewer.lastMessage = viewer.message;
 }
 
+// The table is as large as the scene at its start needs, with room for what falls off; what blocks darken on it is found anew.
+void layTable(const Viewer& viewer, Picture& picture) {
+  constexpr double kLeast_m = 0.55;
+  constexpr double kRoom = 2.6;  // its radius, of the scene's
+  constexpr double kDarkened_m = 0.7;
+  Camera whole;
+  showAll(whole, viewer.start);
+  const double radius = 0.5 * whole.distance * whole.fieldOfView;
+  picture.table = Vec3(whole.target.x(), whole.target.y(), 0.0);
+  picture.tableRadius = std::max(kLeast_m, kRoom * radius);
+  picture.nearby = nearbyOf(viewer.shown);
+  picture.floorOpen = floorOpenness(picture.nearby, picture.table, std::max(kDarkened_m, 2.5 * radius));
+}
+
 }  // namespace
 
 Viewer::Viewer(SceneChoice given, const Tuning& wanted)
@@ -95,7 +112,10 @@ Viewer::Viewer(SceneChoice given, const Tuning& wanted)
 void advance(Viewer& viewer, double elapsed_s) {
   const double frame_s = viewer.session.scene.settings.frame_s;
   int frames = 0;
-  if (viewer.paused) {
+  const bool waits = followFall(viewer, elapsed_s);
+  if (waits) {
+    viewer.pacer.waiting_s = 0.0;
+  } else if (viewer.paused) {
     frames = viewer.once ? 1 : 0;
     viewer.once = false;
     viewer.pacer.waiting_s = 0.0;
@@ -110,6 +130,28 @@ void advance(Viewer& viewer, double elapsed_s) {
   updateHover(viewer.controls, viewer.session);
 }
 
+namespace {
+
+// What is left of the play so far, gone.
+void clearPlay(Viewer& viewer) {
+  viewer.message.clear();
+  viewer.replay.reset();
+  endFall(viewer);
+  viewer.tower.known = viewer.hovered.known = false;
+  if (viewer.mode == Mode::replay) viewer.mode = Mode::play;
+  viewer.pacer.waiting_s = 0.0;
+  letGo(viewer.controls);
+}
+
+}  // namespace
+
+void again(Viewer& viewer) {
+  const bool same = viewer.tuning == viewer.session.keyframes.front().tuning;
+  if (!same || viewer.choice.name.ends_with(".toml")) return restart(viewer, SceneChoice(viewer.choice));
+  startAgain(viewer.session);
+  clearPlay(viewer);
+}
+
 void restart(Viewer& viewer, const SceneChoice& choice) {
   try {
     const Scene scene = sceneOf(choice);
@@ -120,10 +162,7 @@ void restart(Viewer& viewer, const SceneChoice& choice) {
     viewer.start = viewer.session.simulation.state.position;
     viewer.fresh = true;
     if (another) showAll(viewer.controls.camera, viewer.start);
-    viewer.message.clear();
-    viewer.replay.reset();
-    viewer.pacer.waiting_s = 0.0;
-    letGo(viewer.controls);
+    clearPlay(viewer);
   } catch (const InputError& error) {
     viewer.message = error.what();
   }
@@ -132,6 +171,7 @@ void restart(Viewer& viewer, const SceneChoice& choice) {
 void travel(Viewer& viewer, std::uint64_t frame) {
   if (frame > viewer.session.log.size()) return;
   letGo(viewer.controls);
+  endFall(viewer);
   goTo(viewer.session, frame);
   viewer.tuning = viewer.session.tuning;
   viewer.paused = true;
@@ -149,37 +189,75 @@ void undo(Viewer& viewer) {
   viewer.message = "the last move is taken back";
 }
 
+void startReplay(Viewer& viewer) {
+  if (!viewer.replay) viewer.replay = Replay{{viewer.choice, viewer.session.log}, {}};
+  seek(viewer, 0);
+  viewer.paused = false;
+  viewer.mode = Mode::replay;
+}
+
+void playOn(Viewer& viewer) {
+  viewer.replay.reset();
+  viewer.paused = false;
+  viewer.mode = Mode::play;
+}
+
+void seek(Viewer& viewer, std::uint64_t frame) {
+  std::vector<LoggedFrame>& log = viewer.session.log;
+  if (viewer.replay) {
+    const std::vector<LoggedFrame>& frames = viewer.replay->recording.frames;
+    if (frames.size() > log.size()) log.insert(log.end(), frames.begin() + static_cast<std::ptrdiff_t>(log.size()), frames.end());
+  }
+  travel(viewer, std::min<std::uint64_t>(frame, log.size()));
+}
+
+void setMode(Viewer& viewer, Mode mode) {
+  if (mode == viewer.mode) return;
+  if (viewer.fall.stage != FallStage::none && viewer.fall.stage != FallStage::stopped) skipFall(viewer);
+  if (mode == Mode::replay) return startReplay(viewer);
+  if (viewer.mode == Mode::replay) playOn(viewer);
+  viewer.mode = mode;
+}
+
+bool showsMargin(const Viewer& viewer) {
+  const Session& session = viewer.session;
+  return viewer.mode == Mode::play && session.scene.floor && session.game.phase != Phase::over && session.failure.empty();
+}
+
+void followStatics(Viewer& viewer, bool waits) {
+  constexpr std::uint64_t kAgainTower = 20;
+  constexpr std::uint64_t kAgainBlock = 60;
+  const Session& session = viewer.session;
+  const auto& hover = viewer.controls.hover;
+  if (hover && (viewer.mode == Mode::play || viewer.overlay == Overlay::hints))
+    followStatics(viewer.hovered, session, hover->block, kAgainBlock, waits);
+  if (showsMargin(viewer)) followStatics(viewer.tower, session, viewer.controls.hand.block, kAgainTower, waits);
+}
+
 Picture pictureOf(Viewer& viewer) {
   const Session& session = viewer.session;
-  between(session, viewer.paused ? 1.0 : viewer.pacer.share(session.scene.settings.frame_s), viewer.shown);
+  const Controls& controls = viewer.controls;
+  const bool past = showsPast(viewer.fall);
+  if (past) {
+    pastPoses(viewer, viewer.shown);
+  } else {
+    between(session, viewer.paused ? 1.0 : viewer.pacer.share(session.scene.settings.frame_s), viewer.shown);
+  }
   Picture picture;
   picture.floor = session.scene.floor;
-  const Controls& controls = viewer.controls;
-  const BlockId selected = controls.hover ? controls.hover->block : controls.guide.block;
+  picture.grid = viewer.mode == Mode::lab;
+  const BlockId selected = viewer.fall.stage != FallStage::none ? viewer.fall.cause
+                           : controls.hover                     ? controls.hover->block
+                                                                : controls.guide.block;
   picture.highlighted = selected == kFloor ? -1 : static_cast<std::int32_t>(selected);
   blockMesh(viewer.shown, blockColours(session, viewer.overlay).colour, picture.blocks);
+  layTable(viewer, picture);
+  if (showsMargin(viewer) && viewer.tower.known) addMargin(viewer.start, viewer.tower.margin, picture.ground);
+  if (past) return picture;
   if (viewer.arrows) addContactArrows(session, viewer.controls.camera, picture.marks);
   addHand(session, viewer.controls.hand, viewer.shown, viewer.controls.camera, picture.marks);
   addGuide(session, viewer.controls.guide, viewer.controls.hand, viewer.controls.camera, picture.marks);
   return picture;
-}
-
-std::vector<std::string> notices(const Viewer& viewer) {
-  std::vector<std::string> lines;
-  if (viewer.session.game.players > 0) lines.push_back(describe(viewer.session.game));
-  if (viewer.paused) lines.emplace_back("paused (space resumes, n steps a frame)");
-  if (!viewer.paused && viewer.pacer.slow) {
-    lines.push_back(
-        fmt::format("slow motion: this machine reaches {:.0f} % of the speed that is set", 100.0 * viewer.pacer.kept()));
-  }
-  if (!viewer.paused && viewer.pacer.rate < 1.0) lines.push_back(fmt::format("slow motion: 1/{:.0f}", 1.0 / viewer.pacer.rate));
-  if (viewer.replay) {
-    const std::size_t frames = viewer.replay->recording.frames.size();
-    if (viewer.session.frame < frames) lines.push_back(fmt::format("replay: frame {} of {}", viewer.session.frame, frames));
-    if (viewer.replay->differs) lines.push_back(fmt::format("the replay differs first in frame {}", *viewer.replay->differs));
-  }
-  if (!viewer.message.empty()) lines.push_back(viewer.message);
-  return lines;
 }
 
 void writeViewerReport(std::ostream& stream, const Viewer& viewer) {
@@ -198,6 +276,7 @@ void writeViewerReport(std::ostream& stream, const Viewer& viewer) {
                {"frames_stepped", watch.frames},
                {"pictures", watch.pictures},
                {"first_picture_s", watch.firstPicture_s},
+               {"first_frame_s", watch.firstFrame_s},
                {"finite", finite},
                {"divergences", watch.failures},
                {"interrupted", watch.interrupted},
@@ -215,6 +294,16 @@ void writeViewerReport(std::ostream& stream, const Viewer& viewer) {
                  {"distance_m", camera.distance},
                  {"field_of_view", camera.fieldOfView}}},
                {"state_hash", fmt::format("{:016x}", stateHash(session.simulation))}};
+  const Layout& layout = viewer.layout;
+  const auto rect = [](const Rect& r) { return Json{r.x, r.y, r.width, r.height}; };
+  json["mode"] = kModeNames[static_cast<std::size_t>(viewer.mode)];
+  json["layout"] = {{"window", {viewer.window.width, viewer.window.height}},
+                    {"notices", rect(layout.notices)},
+                    {"bar", rect(layout.bar)},
+                    {"legend", rect(layout.legend)},
+                    {"lab", rect(layout.lab)},
+                    {"card", rect(layout.card)},
+                    {"words", rect(layout.words)}};
   json["replay_differs_in_frame"] = viewer.replay && viewer.replay->differs ? Json(*viewer.replay->differs) : Json(nullptr);
   json["replay_refused"] = viewer.replay && !viewer.replay->refused.empty() ? Json(viewer.replay->refused) : Json(nullptr);
   stream << jsonText(json, 2) << '\n';

@@ -103,6 +103,24 @@ TEST(ViewerHeadless, KeepsWhatWasPlayedWhereAVideoOrPictureFails) {
   }
 }
 
+// A mouse that plays, words over the picture, the same film every time.
+TEST(ViewerHeadless, AMouseMayFollowAScript) {
+  const ScratchFolder scratch;
+  std::ofstream(scratch.file("mouse")) << "1 80 100\n20 80 100 press\n60 200 130\n60 200 130 release\n";
+  std::string first;
+  for (const char* folder : {"a", "b"}) {
+    const ProgramResult result =
+        runProgram("springtower-viewer",
+                   {"--headless", "--scene", "(111)-(1L1)-(111)-(111)", "--mode", "play", "--mouse", scratch.file("mouse"),
+                    "--frames", "60", "--png-every", "60", "--png", scratch.file(folder), "--size", "320x240"});
+    ASSERT_EQ(result.exitCode, 0) << result.error;
+    const std::string picture = contentOf(std::filesystem::path(scratch.file(folder)) / "frame-00060.png");
+    EXPECT_EQ(sizeOf(picture), std::pair(320, 240));
+    if (first.empty()) first = picture;
+    EXPECT_EQ(picture, first);
+  }
+}
+
 TEST(ViewerHeadless, SaysThatFfmpegIsMissing) {
   const ScratchFolder scratch;
   const SearchPath path(scratch.path().string());
@@ -162,6 +180,9 @@ TEST(ViewerHeadless, BadArgumentsAreNamed) {
       {{"--headless", "--camera", "1:2"}, "--camera"},
       {{"--headless", "--overlay", "heat"}, "--overlay: found 'heat'"},
       {{"--headless", "--players", "9"}, "--players"},
+      {{"--headless", "--mode", "game"}, "--mode: found 'game'"},
+      {{"--headless", "--mouse", "/nonexistent"}, "--mouse: '/nonexistent'"},
+      {{"--mouse", "x"}, "only with --headless"},
       {{"--headless", "--method", "magic"}, "--method"},
       {{"--headless", "--video", "film.avi"}, ".mp4 or .gif"},
       {{"--headless", "--replay", "/nonexistent"}, "/nonexistent"},

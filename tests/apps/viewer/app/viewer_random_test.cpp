@@ -145,7 +145,7 @@ TEST(ViewerRandom, RandomMouseAndKeysDoNotEndTheProgram) {
 
 // Panels change the physics to anything they offer, so only the program is judged here, not what becomes of the tower.
 TEST(ViewerRandom, RandomClicksOnThePanelsDoNotEndTheProgram) {
-  Window window({"--scene", "tower:3"});
+  Window window({"--scene", "tower:3", "--mode", "lab"});
   Dice dice(6);
   std::string script;
   for (int i = 0; i < 80; ++i) {

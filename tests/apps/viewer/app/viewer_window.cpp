@@ -52,9 +52,9 @@ Camera Inspection::camera() const {
   return camera;
 }
 
-Window::Window(const std::vector<std::string>& arguments) : display_(kWindowWidth, kWindowHeight) {
+Window::Window(const std::vector<std::string>& arguments, const Viewport& size) : display_(size.width, size.height) {
   std::vector<std::string> all = {
-      "--size", fmt::format("{}x{}", kWindowWidth, kWindowHeight), "--out", scratch_.file("out"), "--report", reportFile()};
+      "--size", fmt::format("{}x{}", size.width, size.height), "--out", scratch_.file("out"), "--report", reportFile()};
   all.insert(all.end(), arguments.begin(), arguments.end());
   program_.emplace("springtower-viewer", all, std::vector<std::string>{display_.variable(), "LIBGL_ALWAYS_SOFTWARE=1"},
                    scratch_.file("log"));
@@ -68,16 +68,27 @@ double Window::firstPicture_s() const {
   return std::stod(log().substr(std::string(kFirstWords).size()));
 }
 
-Inspection Window::inspect() {
+std::string Window::inspected(const char* name, const char* ending) const {
+  return scratch_.file(fmt::format("out/{}-{:03}{}", name, inspections_, ending));
+}
+
+void Window::pressInspect() {
   ++inspections_;
   act("key i");
-  const auto path = [&](const char* name, const char* ending) {
-    return scratch_.file(fmt::format("out/{}-{:03}{}", name, inspections_, ending));
-  };
-  if (!waitUntil(60.0, [&] { return std::filesystem::exists(path("report", ".json")); })) {
+  if (!waitUntil(60.0, [&] { return std::filesystem::exists(inspected("report", ".json")); })) {
     throw std::runtime_error("no inspection: " + log());
   }
-  return {Json::parse(contentOf(path("report", ".json"))), readPoses(path("poses", ".csv")), readSeen(path("seen", ".pgm"))};
+}
+
+Inspection Window::inspect() {
+  pressInspect();
+  return {Json::parse(contentOf(inspected("report", ".json"))), readPoses(inspected("poses", ".csv")),
+          readSeen(inspected("seen", ".pgm"))};
+}
+
+nlohmann::json Window::inspectReport() {
+  pressInspect();
+  return Json::parse(contentOf(inspected("report", ".json")));
 }
 
 int Window::close() {

@@ -29,7 +29,7 @@ struct Inspection {
 class Window {
  public:
   /// Starts it and waits for its first picture. Throws std::runtime_error with its output when there is none.
-  explicit Window(const std::vector<std::string>& arguments);
+  explicit Window(const std::vector<std::string>& arguments, const Viewport& size = {kWindowWidth, kWindowHeight});
   /// Runs a script of xdotool.
   void act(const std::string& script) { display_.act(script); }
   [[nodiscard]] bool runs() { return program_->runs(); }
@@ -39,12 +39,17 @@ class Window {
   [[nodiscard]] double firstPicture_s() const;
   /// Presses the key I and reads what it writes.
   Inspection inspect();
+  /// The report that the key I writes, alone: for windows of any size.
+  nlohmann::json inspectReport();
   /// Ends the program as a user does; returns its exit code.
   int close();
   /// Its report; written when it has ended.
   [[nodiscard]] nlohmann::json report() const { return nlohmann::json::parse(contentOf(reportFile())); }
 
  private:
+  // Presses the key I and waits; the path of one of its files.
+  void pressInspect();
+  [[nodiscard]] std::string inspected(const char* name, const char* ending) const;
   [[nodiscard]] std::string reportFile() const { return scratch_.file("report.json"); }
 
   ScratchFolder scratch_;

@@ -19,7 +19,7 @@ TEST(ViewerGame, BlocksBelowTheTopCompleteRowMayBeTaken) {
   EXPECT_EQ(session.game.topRow, 2);
   for (std::size_t b = 0; b < 11; ++b) EXPECT_EQ(mayTake(session.game, blockId(b)), b < 6) << b;
   EXPECT_FALSE(mayTake(session.game, kFloor));
-  EXPECT_THAT(describe(session.game), HasSubstr("player 1"));
+  EXPECT_THAT(describe(session.game), HasSubstr("Player 1"));
 }
 
 TEST(ViewerGame, WithoutPlayersEveryBlockMay) {
@@ -80,7 +80,8 @@ TEST(ViewerGame, WhoBringsTheTowerDownLoses) {
   for (int i = 0; i < 240 && session.game.phase != Phase::over; ++i) step(session, {hand, session.tuning});
   EXPECT_EQ(session.game.phase, Phase::over);
   EXPECT_NE(session.game.fallen, blockId(7));
-  EXPECT_THAT(describe(session.game), HasSubstr("player 1 loses"));
+  EXPECT_THAT(describe(session.game), HasSubstr("Player 1 loses"));
+  EXPECT_EQ(causeInWords(session.game), "Block 7 did it: it was taken out last.");
   for (std::size_t b = 0; b < 12; ++b) EXPECT_FALSE(mayTake(session.game, blockId(b)));
 }
 
