@@ -187,11 +187,14 @@ _springtower_viewer() {
         --threads) COMPREPLY=(); return ;;
         --grip) COMPREPLY=(); return ;;
         --overlay) _springtower_listed "wood load strain asleep islands hints"; return ;;
+        --mode) COMPREPLY=(); return ;;
+        --scale) COMPREPLY=(); return ;;
         --size) COMPREPLY=(); return ;;
         --camera) COMPREPLY=(); return ;;
         --frames) COMPREPLY=(); return ;;
         --png-every) COMPREPLY=(); return ;;
         --png) mapfile -t COMPREPLY < <(compgen -d -- "$current"); return ;;
+        --mouse) mapfile -t COMPREPLY < <(compgen -f -- "$current"); return ;;
         --video) mapfile -t COMPREPLY < <(compgen -f -- "$current"); return ;;
         --record) mapfile -t COMPREPLY < <(compgen -f -- "$current"); return ;;
         --replay) mapfile -t COMPREPLY < <(compgen -f -- "$current"); return ;;
@@ -199,7 +202,7 @@ _springtower_viewer() {
         --poses) mapfile -t COMPREPLY < <(compgen -f -- "$current"); return ;;
         --out) mapfile -t COMPREPLY < <(compgen -d -- "$current"); return ;;
       esac
-  mapfile -t COMPREPLY < <(compgen -W "-h --help --version --scene --players --heights-sigma --mass-sigma --start-gap --seed --method --tolerance --friction --no-sleep --threads --grip --overlay --arrows --paused --no-panels --size --camera --headless --frames --png-every --png --video --record --replay --report --poses --out" -- "$current")
+  mapfile -t COMPREPLY < <(compgen -W "-h --help --version --scene --players --heights-sigma --mass-sigma --start-gap --seed --method --tolerance --friction --no-sleep --threads --grip --overlay --arrows --paused --mode --scale --no-panels --size --camera --headless --frames --png-every --png --mouse --video --record --replay --report --poses --out" -- "$current")
 }
 
 complete -F _springtower springtower

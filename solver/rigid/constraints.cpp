@@ -88,9 +88,7 @@ SPRINGTOWER_INLINE void placePoint(const LanePlace& upper, const LanePlace& lowe
   dot(p.normal, apart, p.gap);
   p.gap += own.rest;
   p.give = own.compliance / springs.step_s;
-  Lanes lasting;
-  smallerOf(p.push, own.lasting, lasting);
-  smallerOf(p.give * lasting, springs.tolerance_m + Lanes{}, p.deepest);
+  smallerOf(p.give * own.lasting, springs.tolerance_m + Lanes{}, p.deepest);
   p.armUpper = {0.5 * (onUpper.x + onLower.x), 0.5 * (onUpper.y + onLower.y), 0.5 * (onUpper.z + onLower.z)};
   p.armLower = p.armUpper;
   subtract(upper.centre, p.armUpper);

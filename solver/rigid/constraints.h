@@ -14,9 +14,9 @@ SPRINGTOWER_INLINE void fromLanes(const Lanes& lanes, Vec3& v) {
 }
 
 /// Arms, normals, gaps and effective masses of all packed points at the present poses and orientations of the island's bodies.
-/// Their places must have been read. Contacts are as soft as their springs in a substep of `step_s`, but by no push of a point do
-/// blocks get deeper into one another than by those with which the frame and the substep began: what is more is an impact. Nor
-/// deeper than `tolerance_m`. `rounding_m`: of gaps.
+/// Their places must have been read. Contacts are as soft as their springs in a substep of `step_s`, but blocks get no deeper
+/// into one another by a push than by the force with which the frame began (what is more is an impact), nor than `tolerance_m`.
+/// `rounding_m`: of gaps.
 void placeConstraints(const RigidIsland& island, double step_s, double tolerance_m, double rounding_m, PackedPoints& packed);
 
 /// Gaps of all points after the bodies have moved by `moved` and `turned`, to first order.

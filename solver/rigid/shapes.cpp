@@ -51,6 +51,11 @@ void addLoads(const IslandStep& step, RigidIsland& island) {
   }
 }
 
+const StaticResponse& responseOf(const Engine& engine, std::int32_t block) {
+  const std::vector<std::int32_t>& start = engine.responseStart;
+  return engine.staticResponse[static_cast<std::size_t>(std::upper_bound(start.begin(), start.end(), block) - start.begin()) - 1];
+}
+
 }  // namespace
 
 void setMoments(Inertia inertia, double mass_kg, RigidBody& body) {
@@ -67,12 +72,15 @@ void setMoments(Inertia inertia, double mass_kg, RigidBody& body) {
 void prepareShapes(Simulation& simulation) {
   const BlockModel& model = simulation.model;
   const std::vector<double>& edge_n_m = simulation.stiffness.edge_n_m;
-  std::vector<StaticResponse>& response = simulation.engine->staticResponse;
-  response.clear();
+  Engine& engine = *simulation.engine;
+  engine.staticResponse.clear();
+  engine.responseStart.clear();
   for (std::size_t b = 0; b < model.blockCount(); ++b) {
     const bool equal = b > 0 && model.dimensions[b] == model.dimensions[b - 1] && model.mass[b] == model.mass[b - 1] &&
                        edge_n_m[b] == edge_n_m[b - 1];
-    response.push_back(equal ? response.back() : staticResponse(model, simulation.scene.settings.inertia, b));
+    if (equal) continue;
+    engine.staticResponse.push_back(staticResponse(model, simulation.scene.settings.inertia, b));
+    engine.responseStart.push_back(static_cast<std::int32_t>(b));
   }
 }
 
@@ -85,7 +93,7 @@ void relaxShapes(const IslandStep& step, double time_s, RigidIsland& island) {
   for (std::size_t i = 0; i < step.blocks.size(); ++i) {
     const auto b = static_cast<std::size_t>(step.blocks[i]);
     RigidBody& body = island.bodies[i];
-    staticShape(step.engine.staticResponse[b], simulation.model.dimensions[b], body.load, shape);
+    staticShape(responseOf(step.engine, step.blocks[i]), simulation.model.dimensions[b], body.load, shape);
     const Vec3 momentum = body.moment * (body.axes.transpose() * body.spin);
     for (std::size_t a = 0; a < 3; ++a) {
       for (std::size_t c = 0; c < kCorners; ++c) body.corner[a][c] += share * (shape[a][c] - body.corner[a][c]);

@@ -153,7 +153,8 @@ MemoryUse memoryUse(const Simulation& simulation) {
   use.contacts = use.pairs + use.touching;
   use.working = use.touchingSteps + ofMemo(engine.memo) + ofScratch(engine.scratch) + ofFrameStart(engine.checkpoint) +
                 ofReport(engine.report) +
-                sumOf(engine.springRadius, engine.roundingFactor, engine.staticResponse, engine.sleep.windows, engine.sleep.checkedLoads) +
+                sumOf(engine.springRadius, engine.roundingFactor, engine.staticResponse, engine.responseStart,
+                      engine.sleep.windows, engine.sleep.checkedLoads) +
                 sumOf(simulation.stiffness.stack_n_m, simulation.stiffness.floor_n_m, simulation.stiffness.edge_n_m);
   return use;
 }

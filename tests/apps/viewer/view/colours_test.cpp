@@ -14,8 +14,8 @@ double linear(double value) {
   return value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4);
 }
 
-// What eyes without one of the three cones see of linear red, green and blue: none missing, then red, green, blue ones (Machado,
-// Oliveira & Fernandes 2009, severity 1).
+// What eyes without one of the three cones see of linear red, green and blue: none missing, then red, green, blue ones (Machado
+// et al. 2009, severity 1).
 std::vector<Eigen::Matrix3d> eyes() {
   std::vector<Eigen::Matrix3d> all(4, Eigen::Matrix3d::Identity());
   all[1] << 0.152286, 1.052583, -0.204868, 0.114503, 0.786281, 0.099216, -0.003882, -0.048116, 1.051998;
