@@ -12,7 +12,7 @@ namespace {
 using namespace block_modes;
 
 // Index of an edge's component in the stiffness matrix of the affine part.
-std::size_t at(std::size_t edge, std::size_t component) {
+std::size_t edgeAt(std::size_t edge, std::size_t component) {
   return 3 * (1 + edge) + component;
 }
 
@@ -28,7 +28,7 @@ StaticResponse staticResponse(const BlockModel& model, Inertia inertia, std::siz
     response.inertia[a] = springs.mass[1 + a] * size[i] * size[i];
     for (std::size_t b = 0; b < 3; ++b) {
       const auto j = static_cast<Eigen::Index>(b);
-      stiffness(i, j) = size[i] * size[j] * springs.affine[at(a, a)][at(b, b)];
+      stiffness(i, j) = size[i] * size[j] * springs.affine[edgeAt(a, a)][edgeAt(b, b)];
     }
   }
   const Eigen::Matrix3d stretch = stiffness.inverse();
@@ -36,7 +36,7 @@ StaticResponse staticResponse(const BlockModel& model, Inertia inertia, std::siz
   for (std::size_t c = 0; c < 3; ++c) {
     const Others& o = kOthers[c];
     const double edge = size[static_cast<Eigen::Index>(o.c)];
-    response.shear[c] = 1.0 / (edge * edge * springs.affine[at(o.c, o.b)][at(o.c, o.b)]);
+    response.shear[c] = 1.0 / (edge * edge * springs.affine[edgeAt(o.c, o.b)][edgeAt(o.c, o.b)]);
     response.warp[c] = -springs.shear[c][1] * edge;
   }
   return response;

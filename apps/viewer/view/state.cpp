@@ -113,14 +113,10 @@ void advance(Viewer& viewer, double elapsed_s) {
   const double frame_s = viewer.session.scene.settings.frame_s;
   int frames = 0;
   const bool waits = followFall(viewer, elapsed_s);
-  if (waits) {
+  if (waits || viewer.paused || viewer.fresh) {
     viewer.pacer.waiting_s = 0.0;
-  } else if (viewer.paused) {
-    frames = viewer.once ? 1 : 0;
-    viewer.once = false;
-    viewer.pacer.waiting_s = 0.0;
-  } else if (std::exchange(viewer.fresh, false)) {
-    viewer.pacer.waiting_s = 0.0;
+    if (!waits && viewer.paused) frames = std::exchange(viewer.once, false) ? 1 : 0;
+    if (!waits && !viewer.paused) viewer.fresh = false;
   } else {
     frames = viewer.pacer.due(elapsed_s, frame_s, viewer.session.frame_ms);
   }
