@@ -25,9 +25,9 @@ Rect besidePlace(const Extent& window, const Layout& others, const Extent& size,
   const std::array<float, 2> lines = {at.height + away, at.height - away - size.height};
   for (const float x : columns) {
     for (const float y : lines) {
-      const float mostX = std::max(margin, window.width - margin - size.width);
-      const float mostY = std::max(margin, window.height - margin - size.height);
-      const Rect rect = {std::clamp(x, margin, mostX), std::clamp(y, margin, mostY), size.width, size.height};
+      const float upperX = std::max(margin, window.width - margin - size.width);
+      const float upperY = std::max(margin, window.height - margin - size.height);
+      const Rect rect = {std::clamp(x, margin, upperX), std::clamp(y, margin, upperY), size.width, size.height};
       bool free = isInside(rect, window, margin);
       for (const Rect* other : {&others.notices, &others.bar, &others.legend, &others.lab, &others.card})
         free = free && !overlap(rect, *other);

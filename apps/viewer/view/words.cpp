@@ -30,11 +30,11 @@ std::optional<Words> wordsAtHand(const Viewer& viewer) {
 
 std::optional<Words> wordsAboutBlock(const Viewer& viewer) {
   const Session& session = viewer.session;
-  const bool isPlay = viewer.mode == Mode::play;
-  if (!viewer.controls.hover || (viewer.overlay != Overlay::hints && !isPlay)) return {};
+  const bool playing = viewer.mode == Mode::play;
+  if (!viewer.controls.hover || (viewer.overlay != Overlay::hints && !playing)) return {};
   const BlockId block = viewer.controls.hover->block;
   Words words{{}, {viewer.controls.x, viewer.controls.y}, {}};
-  if (isPlay && session.game.phase != Phase::over && !mayTake(session.game, block)) {
+  if (playing && session.game.phase != Phase::over && !mayTake(session.game, block)) {
     words.lines.emplace_back(session.game.phase == Phase::moving
                                  ? fmt::format("Lay down block {} first.", index(session.game.block))
                                  : "Not this one: only from below a full row.");
@@ -47,7 +47,7 @@ std::optional<Words> wordsAboutBlock(const Viewer& viewer) {
   const std::size_t end = std::min(line.find(". "), line.size() - 1) + 1;  // a sentence a line
   words.lines.push_back(line.substr(0, end));
   if (end < line.size()) words.lines.push_back(line.substr(end + 1));
-  if (isPlay && !viewer.heldOnce) words.lines.emplace_back("Press and drag: it comes out.");
+  if (playing && !viewer.heldOnce) words.lines.emplace_back("Press and drag: it comes out.");
   return words;
 }
 
