@@ -18,8 +18,8 @@ double restCorner(const Simulation& simulation, std::size_t block, std::size_t a
   return 0.5 * cornerSide(corner, axis) * simulation.model.dimensions[block][static_cast<Eigen::Index>(axis)];
 }
 
-// Implicit steps find the equilibrium of a tower. What the springs of every block give way by there, under the forces of its
-// contacts, is the static shape: it explains the strain to 2 %, the rest is of second order and what the contacts' residual is.
+// Implicit steps find the equilibrium of a tower. The strain of every block there, under the forces of its contacts, is that of
+// the static shape to 2 %: the rest is of second order, or the residual of the contacts' forces.
 TEST(StaticShape, IsThatOfABlockInEquilibrium) {
   Simulation simulation(sceneNamed("uneven:6"));
   prepare(simulation);
