@@ -54,10 +54,8 @@ double foreseenSpectralRadius(const Simulation& simulation, const BlockStiffness
   double lightest = 1e300;
   for (std::size_t b = 0; b < model.blockCount(); ++b) {
     if (model.isFixed(b)) continue;
-    const bool asBefore = b > 0 && model.dimensions[b] == model.dimensions[b - 1] && model.mass[b] == model.mass[b - 1] &&
-                          stiffness.edge_n_m[b] == stiffness.edge_n_m[b - 1];
     lightest = std::min(lightest, model.mass[b]);
-    if (asBefore) continue;
+    if (equalsPrevious(model, stiffness, b)) continue;
     setSprings(model, b, stiffness.edge_n_m[b], simulation.lengths.blockHeight_m, 0.0);
     springs = std::max(springs, blockSpectralRadius(model, settings.inertia, b));
   }
@@ -153,10 +151,8 @@ void sizeEngine(Simulation& simulation) {
   if (!isRigid(scene.settings.method)) e.scratch.newContactCount.assign(count, 0);
   placeFixedBlocks(simulation);
   for (std::size_t b = 0; b < count; ++b) {
-    const bool asBefore = b > 0 && scene.blocks[b].dimensions == scene.blocks[b - 1].dimensions &&
-                          model.mass[b] == model.mass[b - 1] &&
-                          simulation.stiffness.edge_n_m[b] == simulation.stiffness.edge_n_m[b - 1];
-    e.springRadius[b] = asBefore ? e.springRadius[b - 1] : blockSpectralRadius(model, scene.settings.inertia, b);
+    const bool equal = equalsPrevious(model, simulation.stiffness, b);
+    e.springRadius[b] = equal ? e.springRadius[b - 1] : blockSpectralRadius(model, scene.settings.inertia, b);
     e.sleep.windows[b].centre = centre(simulation.state.position, b);
   }
 }

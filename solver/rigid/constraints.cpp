@@ -87,8 +87,8 @@ SPRINGTOWER_INLINE void placePoint(const LanePlace& upper, const LanePlace& lowe
   subtract(onLower, apart);
   dot(p.normal, apart, p.gap);
   p.gap += own.rest;
-  p.give = own.compliance / springs.step_s;
-  smallerOf(p.give * own.lasting, springs.tolerance_m + Lanes{}, p.deepest);
+  p.softness = own.compliance / springs.step_s;
+  smallerOf(p.softness * own.lasting, springs.tolerance_m + Lanes{}, p.deepest);
   p.armUpper = {0.5 * (onUpper.x + onLower.x), 0.5 * (onUpper.y + onLower.y), 0.5 * (onUpper.z + onLower.z)};
   p.armLower = p.armUpper;
   subtract(upper.centre, p.armUpper);

@@ -131,7 +131,7 @@ void clearRow(PackedPoint& point, PackedPlace& place) {
   place.rest = zero + std::numeric_limits<double>::max();
   setZero(point.friction);
   setZero(point.towardsCentre);
-  point.push = point.normalMass = point.impact = point.before = point.give = point.deepest = zero;
+  point.push = point.normalMass = point.impact = point.before = point.softness = point.deepest = zero;
   point.idle = zero == zero;
   point.sliding = zero != zero;
 }

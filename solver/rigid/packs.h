@@ -112,7 +112,7 @@ SPRINGTOWER_INLINE void relativeAt(const PackMotion& motion, const PackedPoint& 
 /// How far the blocks are apart, m, beyond what their push may compress the springs; negative where they are to be pushed apart.
 SPRINGTOWER_INLINE void slackOf(const PackedPoint& p, Lanes& slack) {
   Lanes compressed;
-  smallerOf(p.give * p.push, p.deepest, compressed);
+  smallerOf(p.softness * p.push, p.deepest, compressed);
   slack = p.gap + compressed;
 }
 

@@ -27,14 +27,14 @@ SPRINGTOWER_INLINE void aimOf(const Pass& pass, const PackedPoint& p, Aim& aim) 
   const LaneMask apart = slack > -pass.rounding;
   const Lanes approach = -open / pass.step_s;
   // A greater push compresses the springs farther, which takes a part of what it is for.
-  const Lanes give = p.give * p.push < p.deepest ? p.give * p.normalMass : kNone;
-  const Lanes stiff = 1.0 / (1.0 + give / pass.step_s);
+  const Lanes softness = p.softness * p.push < p.deepest ? p.softness * p.normalMass : kNone;
+  const Lanes stiff = 1.0 / (1.0 + softness / pass.step_s);
   if (pass.push) {
     const Lanes most = kNone + pass.most;
     Lanes pushed;
     smallerOf(-pass.soft.rate * slack, most, pushed);
     aim.least = apart ? approach : pushed;
-    aim.share = apart ? stiff : pass.soft.mass / (1.0 + pass.soft.rate * give);
+    aim.share = apart ? stiff : pass.soft.mass / (1.0 + pass.soft.rate * softness);
     aim.released = apart ? kNone : kNone + pass.soft.impulse;
     return;
   }

@@ -4,6 +4,7 @@
 #include "solver/block/static_shape.h"
 #include "solver/contact/query.h"
 #include "solver/contact/rigid_contacts.h"
+#include "solver/world/stiffness.h"
 
 #include <Eigen/LU>
 #include <algorithm>
@@ -71,14 +72,11 @@ void setMoments(Inertia inertia, double mass_kg, RigidBody& body) {
 
 void prepareShapes(Simulation& simulation) {
   const BlockModel& model = simulation.model;
-  const std::vector<double>& edge_n_m = simulation.stiffness.edge_n_m;
   Engine& engine = *simulation.engine;
   engine.staticResponse.clear();
   engine.responseStart.clear();
   for (std::size_t b = 0; b < model.blockCount(); ++b) {
-    const bool equal = b > 0 && model.dimensions[b] == model.dimensions[b - 1] && model.mass[b] == model.mass[b - 1] &&
-                       edge_n_m[b] == edge_n_m[b - 1];
-    if (equal) continue;
+    if (equalsPrevious(model, simulation.stiffness, b)) continue;
     engine.staticResponse.push_back(staticResponse(model, simulation.scene.settings.inertia, b));
     engine.responseStart.push_back(static_cast<std::int32_t>(b));
   }

@@ -77,7 +77,7 @@ struct alignas(32) PackedPoint {
   LaneMask sliding;      ///< whether friction is at its bound
   Lanes impact;          ///< m/s, speed at which the blocks meet if they do in the substep; 0: too slow to rebound
   Lanes before;          ///< N s, push with which the substep began
-  Lanes give;            ///< m/(N s), how much deeper the springs overlap by a push; 0 in the rigid methods
+  Lanes softness;        ///< m/(N s), compliance of its springs over the substep; 0 in the rigid methods
   Lanes deepest;  ///< m, how deep they are at most by it: what is more than the force with which the frame began is an impact
   LaneVector towardsCentre;  ///< m, from the point to where its friction acts; read where PackedPair::slips is set
 };

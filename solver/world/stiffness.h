@@ -1,14 +1,24 @@
 #pragma once
 
 #include "core/scene/scene.h"
+#include "core/state.h"
 #include "solver/law/block_stiffness.h"
 #include "solver/world/load_estimate.h"
+
+#include <cstddef>
 
 namespace springtower {
 
 /// Stiffness that meets a tolerance (m) for these loads. Doubling the tolerance halves it, but never below the one that prevents
 /// buckling.
 BlockStiffness stiffnessForTolerance(const LoadEstimate& loads, double tolerance_m);
+
+/// Whether a block equals the one before it in dimensions, mass and stiffness of its springs, so that what follows from these
+/// need not be computed again.
+inline bool equalsPrevious(const BlockModel& model, const BlockStiffness& stiffness, std::size_t block) {
+  return block > 0 && model.dimensions[block] == model.dimensions[block - 1] && model.mass[block] == model.mass[block - 1] &&
+         stiffness.edge_n_m[block] == stiffness.edge_n_m[block - 1];
+}
 
 /// Stability with stiffness-proportional dashpots, C = damping time K: largest stable step (s) for an eigenvalue (1/s2) of M^-1
 /// K, and largest stable eigenvalue for a step. Semi-implicit Euler requires the largest eigenvalue of M^-1 (dt^2 K + 2 dt C)
