@@ -47,7 +47,7 @@ struct ImpulseRow {
   FourVectors friction;    ///< N, mean over the step, on upper
   FourValues normalForce;  ///< N, mean over the step
   FourValues restDepth;    ///< m, overlap without force
-  FourValues unused;       ///< 0; in the place of the springs' stiffening
+  FourValues lasting;      ///< N, normal force, its mean over about a frame
   FourValues untouched;    ///< 0: no springs store energy
   FourValues slipping;     ///< non-zero where friction is at its bound
 };

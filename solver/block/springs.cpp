@@ -125,15 +125,25 @@ SPRINGTOWER_INLINE void blockSprings(const BlockModel& model, const MotionState&
   }
 }
 
-// Calls `visit(group, length)` for each spring of a block.
-template <class Visit>
-void forEachSpring(const ParticleArray& position, std::size_t block, Visit visit) {
+// Calls `visit(group, length)` for each spring of a block whose corners are at `place(corner)`.
+template <class Place, class Visit>
+void forEachSpring(Place place, Visit visit) {
   for (std::size_t group = 1; group <= kSpringGroups; ++group) {
     for (std::size_t corner = 0; corner < kCorners; ++corner) {
       const std::size_t partner = corner ^ group;
-      if (partner > corner) visit(group - 1, (position.at(block, partner) - position.at(block, corner)).norm());
+      if (partner > corner) visit(group - 1, (place(partner) - place(corner)).norm());
     }
   }
+}
+
+template <class Place>
+double energyOfSprings(const BlockModel& model, Place place, std::size_t block) {
+  double energy = 0.0;
+  forEachSpring(place, [&](std::size_t group, double length) {
+    const double change = length - model.restLength[group][block];
+    energy += 0.5 * model.springStiffness[group][block] * change * change;
+  });
+  return energy;
 }
 
 }  // namespace
@@ -148,17 +158,19 @@ void springForces(const BlockModel& model, const MotionState& state, std::span<c
 }
 
 double springEnergy(const BlockModel& model, const ParticleArray& position, std::size_t block) {
-  double energy = 0.0;
-  forEachSpring(position, block, [&](std::size_t group, double length) {
-    const double change = length - model.restLength[group][block];
-    energy += 0.5 * model.springStiffness[group][block] * change * change;
-  });
-  return energy;
+  return energyOfSprings(
+      model, [&](std::size_t c) { return position.at(block, c); }, block);
+}
+
+double springEnergy(const BlockModel& model, const OwnCorners& corner, std::size_t block) {
+  return energyOfSprings(
+      model, [&](std::size_t c) { return Vec3(corner[0][c], corner[1][c], corner[2][c]); }, block);
 }
 
 double springStrain(const BlockModel& model, const ParticleArray& position, std::size_t block) {
   double strain = 0.0;
-  forEachSpring(position, block, [&](std::size_t group, double length) {
+  const auto place = [&](std::size_t c) { return position.at(block, c); };
+  forEachSpring(place, [&](std::size_t group, double length) {
     strain = std::max(strain, std::abs(length / model.restLength[group][block] - 1.0));
   });
   return strain;

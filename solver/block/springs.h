@@ -2,6 +2,7 @@
 
 #include "core/state.h"
 #include "solver/block/affine.h"
+#include "solver/block/static_shape.h"
 
 #include <cstdint>
 #include <span>
@@ -16,6 +17,9 @@ void springForces(const BlockModel& model, const MotionState& state, std::span<c
 
 /// Energy stored in the springs of one block, J.
 double springEnergy(const BlockModel& model, const ParticleArray& position, std::size_t block);
+
+/// The same with its corners at these places in any axes, m.
+double springEnergy(const BlockModel& model, const OwnCorners& corner, std::size_t block);
 
 /// Largest relative change of length of any spring of one block.
 double springStrain(const BlockModel& model, const ParticleArray& position, std::size_t block);

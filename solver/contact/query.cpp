@@ -51,9 +51,7 @@ double energyOf(const Simulation& simulation, const ManifoldNow& now, const Cont
     const PenaltyRow& row = m.penalty(i);
     const double elastic = now.points.depth[i] - row.restDepth[lane];
     if (m.kind != PointKind::penalty) {
-      const double pressed = m.kind == PointKind::impulse ? springStrain(simulation, m, i, now.points.depth[i]) : 0.0;
-      const double stuck = pressed > 0.0 ? vectorAt(m.impulse(i).friction, i).squaredNorm() : 0.0;
-      energy += 0.5 * (stiffness * pressed * pressed + stuck / (law.tangentialRatio * stiffness));
+      if (m.kind == PointKind::impulse) energy += strainEnergy(simulation, m, i, now.points.depth[i]);
       continue;
     }
     if (row.touching[lane] == 0.0 || elastic <= 0.0) continue;

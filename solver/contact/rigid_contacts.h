@@ -31,18 +31,31 @@ void storeForces(IslandStep& step, const RigidIsland& island);
 /// The forces that `storeForces` stored in a manifold, for reports: normal and friction of each point.
 void readForces(const ContactView& manifold, PointForces& points);
 
-/// Depth to which the springs of a point would be compressed by the normal force of the last rigid step, m, in an island in rigid
-/// mode of a penalty method. At most the tolerance; 0 in the rigid methods, which have no springs.
+/// Depth to which the springs of a point would be compressed by what lasts of its normal force, m, in an island in rigid mode of
+/// a penalty method. At most the tolerance; 0 in the rigid methods, which have no springs.
 inline double springDepthOfForce(const Simulation& simulation, const ContactView& manifold, std::size_t point) {
   if (isRigid(simulation.scene.settings.method)) return 0.0;
   const double stiffness = pairStiffness(simulation.stiffness, manifold.upper, manifold.lower);
-  return std::min(manifold.impulse(point).normalForce[laneOf(point)] / stiffness, simulation.tolerance_m);
+  const ImpulseRow& row = manifold.impulse(point);
+  return std::min(std::min(row.normalForce[laneOf(point)], row.lasting[laneOf(point)]) / stiffness, simulation.tolerance_m);
 }
 
 /// Depth to which they are compressed at an overlap of `depth_m`: no deeper than from where they are without force.
 inline double springStrain(const Simulation& simulation, const ContactView& manifold, std::size_t point, double depth_m) {
   const double room = depth_m - manifold.impulse(point).restDepth[laneOf(point)];
   return std::max(0.0, std::min(springDepthOfForce(simulation, manifold, point), room));
+}
+
+/// Energy stored in a point's springs at an overlap of `depth_m`, J, in an island in rigid mode of a penalty method. Springs that
+/// are compressed less than the force would, hold as much less friction.
+inline double strainEnergy(const Simulation& simulation, const ContactView& manifold, std::size_t point, double depth_m) {
+  const double pressed = springStrain(simulation, manifold, point, depth_m);
+  if (pressed == 0.0) return 0.0;
+  const ImpulseRow& row = manifold.impulse(point);
+  const double stiffness = pairStiffness(simulation.stiffness, manifold.upper, manifold.lower);
+  const double held = stiffness * pressed / row.normalForce[laneOf(point)];
+  const double stuck = held * held * vectorAt(row.friction, point).squaredNorm();
+  return 0.5 * (stiffness * pressed * pressed + stuck / (simulation.scene.settings.tangentialRatio * stiffness));
 }
 
 /// Coefficient of restitution of two blocks, the second -1 for the floor.

@@ -88,7 +88,7 @@ void penaltyToImpulse(const IslandStep& step, std::int32_t contact, const Contac
     for (std::size_t k = 0; k < 3; ++k) row.impulse.friction[k][lane] = points.friction[i][k];
     // As deep as it is, whatever the force is now: to push it out because that has become less would be energy out of nothing.
     row.impulse.restDepth[lane] = std::max(restDepth, depth - springDepthOfForce(step.simulation, manifold, i));
-    row.impulse.unused[lane] = 0.0;
+    row.impulse.lasting[lane] = points.normal[i];
     row.impulse.untouched[lane] = 0.0;
   }
   step.engine.contacts.shape(contact).kind = PointKind::impulse;
@@ -105,7 +105,8 @@ void impulseToPenalty(const IslandStep& step, std::int32_t contact, const Contac
     PointRow& row = *rows[rowOf(i)];
     const bool touches = points.depth[i] > 0.0;
     const double elastic = touches ? springStrain(step.simulation, manifold, i, points.depth[i]) : 0.0;
-    const double share = elastic > 0.0 ? -elastic * stiffness / (row.impulse.normalForce[lane] * tangential) : 0.0;
+    const double force = row.impulse.normalForce[lane];
+    const double share = force > 0.0 ? -elastic * stiffness / (force * tangential) : 0.0;
     const Vec3 friction = vectorAt(row.impulse.friction, i);
     row.penalty.touching[lane] = elastic > 0.0 ? 1.0 : (touches ? kTouchingWithoutForce : 0.0);
     row.penalty.stiffening[lane] = 1.0;

@@ -68,14 +68,19 @@ SPRINGTOWER_INLINE void placeNormal(const LanePlace& upper, const LanePlace& low
   normal.z = own.turnsUpper ? byUpper.z : (own.turnsLower ? byLower.z : own.normal.z);
 }
 
-// How soft contacts are in a substep.
-struct Springs {
-  double step_s;
-  double tolerance_m;
-  double rounding_m;
-};
+// The mean of a point's push over about a frame, without impacts, which push in one substep alone; and the push that blocks which
+// overlap have already compressed the springs for.
+SPRINGTOWER_INLINE void followPush(const PackedPoint& p, double share, Lanes& lasting) {
+  const Lanes zero = {0.0, 0.0, 0.0, 0.0};
+  Lanes acts, held;
+  smallerOf(p.push, p.before, acts);
+  lasting += share * (acts - lasting);
+  smallerOf(p.push, -p.gap / p.softness, held);
+  held = p.softness > zero ? held : zero;
+  largerOf(lasting, held, lasting);
+}
 
-SPRINGTOWER_INLINE void placePoint(const LanePlace& upper, const LanePlace& lower, const PackedPlace& own, const Springs& springs,
+SPRINGTOWER_INLINE void placePoint(const LanePlace& upper, const LanePlace& lower, const Springs& springs, PackedPlace& own,
                                    PackedPoint& p) {
   LaneVector onUpper, onLower;
   turned(upper, own.upper, onUpper);
@@ -88,6 +93,7 @@ SPRINGTOWER_INLINE void placePoint(const LanePlace& upper, const LanePlace& lowe
   dot(p.normal, apart, p.gap);
   p.gap += own.rest;
   p.softness = own.compliance / springs.step_s;
+  followPush(p, springs.share, own.lasting);
   smallerOf(p.softness * own.lasting, springs.tolerance_m + Lanes{}, p.deepest);
   p.armUpper = {0.5 * (onUpper.x + onLower.x), 0.5 * (onUpper.y + onLower.y), 0.5 * (onUpper.z + onLower.z)};
   p.armLower = p.armUpper;
@@ -148,7 +154,7 @@ void placePacks(const BodyPlace* places, const Springs& springs, PackedPoints& p
     pair.inertiaUpper = upper.inertia;
     pair.inertiaLower = lower.inertia;
     for (std::int32_t row = pair.first; row < pair.first + pair.rows; ++row)
-      placePoint(upper, lower, packed.places[static_cast<std::size_t>(row)], springs,
+      placePoint(upper, lower, springs, packed.places[static_cast<std::size_t>(row)],
                  packed.points[static_cast<std::size_t>(row)]);
     openBeside(pair, springs, packed);
   }
@@ -172,8 +178,7 @@ void moveGapsOf(const BodyMotion* moved, PackedPoints& packed, std::size_t first
 
 }  // namespace
 
-void placeConstraints(const RigidIsland& island, double step_s, double tolerance_m, double rounding_m, PackedPoints& packed) {
-  const Springs springs{step_s, tolerance_m, rounding_m};
+void placeConstraints(const RigidIsland& island, const Springs& springs, PackedPoints& packed) {
   overPacks(packed, [&](std::size_t first, std::size_t last) { placePacks(island.places.data(), springs, packed, first, last); });
 }
 

@@ -13,11 +13,19 @@ SPRINGTOWER_INLINE void fromLanes(const Lanes& lanes, Vec3& v) {
   for (int k = 0; k < 3; ++k) v[k] = lanes[k];
 }
 
+/// How soft contacts are in a substep.
+struct Springs {
+  double step_s;       ///< its length
+  double tolerance_m;  ///< how deep a push may press blocks into one another
+  double rounding_m;   ///< of gaps
+  double share;        ///< of its mean over about a frame by which a push counts in a substep
+};
+
 /// Arms, normals, gaps and effective masses of all packed points at the present poses and orientations of the island's bodies.
-/// Their places must have been read. Contacts are as soft as their springs in a substep of `step_s`, but blocks get no deeper
-/// into one another by a push than by the force with which the frame began (what is more is an impact), nor than `tolerance_m`.
-/// `rounding_m`: of gaps.
-void placeConstraints(const RigidIsland& island, double step_s, double tolerance_m, double rounding_m, PackedPoints& packed);
+/// Their places must have been read, and pushes are those of the substep before. Contacts are as soft as their springs, but
+/// blocks get no deeper into one another by a push than by its mean over about a frame (what is more is an impact), nor than the
+/// tolerance.
+void placeConstraints(const RigidIsland& island, const Springs& springs, PackedPoints& packed);
 
 /// Gaps of all points after the bodies have moved by `moved` and `turned`, to first order.
 void moveGaps(RigidIsland& island);

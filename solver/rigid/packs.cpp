@@ -147,6 +147,7 @@ void fillLane(const ContactConstraint& from, double compliance, int lane, Packed
   for (std::size_t k = 0; k < kSeparatingAxes; ++k) place.axis[k][lane] = from.axis == k ? -1 : 0;
   setLane(point.friction, lane, from.friction);
   point.push[lane] = from.push;
+  point.before[lane] = from.before;
   place.compliance[lane] = compliance;
   place.lasting[lane] = from.lasting;
   point.normalMass[lane] = 1.0;
@@ -207,6 +208,8 @@ void unpackGroup(ActingPoints& list, const PointGroup& group) {
     ContactConstraint& to = list.points[packedRow(group.first, i)];
     getLane(from.friction, group.lane, to.friction);
     to.push = from.push[group.lane];
+    to.before = from.before[group.lane];
+    to.lasting = list.packed.places[packedRow(pair.first, i)].lasting[group.lane];
     to.idle = from.idle[group.lane] != 0;
     to.sliding = from.sliding[group.lane] != 0;
   }

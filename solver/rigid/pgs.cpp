@@ -230,8 +230,9 @@ void stepImpulses(IslandStep& step, RigidIsland& island) {
   }
   island.energyBefore_j = kineticEnergy(island.bodies);
   readBodies(island);
-  for (PackedPoints* packed : packsOf(island))
-    placeConstraints(island, step.drift_s, step.simulation.tolerance_m, step.simulation.lengths.contactError_m, *packed);
+  const Springs springs{step.drift_s, step.simulation.tolerance_m, step.simulation.lengths.contactError_m,
+                        step.drift_s / (step.drift_s + scene.settings.frame_s)};
+  for (PackedPoints* packed : packsOf(island)) placeConstraints(island, springs, *packed);
   setImpacts(step, island);
   choosePatchFriction(step, island);
   applyForces(step);

@@ -52,8 +52,7 @@ void driveBodies(IslandStep& step, double at_s, double step_s) {
   }
 }
 
-// Poses at the start of a time (s).
-void readPoses(IslandStep& step, double time_s) {
+void readPoses(IslandStep& step) {
   const Simulation& simulation = step.simulation;
   const bool undeformed = isRigid(simulation.scene.settings.method);
   RigidIsland& island = rigidIslandOf(step);
@@ -78,7 +77,6 @@ void readPoses(IslandStep& step, double time_s) {
     setMoments(simulation.scene.settings.inertia, simulation.model.mass[b], body);
     step.engine.scratch.nodeOf[b] = static_cast<std::int32_t>(i);
   }
-  if (!undeformed) relaxShapes(step, time_s, island);
   readDriven(step, island);
 }
 
@@ -336,6 +334,13 @@ bool runSteps(IslandStep& step, int steps, int substeps, double begin_s) {
   return inside;
 }
 
+// Blocks deform as the frame ends. `contacts_j`: energy of the contacts' springs as it began.
+void takeShapes(IslandStep& step, double time_s, double contacts_j, RigidIsland& island) {
+  relaxShapes(step, time_s, contacts_j - strainEnergyOfContacts(step) - island.gained_j, island);
+  writePositions(island, step.blocks, step.simulation.state.position);
+  computeFrames(step.simulation.state.position, step.blocks, step.engine.memo.frames);
+}
+
 }  // namespace
 
 IslandOutcome runRigidSteps(IslandStep& step, int steps, double begin_s) {
@@ -350,7 +355,7 @@ IslandOutcome runRigidSteps(IslandStep& step, int steps, double begin_s) {
   outcome.substeps = steps;
   step.drift_s = (step.part.end_s - begin_s) / count;
   step.kick_s = step.advance_s = step.drift_s;
-  readPoses(step, step.part.end_s - begin_s);
+  readPoses(step);
   computeFrames(simulation.state.position, step.blocks, step.engine.memo.frames);
   step.usesActiveList = true;
   step.activeListSteps = 0;
@@ -360,8 +365,12 @@ IslandOutcome runRigidSteps(IslandStep& step, int steps, double begin_s) {
   island.stands = !isMostlyFallen(step);
   island.massRatio = massRatioOf(island);
   island.gained_j = 0.0;
+  const double contacts_j = isRigid(method) ? 0.0 : strainEnergyOfContacts(step);
   outcome.inside = runSteps(step, count, substeps, begin_s);
-  if (sequential && outcome.inside) storeInManifolds(step, island, step.drift_s / substeps);
+  if (sequential && outcome.inside) {
+    storeInManifolds(step, island, step.drift_s / substeps);
+    if (!isRigid(method)) takeShapes(step, step.part.end_s - begin_s, contacts_j, island);
+  }
   equaliseMemory(island);
   writeVelocities(step);
   for (const std::int32_t block : step.blocks) {

@@ -1,6 +1,7 @@
 #include "solver/rigid/shapes.h"
 
 #include "solver/block/inertia.h"
+#include "solver/block/springs.h"
 #include "solver/block/static_shape.h"
 #include "solver/contact/query.h"
 #include "solver/contact/rigid_contacts.h"
@@ -27,34 +28,65 @@ void addForce(const Vec3& place, const Vec3& force, RigidBody* body) {
   body->load += arm * own.transpose();
 }
 
-// The part of a point's forces that compresses its springs by no more than the tolerance.
-double lastingShare(const Simulation& simulation, const ContactView& manifold, double normalForce) {
-  const double most = simulation.tolerance_m * pairStiffness(simulation.stiffness, manifold.upper, manifold.lower);
-  return normalForce > most ? most / normalForce : 1.0;
+// The share of a point's forces by which its springs are compressed, at most by the tolerance.
+double lastingShare(const Simulation& simulation, const ContactView& manifold, std::size_t point, double normalForce) {
+  const double stiffness = pairStiffness(simulation.stiffness, manifold.upper, manifold.lower);
+  return stiffness * springDepthOfForce(simulation, manifold, point) / normalForce;
 }
 
-void addLoads(const IslandStep& step, RigidIsland& island) {
+// Calls `visit(manifold, points)` for each manifold of the island that stores impulses, with its forces now.
+template <class Visit>
+void forEachRigidContact(const IslandStep& step, Visit visit) {
   for (const std::int32_t pair : step.pairs) {
     const auto at = static_cast<std::size_t>(pair);
     if (!step.engine.pairs.touches(at)) continue;
     const ContactView manifold = contactOf(step.engine, at);
-    if (manifold.kind != PointKind::impulse) continue;
+    if (manifold.kind == PointKind::impulse) visit(manifold, forcesNow(step.simulation, manifold));
+  }
+}
+
+void addLoads(const IslandStep& step, RigidIsland& island) {
+  forEachRigidContact(step, [&](const ContactView& manifold, const PointForces& points) {
     RigidBody* upper = bodyOf(step, manifold.upper, island);
     RigidBody* lower = bodyOf(step, manifold.lower, island);
-    const PointForces points = forcesNow(step.simulation, manifold);
     for (std::size_t i = 0; i < static_cast<std::size_t>(manifold.count); ++i) {
       if (!(points.normal[i] > 0.0)) continue;
       const Vec3 whole = points.normal[i] * points.direction + vectorAt(manifold.impulse(i).friction, i);
-      const Vec3 force = lastingShare(step.simulation, manifold, points.normal[i]) * whole;
+      const Vec3 force = lastingShare(step.simulation, manifold, i, points.normal[i]) * whole;
       addForce(points.place[i], force, upper);
       addForce(points.lowerPlace[i], -force, lower);
     }
-  }
+  });
 }
 
 const StaticResponse& responseOf(const Engine& engine, std::int32_t block) {
   const std::vector<std::int32_t>& start = engine.responseStart;
   return engine.staticResponse[static_cast<std::size_t>(std::upper_bound(start.begin(), start.end(), block) - start.begin()) - 1];
+}
+
+// The corners of block `i` of the island with a share of what its loads change.
+void relaxed(const IslandStep& step, std::size_t i, const RigidBody& body, double share, OwnCorners& corner) {
+  const std::int32_t block = step.blocks[i];
+  staticShape(responseOf(step.engine, block), step.simulation.model.dimensions[static_cast<std::size_t>(block)], body.load,
+              corner);
+  for (std::size_t a = 0; a < 3; ++a) {
+    for (std::size_t c = 0; c < kCorners; ++c) corner[a][c] = body.corner[a][c] + share * (corner[a][c] - body.corner[a][c]);
+  }
+}
+
+// Energy that a share of that change stores in the springs, J. Energy is convex: a part of the share stores no more than that
+// part of it.
+double storedBy(const IslandStep& step, const RigidIsland& island, double share) {
+  const BlockModel& model = step.simulation.model;
+  double stored_j = 0.0;
+  OwnCorners corner;
+  for (std::size_t i = 0; i < step.blocks.size(); ++i) {
+    const auto b = static_cast<std::size_t>(step.blocks[i]);
+    const RigidBody& body = island.bodies[i];
+    relaxed(step, i, body, share, corner);
+    stored_j += springEnergy(model, corner, b) - springEnergy(model, body.corner, b);
+  }
+  return stored_j;
 }
 
 }  // namespace
@@ -82,20 +114,30 @@ void prepareShapes(Simulation& simulation) {
   }
 }
 
-void relaxShapes(const IslandStep& step, double time_s, RigidIsland& island) {
+double strainEnergyOfContacts(const IslandStep& step) {
+  double energy_j = 0.0;
+  forEachRigidContact(step, [&](const ContactView& manifold, const PointForces& points) {
+    for (std::size_t i = 0; i < static_cast<std::size_t>(manifold.count); ++i)
+      energy_j += strainEnergy(step.simulation, manifold, i, points.depth[i]);
+  });
+  return energy_j;
+}
+
+void relaxShapes(const IslandStep& step, double time_s, double lost_j, RigidIsland& island) {
   const Simulation& simulation = step.simulation;
-  const double share = time_s / (time_s + simulation.lengths.fallTime_s);
   for (RigidBody& body : island.bodies) body.load.setZero();
   addLoads(step, island);
-  OwnCorners shape;
+  const double whole = time_s / (time_s + simulation.lengths.fallTime_s);
+  const double stored_j = storedBy(step, island, whole);
+  const double paid_j = std::max(0.0, lost_j);
+  const double share = stored_j > paid_j ? whole * paid_j / stored_j : whole;
+  OwnCorners corner;
   for (std::size_t i = 0; i < step.blocks.size(); ++i) {
     const auto b = static_cast<std::size_t>(step.blocks[i]);
     RigidBody& body = island.bodies[i];
-    staticShape(responseOf(step.engine, step.blocks[i]), simulation.model.dimensions[b], body.load, shape);
+    relaxed(step, i, body, share, corner);
     const Vec3 momentum = body.moment * (body.axes.transpose() * body.spin);
-    for (std::size_t a = 0; a < 3; ++a) {
-      for (std::size_t c = 0; c < kCorners; ++c) body.corner[a][c] += share * (shape[a][c] - body.corner[a][c]);
-    }
+    body.corner = corner;
     setMoments(simulation.scene.settings.inertia, simulation.model.mass[b], body);
     body.spin = body.axes * (body.inverseMoment * momentum);
   }

@@ -11,11 +11,15 @@ void setMoments(Inertia inertia, double mass_kg, RigidBody& body);
 /// How the shapes of all blocks follow forces, from the stiffness of their springs.
 void prepareShapes(Simulation& simulation);
 
-/// As a frame begins: the blocks of an island of springs take on a share of the shape that they have under the forces of their
-/// contacts, so that implicit steps find them in equilibrium when they take over. The share is that of `time_s` in it and
-/// sqrt(h / g): forces change as fast as blocks fall past one another. Angular momentum is kept. Blocks do not deform farther
-/// than by a force that compresses the contact's springs by the tolerance: what is greater is an impact. Bodies have been read,
-/// in the order of step.blocks; impulses are in the manifolds.
-void relaxShapes(const IslandStep& step, double time_s, RigidIsland& island);
+/// Energy of an island's contacts in rigid mode of a penalty method, J: that of the springs that their forces compress.
+double strainEnergyOfContacts(const IslandStep& step);
+
+/// As a frame ends: the blocks of an island of springs take on a share of the shape that they have under the forces of their
+/// contacts, so that implicit steps find them in equilibrium when they take over. The share is that of `time_s`, the frame's
+/// length, in it and sqrt(h / g): forces change as fast as blocks fall past one another. The springs store no more energy than
+/// `lost_j`, what the frame has lost. Angular momentum is kept. Blocks do not deform farther than by a force that compresses the
+/// contact's springs by the tolerance: what is greater is an impact. Impulses are in the manifolds, positions where the bodies
+/// are.
+void relaxShapes(const IslandStep& step, double time_s, double lost_j, RigidIsland& island);
 
 }  // namespace springtower

@@ -38,6 +38,7 @@ void clearForces(const PointRows& rows, std::int32_t count) {
   for (std::size_t r = 0; r < rowsFor(count); ++r) {
     ImpulseRow& row = rows[r]->impulse;
     row.normalForce = {};
+    row.lasting = {};
     row.friction = {};
     row.slipping = {};
     row.restDepth = {};
@@ -49,6 +50,7 @@ void addForce(const ContactConstraint& p, double rate, bool swapped, std::size_t
   ImpulseRow& row = rows[rowOf(to)]->impulse;
   const std::size_t lane = laneOf(to);
   row.normalForce[lane] += rate * p.push;
+  row.lasting[lane] += rate * p.lasting;
   for (std::size_t k = 0; k < 3; ++k) row.friction[k][lane] += (swapped ? -rate : rate) * p.friction[static_cast<int>(k)];
   if (p.sliding) row.slipping[lane] = 1.0;
   row.restDepth[lane] = std::max(row.restDepth[lane], p.rest);
@@ -80,7 +82,7 @@ void storePair(IslandStep& step, const RigidIsland& island, std::size_t at, std:
   const PointForces now = manifoldPoints(step, manifold);
   const bool swapped = manifold.upper != step.engine.pairs.key[at].a;
   for (const ContactConstraint& p : points) {
-    if (!(p.push > 0.0) && !(p.rest > 0.0)) continue;
+    if (!(p.push > 0.0) && !(p.lasting > 0.0) && !(p.rest > 0.0)) continue;
     const Vec3 place = placeOf(island, p);
     std::size_t nearest = 0;
     for (std::size_t i = 1; i < static_cast<std::size_t>(manifold.count); ++i) {
@@ -119,6 +121,7 @@ void warmStartFromKnown(const IslandStep& step, const KnownGroup& known, std::sp
     if (!p.idle) p.friction = q.friction;
     p.rest = q.rest;
     p.lasting = q.lasting;
+    p.before = q.before;
     p.sliding = q.sliding;
   }
 }
@@ -147,7 +150,7 @@ void warmStartFromManifold(const IslandStep& step, const RigidIsland& island, st
     p.idle = !(p.push > 0.0);
     if (!p.idle) p.friction = sign * Lanes{row.friction[0][lane], row.friction[1][lane], row.friction[2][lane], 0.0};
     p.rest = row.restDepth[lane];
-    p.lasting = p.push;
+    p.lasting = p.before = substep_s * row.lasting[lane];
     p.sliding = slipsAt(manifold, from);
   }
 }

@@ -64,21 +64,21 @@ struct alignas(32) PackedPoint {
   LaneVector normal;    ///< unit, from lower to upper
   LaneVector armUpper;  ///< m, from the body's centre to half way between the point's two places
   LaneVector armLower;
-  LaneVector turnUpper;  ///< rad/s, change of the body's spin by an impulse of 1 N s along the normal
-  LaneVector turnLower;  ///< likewise, with opposite sign
-  LaneVector friction;   ///< N s, on upper, tangential
-  Lanes push;            ///< N s along the normal
-  Lanes normalMass;      ///< kg, effective along the normal; 0 of a lane without a point
-  Lanes acrossMass;      ///< kg, lower bound of the effective tangential mass
-  Lanes gap;             ///< m at the start of the substep; negative where the blocks overlap by more than without force
-  Lanes coefficient;     ///< of friction: static, or kinetic where all points of the pair slip
-  Lanes rebound;         ///< m/s, speed at which the blocks part after an impact; the lowest number where there is none
-  LaneMask idle;         ///< whether its normal and friction impulses are zero so far
-  LaneMask sliding;      ///< whether friction is at its bound
-  Lanes impact;          ///< m/s, speed at which the blocks meet if they do in the substep; 0: too slow to rebound
-  Lanes before;          ///< N s, push with which the substep began
-  Lanes softness;        ///< m/(N s), compliance of its springs over the substep; 0 in the rigid methods
-  Lanes deepest;  ///< m, how deep they are at most by it: what is more than the force with which the frame began is an impact
+  LaneVector turnUpper;      ///< rad/s, change of the body's spin by an impulse of 1 N s along the normal
+  LaneVector turnLower;      ///< likewise, with opposite sign
+  LaneVector friction;       ///< N s, on upper, tangential
+  Lanes push;                ///< N s along the normal
+  Lanes normalMass;          ///< kg, effective along the normal; 0 of a lane without a point
+  Lanes acrossMass;          ///< kg, lower bound of the effective tangential mass
+  Lanes gap;                 ///< m at the start of the substep; negative where the blocks overlap by more than without force
+  Lanes coefficient;         ///< of friction: static, or kinetic where all points of the pair slip
+  Lanes rebound;             ///< m/s, speed at which the blocks part after an impact; the lowest number where there is none
+  LaneMask idle;             ///< whether its normal and friction impulses are zero so far
+  LaneMask sliding;          ///< whether friction is at its bound
+  Lanes impact;              ///< m/s, speed at which the blocks meet if they do in the substep; 0: too slow to rebound
+  Lanes before;              ///< N s, push with which the substep began
+  Lanes softness;            ///< m/(N s), compliance of its springs over the substep; 0 in the rigid methods
+  Lanes deepest;             ///< m, how deep they are at most by it: what is more than its mean over about a frame is an impact
   LaneVector towardsCentre;  ///< m, from the point to where its friction acts; read where PackedPair::slips is set
 };
 
@@ -93,7 +93,7 @@ struct alignas(32) PackedPlace {
   Lanes beside;                    ///< m, of its separating axis (NearPoint::beside)
   LaneMask axis[kSeparatingAxes];  ///< whether that is the first, second or third
   Lanes compliance;                ///< m/N, of its springs; 0 in the rigid methods
-  Lanes lasting;                   ///< N s along the normal, of the force with which the frame began
+  Lanes lasting;                   ///< N s along the normal, mean over about a frame
 };
 
 /// The points of a list, packed for the substeps of a step.

@@ -25,12 +25,12 @@ struct RigidPose {
 /// A block in the rigid methods, while its island is stepped through a frame. Between frames the particles are the state: poses
 /// are read from them when a frame begins; positions are written back after every step, velocities at the end of the frame.
 struct RigidBody : RigidPose {
-  std::array<std::array<double, kCorners>, 3> corner{};     ///< m, corners relative to the centre along its own axes
-  Eigen::Matrix3d moment = Eigen::Matrix3d::Zero();         ///< kg m2, of inertia, own axes
-  Eigen::Matrix3d inverseMoment = Eigen::Matrix3d::Zero();  ///< 1/(kg m2)
-  double inverseMass = 0.0;                                 ///< 1/kg
-  double radius_m = 0.0;                                    ///< of its farthest corner from the centre
-  Eigen::Matrix3d load = Eigen::Matrix3d::Zero();  ///< J, of its contacts as the frame begins (solver/block/static_shape.h)
+  std::array<std::array<double, kCorners>, 3> corner{};      ///< m, corners relative to the centre along its own axes
+  Eigen::Matrix3d moment = Eigen::Matrix3d::Zero();          ///< kg m2, of inertia, own axes
+  Eigen::Matrix3d inverseMoment = Eigen::Matrix3d::Zero();   ///< 1/(kg m2)
+  double inverseMass = 0.0;                                  ///< 1/kg
+  double radius_m = 0.0;                                     ///< of its farthest corner from the centre
+  Eigen::Matrix3d load = Eigen::Matrix3d::Zero();            ///< J, of what lasts of its contacts (solver/block/static_shape.h)
   Eigen::Matrix3d inverseInertia = Eigen::Matrix3d::Zero();  ///< 1/(kg m2), world axes
   RigidPose before;                                          ///< at the start of the step
   Vec3 velocityBefore = Vec3::Zero();                        ///< m/s, at the start of the substep
@@ -72,7 +72,8 @@ struct alignas(32) ContactConstraint {
   double push = 0.0;     ///< N s along the normal
   double gap;            ///< m as it was found; negative where the blocks overlap
   double rest = 0.0;     ///< m, overlap without force
-  double lasting = 0.0;  ///< N s along the normal, of the force with which the frame began
+  double before = 0.0;   ///< N s, push of the substep before the last
+  double lasting = 0.0;  ///< N s along the normal, mean over about a frame without impacts
   double beside = 0.0;   ///< m, of its separating axis (NearPoint::beside)
   double restitution;    ///< of the pair
   std::int32_t upper;    ///< index of its body in the island; the last index stands for what does not move

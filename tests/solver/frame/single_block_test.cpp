@@ -108,13 +108,11 @@ INSTANTIATE_TEST_SUITE_P(Directions, SlopeTest, ::testing::Values(0.0, 90.0, 30.
                          [](const auto& test) { return std::to_string(static_cast<int>(test.param)) + "Degrees"; });
 
 // Bounds of every impact: a millimetre of penetration is a twentieth of a block's height; the energy may rise only by rounding
-// and by the second order of the step; and no contact may be found late. A block of implicit steps lands in rigid ones, where the
-// strain of contacts and block follows their loads. It is 2e-3 of the energy at the start, and up to a fortieth of it comes
-// before the fall that pays for it.
-void expectCleanImpact(const RunResult& result, Method method = Method::implicit) {
+// and by the second order of the step; and no contact may be found late.
+void expectCleanImpact(const RunResult& result) {
   EXPECT_LE(result.deepest.depth, 1e-3) << "at " << result.deepestTime_s << " s";
   ASSERT_TRUE(result.maxEnergyRise.has_value());
-  EXPECT_LE(*result.maxEnergyRise, method == Method::implicit ? 5e-5 : 1e-6);
+  EXPECT_LE(*result.maxEnergyRise, 1e-6);
   EXPECT_EQ(result.counters.contactsCreatedPenetrating, 0U);
   EXPECT_GT(result.counters.contactsCreated, 0U);
 }
@@ -143,7 +141,7 @@ TEST(SingleBlock, DroppedFromAnyHeightAtAnyTimeKeepsItsBounds) {
         scene.blocks[0].centre.z() += (height ? 0.015 * (1.0 + share) : 0.02) - 0.5 * kStandardGravity_m_s2 * fallen_s * fallen_s;
         scene.blocks[0].velocity.z() = -kStandardGravity_m_s2 * fallen_s;
         Simulation simulation(scene);
-        expectCleanImpact(runFor(simulation, 1.5), method);
+        expectCleanImpact(runFor(simulation, 1.5));
       }
     }
   }
