@@ -84,11 +84,10 @@ void penaltyToImpulse(const IslandStep& step, std::int32_t contact, const Contac
     PointRow& row = *rows[rowOf(i)];
     const double depth = std::max(0.0, points.depth[i]);
     const double restDepth = row.penalty.touching[lane] != 0.0 ? std::max(0.0, row.penalty.restDepth[lane]) : depth;
-    row.impulse.normalForce[lane] = points.normal[i];
+    row.impulse.normalForce[lane] = row.impulse.lasting[lane] = points.normal[i];
     for (std::size_t k = 0; k < 3; ++k) row.impulse.friction[k][lane] = points.friction[i][k];
     // As deep as it is, whatever the force is now: to push it out because that has become less would be energy out of nothing.
     row.impulse.restDepth[lane] = std::max(restDepth, depth - springDepthOfForce(step.simulation, manifold, i));
-    row.impulse.lasting[lane] = points.normal[i];
     row.impulse.untouched[lane] = 0.0;
   }
   step.engine.contacts.shape(contact).kind = PointKind::impulse;

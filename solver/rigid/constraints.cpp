@@ -68,16 +68,11 @@ SPRINGTOWER_INLINE void placeNormal(const LanePlace& upper, const LanePlace& low
   normal.z = own.turnsUpper ? byUpper.z : (own.turnsLower ? byLower.z : own.normal.z);
 }
 
-// The mean of a point's push over about a frame, without impacts, which push in one substep alone; and the push that blocks which
-// overlap have already compressed the springs for.
+// The mean of a point's push over about a frame, without impacts, which push in one substep alone.
 SPRINGTOWER_INLINE void followPush(const PackedPoint& p, double share, Lanes& lasting) {
-  const Lanes zero = {0.0, 0.0, 0.0, 0.0};
-  Lanes acts, held;
+  Lanes acts;
   smallerOf(p.push, p.before, acts);
   lasting += share * (acts - lasting);
-  smallerOf(p.push, -p.gap / p.softness, held);
-  held = p.softness > zero ? held : zero;
-  largerOf(lasting, held, lasting);
 }
 
 SPRINGTOWER_INLINE void placePoint(const LanePlace& upper, const LanePlace& lower, const Springs& springs, PackedPlace& own,
