@@ -179,6 +179,10 @@ bool holdsTether(const IslandStep& step) {
   return islandOf[index(held)] >= 0 && islandOf[index(held)] == islandOf[static_cast<std::size_t>(step.blocks.front())];
 }
 
+bool isWorkedOn(const IslandStep& step) {
+  return holdsTether(step) || isPushed(step) || !step.driven.empty();
+}
+
 void accelerate(const IslandStep& step, std::size_t block, double (&acceleration)[3][kCorners]) {
   const InverseMass inverse = inverseMass(step.simulation.scene.settings.inertia);
   const double own = inverse.own / step.simulation.model.mass[block];

@@ -22,6 +22,8 @@ void evaluateTrialForces(IslandStep& step);
 /// Whether the hand holds a block of this island; whether a user force acts on one during the frame.
 bool holdsTether(const IslandStep& step);
 bool isPushed(const IslandStep& step);
+/// Whether any of these, or a driven block, does work on the island.
+bool isWorkedOn(const IslandStep& step);
 
 /// Acceleration of one block's corners from engine.memo.force and gravity: a_i = (own f_i - shared F) / m + g.
 void accelerate(const IslandStep& step, std::size_t block, double (&acceleration)[3][kCorners]);

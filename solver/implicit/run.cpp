@@ -246,7 +246,7 @@ IslandOutcome runImplicitSteps(IslandStep& step, bool mostlyFallen, double& reac
   reached_s = step.part.begin_s;
   const double end_s = step.part.end_s;
   NewtonSystem& island = engine.memo.newtonSystems.of(step.blocks.front());
-  const bool forced = holdsTether(step) || isPushed(step) || !step.driven.empty();
+  const bool forced = isWorkedOn(step);
   const bool wasForced = engine.memo.islandHistory[static_cast<std::size_t>(step.blocks.front())].forced;
   if (wasForced && !forced) resetHistory(step);
   int steps = fittingSteps(step, implicitSteps(step, forced, forced == wasForced, mostlyFallen), forced, mostlyFallen);

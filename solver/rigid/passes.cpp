@@ -186,7 +186,9 @@ double solveAgain(const Pass& pass, BodyMotion* bodies, PackedPoints& packed, st
     PackMotion motion;
     gather(bodies, pair, motion);
     Lanes opening, more;
-    for (PackedPoint& p : pointsOf(packed, pair)) {
+    const std::span<PackedPoint> points = pointsOf(packed, pair);
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      PackedPoint& p = points[pass.reversed ? points.size() - 1 - k : k];
       solvePoints(pass, pair, kAll, motion, p, opening, more);
       worst = more > worst * p.normalMass ? more / p.normalMass : worst;
     }

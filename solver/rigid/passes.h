@@ -21,11 +21,12 @@ struct Softness {
 /// Parameters common to all points in a pass.
 struct Pass {
   double step_s;
-  double most;      ///< m/s, largest push-out speed
-  double rounding;  ///< m: faces placed flush overlap by less, or not at all
-  Softness soft;    ///< of those that overlap
-  bool push;        ///< true: overlapping blocks are pushed apart; false: the push-out is removed from the velocities
-  double near;      ///< m, gap at the end of the step up to which a point is active
+  double most;            ///< m/s, largest push-out speed
+  double rounding;        ///< m: faces placed flush overlap by less, or not at all
+  Softness soft;          ///< of those that overlap
+  bool push;              ///< true: overlapping blocks are pushed apart; false: the push-out is removed from the velocities
+  double near;            ///< m, gap at the end of the step up to which a point is active
+  bool reversed = false;  ///< a pass over the active points takes those of a pair in reverse
 };
 
 /// Adds the impulses with which the points start to the velocities.

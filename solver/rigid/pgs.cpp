@@ -106,8 +106,9 @@ void solveImpacts(IslandStep& step, RigidIsland& island, const Pass& pass, doubl
 
 // Passes over the active points: so many, and in rigid mode up to as many times more as the island's largest mass is that of its
 // smallest, until the last leaves blocks to get into one another by no more than a share of a height in the substep. A light
-// block between heavy ones takes so many passes.
-void runPasses(IslandStep& step, RigidIsland& island, const Pass& pass, int passes) {
+// block between heavy ones takes so many passes. Every other pass takes a pair's points in reverse, and the last does not: always
+// in one order, the first point of a face carries more for many passes than the last, and its block turns.
+void runPasses(IslandStep& step, RigidIsland& island, Pass pass, int passes) {
   const std::size_t active = std::max<std::size_t>(1, island.steady.packed.activePoints + island.fast.packed.activePoints);
   const int affordable = static_cast<int>(static_cast<std::size_t>(tuning::kConvergingEvaluations) / active);
   const bool converges = !isRigid(step.simulation.scene.settings.method);
@@ -118,6 +119,7 @@ void runPasses(IslandStep& step, RigidIsland& island, const Pass& pass, int pass
   double left = 0.0;
   for (int i = 0; i < passes || (left > enough && i < most); ++i) {
     left = 0.0;
+    pass.reversed = (passes - i) % 2 == 0;
     for (PackedPoints* packed : packsOf(island)) {
       left = std::max(left, solveActive(pass, island.motions, *packed));
       step.counters.contactEvaluations += packed->activePoints;
@@ -144,7 +146,7 @@ double workOfPushOut(const RigidIsland& island, double rate) {
 // The share of the usual rate at which overlap is pushed out. In rigid mode it is paid by energy that the frame has lost before,
 // and by as little beside it as lets a pile at rest come up again; a hand, a force or a driven block does work.
 double shareOfPushOut(const IslandStep& step, const RigidIsland& island, double rate) {
-  if (isRigid(step.simulation.scene.settings.method) || holdsTether(step) || isPushed(step) || !step.driven.empty()) return 1.0;
+  if (isRigid(step.simulation.scene.settings.method) || isWorkedOn(step)) return 1.0;
   const double work_j = workOfPushOut(island, rate);
   const double free_j =
       tuning::kFreePushOut * massOf(island) * step.simulation.scene.gravity.magnitude * step.simulation.lengths.blockHeight_m;

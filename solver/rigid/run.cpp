@@ -336,7 +336,9 @@ bool runSteps(IslandStep& step, int steps, int substeps, double begin_s) {
 
 // Blocks deform as the frame ends. `contacts_j`: energy of the contacts' springs as it began.
 void takeShapes(IslandStep& step, double time_s, double contacts_j, RigidIsland& island) {
-  relaxShapes(step, time_s, contacts_j - strainEnergyOfContacts(step) - island.gained_j, island);
+  const double most_j = isWorkedOn(step) ? std::numeric_limits<double>::infinity() : contacts_j - island.gained_j;
+  const double stored_j = boundStrainOfContacts(step, most_j);
+  relaxShapes(step, time_s, contacts_j - stored_j - island.gained_j, island);
   writePositions(island, step.blocks, step.simulation.state.position);
   computeFrames(step.simulation.state.position, step.blocks, step.engine.memo.frames);
 }

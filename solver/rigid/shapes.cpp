@@ -9,10 +9,14 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
 
 namespace springtower {
 
 namespace {
+
+// Rounds by which forces are found that store a given energy.
+constexpr int kStrainBounds = 4;
 
 // The body of a block of the island; null of any other.
 RigidBody* bodyOf(const IslandStep& step, std::int32_t block, RigidIsland& island) {
@@ -34,19 +38,19 @@ double lastingShare(const Simulation& simulation, const ContactView& manifold, s
   return stiffness * springDepthOfForce(simulation, manifold, point) / normalForce;
 }
 
-// Calls `visit(manifold, points)` for each manifold of the island that stores impulses, with its forces now.
+// Calls `visit(contact, manifold, points)` for each manifold of the island that stores impulses, with its forces now.
 template <class Visit>
 void forEachRigidContact(const IslandStep& step, Visit visit) {
   for (const std::int32_t pair : step.pairs) {
     const auto at = static_cast<std::size_t>(pair);
     if (!step.engine.pairs.touches(at)) continue;
     const ContactView manifold = contactOf(step.engine, at);
-    if (manifold.kind == PointKind::impulse) visit(manifold, forcesNow(step.simulation, manifold));
+    if (manifold.kind == PointKind::impulse) visit(step.engine.pairs.contact[at], manifold, forcesNow(step.simulation, manifold));
   }
 }
 
 void addLoads(const IslandStep& step, RigidIsland& island) {
-  forEachRigidContact(step, [&](const ContactView& manifold, const PointForces& points) {
+  forEachRigidContact(step, [&](std::int32_t, const ContactView& manifold, const PointForces& points) {
     RigidBody* upper = bodyOf(step, manifold.upper, island);
     RigidBody* lower = bodyOf(step, manifold.lower, island);
     for (std::size_t i = 0; i < static_cast<std::size_t>(manifold.count); ++i) {
@@ -116,10 +120,25 @@ void prepareShapes(Simulation& simulation) {
 
 double strainEnergyOfContacts(const IslandStep& step) {
   double energy_j = 0.0;
-  forEachRigidContact(step, [&](const ContactView& manifold, const PointForces& points) {
+  forEachRigidContact(step, [&](std::int32_t, const ContactView& manifold, const PointForces& points) {
     for (std::size_t i = 0; i < static_cast<std::size_t>(manifold.count); ++i)
       energy_j += strainEnergy(step.simulation, manifold, i, points.depth[i]);
   });
+  return energy_j;
+}
+
+double boundStrainOfContacts(const IslandStep& step, double most_j) {
+  double energy_j = strainEnergyOfContacts(step);
+  const double bound_j = std::max(0.0, most_j);
+  for (int i = 0; i < kStrainBounds && energy_j > bound_j; ++i) {
+    const double share = std::sqrt(bound_j / energy_j);  // the energy is quadratic in what lasts, or grows less
+    forEachRigidContact(step, [&](std::int32_t contact, const ContactView& manifold, const PointForces&) {
+      const PointRows rows = step.engine.contacts.points(contact);
+      for (std::size_t k = 0; k < static_cast<std::size_t>(manifold.count); ++k)
+        rows[rowOf(k)]->impulse.lasting[laneOf(k)] *= share;
+    });
+    energy_j = strainEnergyOfContacts(step);
+  }
   return energy_j;
 }
 

@@ -14,6 +14,10 @@ void prepareShapes(Simulation& simulation);
 /// Energy of an island's contacts in rigid mode of a penalty method, J: that of the springs that their forces compress.
 double strainEnergyOfContacts(const IslandStep& step);
 
+/// Lessens what lasts of the forces in an island's contacts, all by the same share, until their springs store no more than
+/// `most_j`. Returns what they store, J.
+double boundStrainOfContacts(const IslandStep& step, double most_j);
+
 /// As a frame ends: the blocks of an island of springs take on a share of the shape that they have under the forces of their
 /// contacts, so that implicit steps find them in equilibrium when they take over. The share is that of `time_s`, the frame's
 /// length, in it and sqrt(h / g): forces change as fast as blocks fall past one another. The springs store no more energy than
