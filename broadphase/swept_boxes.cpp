@@ -24,7 +24,12 @@ void sweepBoxes(const MotionState& state, std::span<const std::int32_t> blocks, 
       for (std::size_t a = 0; a < 3; ++a) along[a] = Corners(state.velocity.values(a, b)).mean();
     }
     const double speed = std::sqrt(((vx - along[0]).square() + (vy - along[1]).square() + (vz - along[2]).square()).maxCoeff());
-    reach[b] = speed * duration_s + fall + margin_m[b];
+    const Corners px(state.position.values(0, b));
+    const Corners py(state.position.values(1, b));
+    const Corners pz(state.position.values(2, b));
+    // Least and largest of several values may leave out NaN, their sum does not.
+    const double zeroOrNan = 0.0 * (px + py + pz + vx + vy + vz).sum();
+    reach[b] = speed * duration_s + fall + margin_m[b] + zeroOrNan;
     for (std::size_t a = 0; a < 3; ++a) {
       const Corners x(state.position.values(a, b));
       boxes.lower[a][b] = x.minCoeff() + std::min(0.0, along[a]) * duration_s - reach[b];

@@ -31,8 +31,8 @@ enum class Way : std::uint8_t { onwards, anySide };
 ///   reach = speed duration + gravity duration^2 / 2 + margin,
 /// with the speed of its fastest corner, going onwards about its centre. The margin allows for what contacts and springs add. A
 /// block about to sleep has duration 0: its present box, grown by the margin. Other blocks keep their boxes and reaches.
-/// `gravity` in m/s2, `duration_s` and `margin_m`, [blocks], not negative; boxes and reach are [blocks]; the blocks' state is
-/// finite.
+/// `gravity` in m/s2, `duration_s` and `margin_m`, [blocks], not negative; boxes and reach are [blocks]. The reach of a
+/// block whose state is not finite is NaN, and so is its box.
 void computeSweptBoxes(const MotionState& state, std::span<const std::int32_t> blocks, double gravity, double duration_s, Way way,
                        std::span<const double> margin_m, SweptBoxes& boxes, std::span<double> reach);
 

@@ -62,18 +62,20 @@ struct Paths {
 };
 
 // Adds the path of each block's fastest corner. A block of springs has diverged when its corners move relative to one another by
-// half its least side in one step; free flight may have any speed, and a rigid block any spin. The condition is written so that
+// half its least side in one step; a rigid block may have any spin. Nor is any block as fast as tuning::kMaxSpeed: larger swept
+// boxes would be tried without end. The condition is written so that
 // NaN, which fails every comparison, counts as diverged.
 SPRINGTOWER_KERNEL
 Paths addPathsOf(IslandStep& step, std::span<const std::int32_t> blocks) {
   Paths paths;
+  const double farthest_m = tuning::kMaxSpeed * step.drift_s;
   for (const std::int32_t block : blocks) {
     const auto b = static_cast<std::size_t>(block);
     const auto [path, deformed] = blockTravel(step.simulation.state.position, step.engine.memo.previous, b);
     const double most = tuning::kMaxDeformationPerStep * step.simulation.model.dimensions[b].minCoeff();
     const double limit = step.pointKind == PointKind::penalty ? static_cast<double>(kCorners) * most * most
                                                               : std::numeric_limits<double>::infinity();
-    if (!(deformed < limit)) paths.diverged = std::min(paths.diverged, block);
+    if (!(deformed < limit && path < farthest_m)) paths.diverged = std::min(paths.diverged, block);
     BlockHistory& history = step.engine.memo.blockHistory[b];
     history.travel += path;
     step.engine.scratch.path[b] = path;
@@ -100,15 +102,17 @@ bool addTravel(IslandStep& step) {
   if (!paths.asAssumed) step.activeListSteps = 0;
   const std::int32_t diverged = paths.diverged;
   if (diverged == Paths{}.diverged) return paths.inside;
-  const double deformed =
-      blockTravel(step.simulation.state.position, step.engine.memo.previous, static_cast<std::size_t>(diverged)).deformed;
+  const auto [path, deformed] =
+      blockTravel(step.simulation.state.position, step.engine.memo.previous, static_cast<std::size_t>(diverged));
   const double time = step.time_s + step.drift_s;
-  throw DivergenceError(
-      fmt::format("block {} diverged at {:.6f} s: {}", diverged, time,
-                  std::isfinite(deformed) ? fmt::format("its corners moved apart by {:.3g} m in one step of {:.3g} s",
-                                                        std::sqrt(deformed / static_cast<double>(kCorners)), step.drift_s)
-                                          : std::string("its positions are no longer finite")),
-      diverged, time);
+  std::string cause = "its positions are no longer finite";
+  if (std::isfinite(deformed) && path >= tuning::kMaxSpeed * step.drift_s) {
+    cause = fmt::format("it moved by {:.3g} m in one step of {:.3g} s", path, step.drift_s);
+  } else if (std::isfinite(deformed)) {
+    cause = fmt::format("its corners moved apart by {:.3g} m in one step of {:.3g} s",
+                        std::sqrt(deformed / static_cast<double>(kCorners)), step.drift_s);
+  }
+  throw DivergenceError(fmt::format("block {} diverged at {:.6f} s: {}", diverged, time, cause), diverged, time);
 }
 
 namespace {

@@ -1,11 +1,14 @@
 #include "solver/frame/pairs.h"
 
+#include "core/error.h"
 #include "core/tuning.h"
 #include "solver/world/driven_blocks.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstring>
+#include <fmt/format.h>
 
 namespace springtower {
 
@@ -188,6 +191,15 @@ void sweepBoxes(Simulation& simulation) {
   sweep(all.subspan(count), simulation.scene.settings.frame_s, Way::anySide);
 }
 
+// A box that is not finite has no place in the order of boxes along an axis.
+void checkBoxIsFinite(const Simulation& simulation, std::int32_t block) {
+  if (std::isfinite(simulation.engine->scratch.reach[static_cast<std::size_t>(block)])) return;
+  const double time_s = simulation.time_s + simulation.engine->scratch.part.begin_s;
+  throw DivergenceError(
+      fmt::format("block {} diverged at {:.6f} s: its positions or velocities are no longer finite", block, time_s), block,
+      time_s);
+}
+
 // Blocks that are at different times of the frame are not in one island. Those near a driven block are, as it moves with their
 // steps.
 std::span<const BlockPair> edgesOfIslands(Simulation& simulation) {
@@ -223,6 +235,7 @@ void findNearPairs(Simulation& simulation) {
     sweepBoxes(simulation);
     for (const std::int32_t block : engine.scratch.awakeBlocks) {
       const auto b = static_cast<std::size_t>(block);
+      checkBoxIsFinite(simulation, block);
       engine.memo.travelAtSweep[b] = engine.memo.blockHistory[b].travel;
     }
     if (simulation.frame == 0 || !engine.memo.swept) reset(engine.memo.sweep, engine.memo.boxes);

@@ -1,0 +1,80 @@
+#include "core/error.h"
+#include "core/scene/scene.h"
+#include "scenarios/registry.h"
+#include "solver/frame/prepare.h"
+#include "solver/world/simulation.h"
+
+#include <gtest/gtest.h>
+#include <limits>
+#include <string>
+#include <utility>
+
+namespace springtower {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// A heap of 25 blocks in rigid steps, falling or just landed; a tower of 27 at rest in implicit steps.
+Simulation steppedScene(const std::string& name, int frames) {
+  Simulation simulation(sceneNamed(name));
+  prepare(simulation);
+  for (int i = 0; i < frames; ++i) stepFrame(simulation);
+  return simulation;
+}
+
+void setVelocity(std::size_t block, double speed, Simulation& simulation) {
+  for (std::size_t c = 0; c < kCorners; ++c) simulation.state.velocity.set(block, c, Vec3(speed, 0.0, 0.0));
+}
+
+std::string messageOf(Simulation& simulation, int frames) {
+  try {
+    for (int i = 0; i < frames; ++i) stepFrame(simulation);
+  } catch (const DivergenceError& error) {
+    return error.what();
+  }
+  return "none";
+}
+
+// A velocity that is none, or that no block has, ends the run with the block and the time. Once it was followed by ever larger
+// swept boxes, without end: a block that is not in its box after a frame takes the frame again with a larger one.
+TEST(Divergence, OfABlockThatMovesWithoutBoundsEndsTheFrame) {
+  for (const int frames : {3, 40}) {
+    for (const double speed : {kNan, kInfinity, -kInfinity, 2e8, 1e13, 1e100, 1e300}) {
+      SCOPED_TRACE(testing::Message() << speed << " m/s after " << frames << " frames");
+      Simulation simulation = steppedScene("heap:25", frames);
+      setVelocity(7, speed, simulation);
+      const std::string message = messageOf(simulation, 2);
+      EXPECT_NE(message.find("diverged at"), std::string::npos) << message;
+      EXPECT_EQ(message.rfind("block ", 0), 0U) << message;
+    }
+  }
+}
+
+// One corner is enough, of a velocity or a position.
+TEST(Divergence, OfASingleCornerEndsTheFrame) {
+  for (const auto& [scene, frames] : {std::pair("heap:25", 0), std::pair("heap:25", 3), std::pair("heap:25", 40),
+                                      std::pair("tower:9", 0), std::pair("tower:9", 5)}) {
+    for (const double value : {kNan, kInfinity}) {
+      SCOPED_TRACE(testing::Message() << value << " in " << scene << " after " << frames << " frames");
+      Simulation moved = steppedScene(scene, frames);
+      moved.state.position.values(1, 7)[3] = value;
+      EXPECT_NE(messageOf(moved, 1).find("diverged at"), std::string::npos);
+      Simulation hit = steppedScene(scene, frames);
+      hit.state.velocity.values(2, 7)[3] = value;
+      EXPECT_NE(messageOf(hit, 1).find("diverged at"), std::string::npos);
+    }
+  }
+}
+
+// The fastest that a scene may give, and a hundred times that, are motion.
+TEST(Divergence, IsNotThatOfAFastBlock) {
+  for (const double speed : {1e3, 1e5}) {
+    Simulation simulation = steppedScene("heap:25", 3);
+    setVelocity(24, speed, simulation);
+    EXPECT_EQ(messageOf(simulation, 2), "none") << speed << " m/s";
+  }
+}
+
+}  // namespace
+}  // namespace springtower
