@@ -11,11 +11,16 @@
 
 namespace springtower {
 
+/// What a stream of draws is for.
+enum class RandomStreamOf : std::uint8_t { scene, surroundings };
+
 /// Draws of random scenes, each from the next numbers of one stream. Only arithmetic and square roots, which are the same
 /// everywhere (core/random.h); scenes made from them also take sines and cosines.
 class RandomDraw {
  public:
-  explicit RandomDraw(std::uint64_t seed) : random_(seed, kStream) {}
+  /// Draws of one stream do not move those of another: what is added to scenes later has a stream of its own.
+  explicit RandomDraw(std::uint64_t seed, RandomStreamOf of = RandomStreamOf::scene)
+      : random_(seed, kStream + static_cast<std::uint64_t>(of)) {}
 
   /// Even in [least, most).
   double between(double least, double most) { return least + (most - least) * random_.uniform(); }

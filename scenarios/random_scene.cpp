@@ -2,10 +2,12 @@
 
 #include "core/error.h"
 #include "scenarios/random_blocks.h"
+#include "scenarios/random_fixtures.h"
 
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <limits>
 #include <utility>
 
 namespace springtower {
@@ -169,8 +171,11 @@ std::string_view nameOf(RandomKind kind) {
 
 RandomScene randomScene(std::uint64_t seed) {
   RandomDraw draw(seed);
+  RandomDraw surroundings(seed, RandomStreamOf::surroundings);
   for (;;) {
     RandomScene random = drawScene(draw);
+    drawSurfaces(surroundings, kMaxRandomFriction, random.scene);
+    if (random.kind != RandomKind::hand) drawFixtures(surroundings, random.scene);
     random.scene.name = fmt::format("random-{}-{}", seed, nameOf(random.kind));
     try {
       checkScene(random.scene, random.scene.name);
@@ -189,9 +194,14 @@ void rebuildTower(RandomScene& random, std::size_t towerBlocks) {
 }
 
 double massRatioOf(const Scene& scene) {
-  const auto [least, most] = std::minmax_element(scene.blocks.begin(), scene.blocks.end(),
-                                                 [](const BlockSpec& a, const BlockSpec& b) { return a.mass < b.mass; });
-  return most->mass / least->mass;
+  double least = std::numeric_limits<double>::infinity();
+  double most = 0.0;
+  for (const BlockSpec& block : scene.blocks) {
+    if (block.fixed) continue;
+    least = std::min(least, block.mass);
+    most = std::max(most, block.mass);
+  }
+  return most / least;
 }
 
 }  // namespace springtower

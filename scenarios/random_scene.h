@@ -43,7 +43,7 @@ struct RandomScene {
 };
 
 /// The scene of a seed: sizes, masses, friction, gravity, speeds, method and settings are drawn within the limits above, most of
-/// them evenly in their logarithm. checkScene accepts it: where a draw is refused the next of the same stream is taken. The same
+/// them evenly in their logarithm; then surfaces, fixed and driven blocks (scenarios/random_fixtures.h). checkScene accepts it: where a draw is refused the next of the same stream is taken. The same
 /// on every machine.
 RandomScene randomScene(std::uint64_t seed);
 
@@ -51,7 +51,7 @@ RandomScene randomScene(std::uint64_t seed);
 /// moves or blocks that do not go together.
 void rebuildTower(RandomScene& random, std::size_t towerBlocks);
 
-/// Largest mass over smallest. Precondition: there is a block.
+/// Largest mass over smallest of the blocks that are not fixed. Precondition: there is one.
 double massRatioOf(const Scene& scene);
 
 }  // namespace springtower

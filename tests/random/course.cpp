@@ -38,6 +38,7 @@ std::string firstNotFinite(const Simulation& simulation) {
 double movedMost(const Simulation& simulation, const std::vector<Vec3>& start) {
   double most = 0.0;
   for (std::size_t b = 0; b < start.size(); ++b) {
+    if (simulation.scene.blocks[b].fixed) continue;  // where drives have brought it
     const double moved = (centre(simulation.state.position, b) - start[b]).norm();
     most = std::max(most, moved / simulation.model.dimensions[b].minCoeff());
   }

@@ -152,8 +152,10 @@ class MomentumWatch {
   void atStart(const Simulation& simulation) {
     about_ = centreOfMass(simulation);
     start_ = momentaOf(simulation, about_);
+    const std::vector<BlockSpec>& blocks = simulation.scene.blocks;
+    const bool anyFixed = std::any_of(blocks.begin(), blocks.end(), [](const BlockSpec& block) { return block.fixed; });
     applies_ = !simulation.scene.floor && simulation.scene.gravity.magnitude == 0.0 && simulation.scene.forces.empty() &&
-               simulation.scene.moves.empty() && start_.linearSum > 0.0;
+               simulation.scene.moves.empty() && !anyFixed && start_.linearSum > 0.0;
   }
   void afterFrame(const Simulation& simulation) {
     if (!applies_ || simulation.frame % kFramesToAMomentum != 0) return;
@@ -205,7 +207,8 @@ Course playAndMeasure(const Scene& scene, double limit_s, Record& record) {
   };
   Course course = playScene(scene, 1, limit_s, watch);
   copyCourse(course, record);
-  record.energyGained = course.frames > 0 ? energies.gained() : 0.0;
+  // What a driven block does to others is not known from outside.
+  record.energyGained = course.frames > 0 && scene.drives.empty() ? energies.gained() : 0.0;
   if (momenta.applies()) {
     record.momentumLost = momenta.linearLost();
     record.angularLost = momenta.angularLost();

@@ -19,6 +19,11 @@ std::string vector(const Vec3& value) {
   return fmt::format("[{}, {}, {}]", number(value.x()), number(value.y()), number(value.z()));
 }
 
+std::string frictionText(const Friction& friction) {
+  return fmt::format("static_friction = {}\nkinetic_friction = {}\n", number(friction.staticFriction),
+                     number(friction.kineticFriction));
+}
+
 std::string towerText(const RandomScene& random) {
   std::string text = fmt::format("[tower]\ncode = \"{}\"\n", random.towerCode);
   const TowerOptions& tower = random.tower;
@@ -35,6 +40,9 @@ std::string blockText(const BlockSpec& block) {
   if (!rotation_deg.isZero(0.0)) text += fmt::format("rotation_deg = {}\n", vector(rotation_deg));
   if (!block.velocity.isZero(0.0)) text += fmt::format("velocity_m_s = {}\n", vector(block.velocity));
   if (!block.spin.isZero(0.0)) text += fmt::format("spin_rad_s = {}\n", vector(block.spin));
+  if (block.restitution) text += fmt::format("restitution = {}\n", number(*block.restitution));
+  if (block.friction) text += frictionText(*block.friction);
+  if (block.fixed) text += "fixed = true\n";
   return text;
 }
 
@@ -46,6 +54,17 @@ std::string forceText(const UserForce& force) {
   if (force.forceAtEnd) text += fmt::format("force_end_n = {}\n", vector(*force.forceAtEnd));
   if (force.torqueAtEnd) text += fmt::format("torque_end_n_m = {}\n", vector(*force.torqueAtEnd));
   if (force.corner >= 0) text += fmt::format("corner = {}\n", force.corner);
+  return text;
+}
+
+std::string driveText(const Drive& drive) {
+  std::string text =
+      fmt::format("[[drive]]\nblock = {}\nstart_s = {}\nend_s = {}\n", drive.block, number(drive.start_s), number(drive.end_s));
+  if (!drive.velocity.isZero(0.0)) text += fmt::format("velocity_m_s = {}\n", vector(drive.velocity));
+  if (!drive.spin.isZero(0.0)) text += fmt::format("spin_rad_s = {}\n", vector(drive.spin));
+  if (drive.frequency_hz != 0.0) {
+    text += fmt::format("amplitude_m = {}\nfrequency_hz = {}\n", vector(drive.amplitude), number(drive.frequency_hz));
+  }
   return text;
 }
 
@@ -88,8 +107,14 @@ std::string sceneText(const RandomScene& random, std::string_view comment) {
     if (block.row < 0) text += blockText(block);
   }
   for (const UserForce& force : scene.forces) text += forceText(force);
+  for (const Drive& drive : scene.drives) text += driveText(drive);
   for (const Move& move : scene.moves) text += moveText(move);
+  for (const FrictionPair& pair : scene.frictionPairs) {
+    text += fmt::format("[[friction_pair]]\na = {}\nb = {}\n{}", pair.a, pair.b, frictionText(pair.friction));
+  }
   text += fmt::format("[floor]\npresent = {}\n", scene.floor);
+  if (scene.floorFriction) text += frictionText(*scene.floorFriction);
+  text += fmt::format("[contact]\nrestitution = {}\n", number(scene.restitution));
   text += fmt::format("[friction]\nstatic = {}\nkinetic = {}\n", number(scene.staticFriction), number(scene.kineticFriction));
   const Gravity& gravity = scene.gravity;
   text += fmt::format("[gravity]\nmagnitude_m_s2 = {}\n", number(gravity.magnitude));

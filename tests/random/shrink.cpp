@@ -60,6 +60,7 @@ class Shrinker {
     bool changed = dropTower();
     changed = dropBlocks() || changed;
     changed = dropActions() || changed;
+    changed = dropFixtures() || changed;
     changed = stopBlocks() || changed;
     changed = simplify() || changed;
     changed = shorten() || changed;
@@ -111,21 +112,53 @@ class Shrinker {
     const std::size_t end = std::min(blocks.size(), first + count);
     if (first < towerBlocksOf(random)) throw InputError("a block of the tower, whose code says where it is");
     blocks.erase(blocks.begin() + static_cast<std::ptrdiff_t>(first), blocks.begin() + static_cast<std::ptrdiff_t>(end));
-    std::vector<UserForce> kept;
-    for (UserForce force : random.scene.forces) {
-      const auto b = static_cast<std::size_t>(force.block);
-      if (b >= first && b < end) continue;
-      if (b >= end) force.block -= static_cast<int>(end - first);
-      kept.push_back(force);
-    }
-    random.scene.forces = std::move(kept);
+    const auto isDropped = [&](int block) {
+      return block >= 0 && static_cast<std::size_t>(block) >= first && static_cast<std::size_t>(block) < end;
+    };
+    const auto renumber = [&](int& block) {
+      if (block >= 0 && static_cast<std::size_t>(block) >= end) block -= static_cast<int>(end - first);
+    };
+    Scene& scene = random.scene;
+    std::erase_if(scene.forces, [&](const UserForce& force) { return isDropped(force.block); });
+    std::erase_if(scene.drives, [&](const Drive& drive) { return isDropped(drive.block); });
+    std::erase_if(scene.frictionPairs, [&](const FrictionPair& pair) { return isDropped(pair.a) || isDropped(pair.b); });
+    for (UserForce& force : scene.forces) renumber(force.block);
+    for (Drive& drive : scene.drives) renumber(drive.block);
+    for (FrictionPair& pair : scene.frictionPairs) renumber(pair.a), renumber(pair.b);
   }
 
   bool dropActions() {
     const Scene& scene = best_.random.scene;
     bool changed = !scene.forces.empty() && tries([](RandomScene& random) { random.scene.forces.clear(); });
+    changed = (!scene.drives.empty() && tries([](RandomScene& random) { random.scene.drives.clear(); })) || changed;
     changed = (!scene.moves.empty() && tries([](RandomScene& random) { random.scene.moves.clear(); })) || changed;
     return (scene.moves.size() > 1 && tries([](RandomScene& random) { random.scene.moves.pop_back(); })) || changed;
+  }
+
+  // One restitution and friction for all, and all blocks free: whole, then one by one.
+  bool dropFixtures() {
+    const Scene usual;
+    bool changed = set<double>([](Scene& s) -> double& { return s.restitution; }, usual.restitution);
+    if (best_.random.scene.floorFriction) {
+      changed = tries([](RandomScene& random) { random.scene.floorFriction.reset(); }) || changed;
+    }
+    if (!best_.random.scene.frictionPairs.empty()) {
+      changed = tries([](RandomScene& random) { random.scene.frictionPairs.clear(); }) || changed;
+    }
+    for (std::size_t b = 0; b < best_.random.scene.blocks.size(); ++b) {
+      const BlockSpec& block = best_.random.scene.blocks[b];
+      if (block.restitution || block.friction) {
+        changed = tries([b](RandomScene& random) {
+                    random.scene.blocks[b].restitution.reset();
+                    random.scene.blocks[b].friction.reset();
+                  }) ||
+                  changed;
+      }
+      if (best_.random.scene.blocks[b].fixed) {
+        changed = tries([b](RandomScene& random) { random.scene.blocks[b].fixed = false; }) || changed;
+      }
+    }
+    return changed;
   }
 
   bool stopBlocks() {

@@ -29,6 +29,27 @@ RandomScene fromText(const std::string& text) {
   return random;
 }
 
+void expectSameSurroundings(const Scene& scene, const Scene& other) {
+  ASSERT_EQ(scene.drives.size(), other.drives.size());
+  for (std::size_t d = 0; d < scene.drives.size(); ++d) {
+    EXPECT_EQ(scene.drives[d].block, other.drives[d].block);
+    EXPECT_EQ(scene.drives[d].velocity, other.drives[d].velocity);
+    EXPECT_EQ(scene.drives[d].spin, other.drives[d].spin);
+    EXPECT_EQ(scene.drives[d].amplitude, other.drives[d].amplitude);
+    EXPECT_EQ(scene.drives[d].frequency_hz, other.drives[d].frequency_hz);
+    EXPECT_EQ(scene.drives[d].start_s, other.drives[d].start_s);
+    EXPECT_EQ(scene.drives[d].end_s, other.drives[d].end_s);
+  }
+  ASSERT_EQ(scene.frictionPairs.size(), other.frictionPairs.size());
+  for (std::size_t p = 0; p < scene.frictionPairs.size(); ++p) {
+    EXPECT_EQ(scene.frictionPairs[p].a, other.frictionPairs[p].a);
+    EXPECT_EQ(scene.frictionPairs[p].b, other.frictionPairs[p].b);
+    EXPECT_EQ(scene.frictionPairs[p].friction, other.frictionPairs[p].friction);
+  }
+  EXPECT_EQ(scene.restitution, other.restitution);
+  EXPECT_EQ(scene.floorFriction, other.floorFriction);
+}
+
 void expectSameScene(const Scene& scene, const Scene& other) {
   SCOPED_TRACE(scene.name);
   ASSERT_EQ(scene.blocks.size(), other.blocks.size());
@@ -40,7 +61,11 @@ void expectSameScene(const Scene& scene, const Scene& other) {
     EXPECT_EQ(scene.blocks[b].spin, other.blocks[b].spin);
     EXPECT_EQ(scene.blocks[b].mass, other.blocks[b].mass);
     EXPECT_EQ(scene.blocks[b].row, other.blocks[b].row);
+    EXPECT_EQ(scene.blocks[b].restitution, other.blocks[b].restitution);
+    EXPECT_EQ(scene.blocks[b].friction, other.blocks[b].friction);
+    EXPECT_EQ(scene.blocks[b].fixed, other.blocks[b].fixed);
   }
+  expectSameSurroundings(scene, other);
   ASSERT_EQ(scene.forces.size(), other.forces.size());
   for (std::size_t f = 0; f < scene.forces.size(); ++f) {
     EXPECT_EQ(scene.forces[f].force, other.forces[f].force);
