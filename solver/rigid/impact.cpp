@@ -152,6 +152,40 @@ void boundRebound(RigidIsland& island, double most_j) {
 
 namespace {
 
+// By how much the push between the blocks of a pair has grown in the substep, N s.
+double growthOf(const PackedPoints& packed, const PackedPair& pair, int lane) {
+  double growth = 0.0;
+  for (const PackedPoint& p : pointsOf(packed, pair)) growth += std::max(0.0, p.push[lane] - p.before[lane]);
+  return growth;
+}
+
+// Hands on which blocks are struck, from one to the next; returns whether any is new. Those whose velocity an impact has changed
+// are; so is a block that would be as fast without what is taken back on its other side: a light one that a heavy one presses on
+// the floor.
+bool handOnStruck(RigidIsland& island, double least) {
+  for (RigidBody& body : island.bodies) body.taken = 0.0;
+  const auto bodyAt = [&](std::int32_t at) {
+    return at == unmovedBody(island) ? nullptr : &island.bodies[static_cast<std::size_t>(at)];
+  };
+  for (const PackedPoints* packed : packsOf(island)) {
+    for (const PackedPair& pair : packed->pairs) {
+      for (std::size_t lane = 0; lane < kPackedPairs; ++lane) {
+        RigidBody* upper = bodyAt(pair.upper[lane]);
+        RigidBody* lower = bodyAt(pair.lower[lane]);
+        if (pair.group[lane] < 0 || upper == nullptr || lower == nullptr || upper->struck == lower->struck) continue;
+        (upper->struck ? lower : upper)->taken += growthOf(*packed, pair, static_cast<int>(lane));
+      }
+    }
+  }
+  bool any = false;
+  for (RigidBody& body : island.bodies) {
+    if (body.struck || !(body.taken * body.inverseMass > least)) continue;
+    body.struck = true;
+    any = true;
+  }
+  return any;
+}
+
 // The impulses of one pair's points.
 void forgetPair(PackedPoints& packed, const PackedPair& pair, int lane, bool& met) {
   for (PackedPoint& p : pointsOf(packed, pair)) {
@@ -171,6 +205,8 @@ void forgetPair(PackedPoints& packed, const PackedPair& pair, int lane, bool& me
 void forgetImpact(IslandStep& step, RigidIsland& island) {
   const double least = leastReboundSpeed(step.simulation);
   for (RigidBody& body : island.bodies) body.struck = (body.velocity - body.velocityBefore).squaredNorm() > least * least;
+  while (handOnStruck(island, least)) {
+  }
   const auto isStruck = [&](std::int32_t at) {
     return at != unmovedBody(island) && island.bodies[static_cast<std::size_t>(at)].struck;
   };

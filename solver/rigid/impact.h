@@ -26,8 +26,8 @@ bool markPushedByPoints(const IslandStep& step, RigidIsland& island);
 /// energy is at most `most_j` (J). Momentum is conserved, as it is by either.
 void boundRebound(RigidIsland& island, double most_j);
 
-/// After an impact: the contacts of blocks whose velocity it has changed start the next substep with the impulses that there were
-/// before; those of the impact would act a second time. Notes which pairs have met.
+/// After an impact: the contacts of blocks that it has struck, by more than the slowest impact that rebounds, start the next
+/// substep with the impulses that there were before; those of the impact would act a second time. Notes which pairs have met.
 void forgetImpact(IslandStep& step, RigidIsland& island);
 
 /// Kinetic energy, J.

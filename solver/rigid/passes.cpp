@@ -164,16 +164,19 @@ void solveFirst(const Pass& pass, BodyMotion* bodies, PackedPoints& packed, std:
     gather(bodies, pair, motion);
     pair.pushing = 0;
     LaneMask nearby{};
+    LaneMask changes{};  // also where an impulse that a point started with is taken back whole
     for (PackedPoint& p : pointsOf(packed, pair)) {
       Lanes opening, more;
+      changes |= ~p.idle;
       solvePoints(pass, pair, kAll, motion, p, opening, more);
+      changes |= ~p.idle;
       pair.pushing += count(~p.idle);
       nearby += ~p.idle | (p.gap + pass.step_s * opening < kNone + pass.near);
     }
     pair.nearby = count(nearby);
     for (std::size_t lane = 0; lane < kPackedPairs; ++lane)
       pair.active[lane] = -static_cast<std::int32_t>(nearby[static_cast<int>(lane)]);
-    if (pair.pushing > 0) scatter(motion, pair, bodies);
+    if (any(changes)) scatter(motion, pair, bodies);
   }
 }
 

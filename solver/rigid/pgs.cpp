@@ -1,5 +1,6 @@
 #include "core/tuning.h"
 #include "solver/contact/evaluate_forces.h"
+#include "solver/rigid/common_motion.h"
 #include "solver/rigid/constraints.h"
 #include "solver/rigid/impact.h"
 #include "solver/rigid/methods.h"
@@ -10,7 +11,6 @@
 #include "solver/world/over_island.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numbers>
 
 namespace springtower {
@@ -41,18 +41,6 @@ double massOf(const RigidIsland& island) {
   double mass = 0.0;
   for (const RigidBody& body : island.bodies) mass += body.inverseMass > 0.0 ? 1.0 / body.inverseMass : 0.0;
   return mass;
-}
-
-// Energy clamp: if push-out or unconverged passes raised kinetic energy beyond the work of gravity, scales all velocities down by
-// the excess, at most 1 % of the energy a step.
-void removeAddedEnergy(std::vector<RigidBody>& bodies, double added) {
-  if (added <= 0.0) return;
-  const double kinetic = kineticEnergy(bodies);
-  const double left = std::sqrt(1.0 - std::min(tuning::kMaxEnergyRemoval, added / kinetic));
-  for (RigidBody& body : bodies) {
-    body.velocity *= left;
-    body.spin *= left;
-  }
 }
 
 Pass passOf(const IslandStep& step, bool push) {
@@ -239,6 +227,8 @@ void stepImpulses(IslandStep& step, RigidIsland& island) {
   choosePatchFriction(step, island);
   applyForces(step);
   readVelocities(island);
+  const bool apart = isApart(island);
+  const Vec3 momentum = apart ? angularMomentum(island) : Vec3(Vec3::Zero());
   int passes = scene.settings.iterations;
   if (rigidMode) passes = std::max(passes, rigidModePasses(step, island));
   stopAtContact(step, island, passes);
@@ -248,8 +238,9 @@ void stepImpulses(IslandStep& step, RigidIsland& island) {
   relaxAndRebound(step, island, scene.settings.iterations);
   // Not in the rigid methods: there, blocks of a stack move by such slow pushes only, and the clamp would suppress them.
   // Nor with a driven block, which does work.
+  if (apart) restoreAngularMomentum(momentum, island);
   if (rigidMode && island.touches && step.driven.empty())
-    removeAddedEnergy(island.bodies, kineticEnergy(island.bodies) - island.energyBefore_j);
+    removeAddedEnergy(apart, kineticEnergy(island.bodies) - island.energyBefore_j, island);
   if (rigidMode) island.gained_j += kineticEnergy(island.bodies) - island.energyBefore_j;
 }
 

@@ -2,11 +2,15 @@
 
 #include "core/tuning.h"
 #include "solver/contact/rigid_contacts.h"
+#include "solver/rigid/constraints.h"
+#include "solver/rigid/impact.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
+#include <utility>
 #include <vector>
 
 namespace springtower {
@@ -48,6 +52,23 @@ void markWhere(RigidIsland& island, const Pushes& pushes) {
   }
 }
 
+// Bounds the change from the velocities in island.motions to those of the bodies.
+void boundChange(RigidIsland& island, double most_j) {
+  Vec3 velocity;
+  Vec3 spin;
+  for (std::size_t i = 0; i < island.bodies.size(); ++i) {
+    RigidBody& body = island.bodies[i];
+    fromLanes(island.motions[i].linear, velocity);
+    fromLanes(island.motions[i].angular, spin);
+    std::swap(body.velocity, velocity);
+    std::swap(body.spin, spin);
+    toLanes(velocity, island.motions[i].linear);
+    toLanes(spin, island.motions[i].angular);
+  }
+  boundRebound(island, most_j);
+  writeBodies(island);
+}
+
 }  // namespace
 
 void setContactRebounds(const IslandStep& step, RigidIsland& island) {
@@ -73,7 +94,7 @@ void markTouching(RigidIsland& island) {
   markWhere(island, [](const RigidContact& /*contact*/, const RigidBody& /*body*/) { return true; });
 }
 
-void applyContactRebounds(IslandStep& step, RigidIsland& island) {
+void applyContactRebounds(IslandStep& step, RigidIsland& island, double most_j) {
   markPushed(step, island);
   double fastest = 0.0;
   std::vector<double>& extra = island.pivoting.column;
@@ -87,14 +108,17 @@ void applyContactRebounds(IslandStep& step, RigidIsland& island) {
     fastest = std::max(fastest, contact.impact);
   }
   if (!(fastest > 0.0)) return;
-  for (int pass = 0; pass < tuning::kMaxImpactPasses; ++pass) {
-    double most = 0.0;
+  island.motions.resize(island.bodies.size() + 1);
+  readVelocities(island);
+  double left = std::numeric_limits<double>::infinity();
+  for (int pass = 0; pass < tuning::kMaxImpactPasses && left > tuning::kImpactPrecision * fastest; ++pass) {
+    left = 0.0;
     for (std::size_t i = 0; i < island.contacts.size(); ++i) {
-      if (island.contacts[i].impact >= 0.0) most = std::max(most, solveRebound(island, island.contacts[i], extra[i]));
+      if (island.contacts[i].impact >= 0.0) left = std::max(left, solveRebound(island, island.contacts[i], extra[i]));
     }
     step.counters.contactEvaluations += island.contacts.size();
-    if (!(most > tuning::kImpactPrecision * fastest)) return;
   }
+  if (step.driven.empty()) boundChange(island, most_j);
 }
 
 }  // namespace springtower

@@ -9,6 +9,7 @@
 #include "solver/contact/pushes.h"
 #include "solver/contact/rigid_contacts.h"
 #include "solver/contact/update.h"
+#include "solver/rigid/impact.h"
 #include "solver/rigid/list_points.h"
 #include "solver/rigid/methods.h"
 #include "solver/rigid/rebound.h"
@@ -127,6 +128,7 @@ void stepOnce(IslandStep& step) {
     body.moved.setZero();
     body.turned.setZero();
   }
+  double most_j = kineticEnergy(island.bodies);
   gatherContacts(step, island);
   setContactRebounds(step, island);
   clock.lap(Stage::contacts);
@@ -135,7 +137,10 @@ void stepOnce(IslandStep& step) {
   } else {
     stepXpbd(step, island);
   }
-  applyContactRebounds(step, island);
+  for (const RigidBody& body : island.bodies) {
+    if (body.inverseMass > 0.0) most_j += body.moved.dot(step.gravity) / body.inverseMass;
+  }
+  applyContactRebounds(step, island, most_j);
   storeForces(step, island);
   clock.lap(Stage::contacts);
   writePositions(island, step.blocks, step.simulation.state.position);

@@ -34,7 +34,8 @@ struct RigidBody : RigidPose {
   Eigen::Matrix3d inverseInertia = Eigen::Matrix3d::Zero();  ///< 1/(kg m2), world axes
   RigidPose before;                                          ///< at the start of the step
   Vec3 velocityBefore = Vec3::Zero();                        ///< m/s, at the start of the substep
-  bool struck = false;                                       ///< whether an impact has changed its velocity in the substep
+  bool struck = false;                                       ///< whether an impact acts on it in the substep
+  double taken = 0.0;                                        ///< N s of that which the next substep does not start with
   Vec3 moved = Vec3::Zero();                                 ///< m, displacement so far in the step
   Vec3 turned = Vec3::Zero();                                ///< rad, rotation so far in the step, to first order
   bool pushed = false;                                       ///< whether a contact pushes it in this step
