@@ -23,12 +23,20 @@ still() {
   mv "$scratch/$(printf 'frame-%05d.png' "$2")" "docs/pictures/$1.png"
 }
 
+# The viewer as it opens, with the mouse on a block. What it was before that is opens_before.png, of commit fd7d2a2.
+opens() {
+  printf '%s\n' '1 60 120' '60 380 330' >"$scratch/mouse"
+  "$viewer" --headless --scene tower:18 --seed 1 --mode play --players 1 --mouse "$scratch/mouse" --size 800x600 \
+    --frames 120 --png-every 120 --png "$scratch"
+  mv "$scratch/frame-00120.png" docs/pictures/opens.png
+}
+
 stills() {
   still load 120 -52:18:0.44 --scene tower:9 --overlay load --arrows
   still hints 120 -52:18:0.44 --scene tower:9 --overlay hints
+  opens
 }
 
-<<<<<<< HEAD
 charts() {
   "$bin/springtower" chart --scenes uniform,wall --out "$scratch/chart" \
     --peers bench/data/peers/records.csv,bench/data/peers/stacks.csv
@@ -37,18 +45,6 @@ charts() {
   "$bin/springtower" profile --scenes rest --rows 3,6,7,9,12,18,24,36,54,72 --out "$scratch/profile"
   cp "$scratch/profile/figure_6_23.png" docs/pictures/figure_6_23.png
 }
-=======
-# The viewer as it opens, with the mouse on a block. What it was before that is opens_before.png, of commit fd7d2a2.
-printf '%s\n' '1 60 120' '60 380 330' >"$scratch/mouse"
-"$viewer" --headless --scene tower:18 --seed 1 --mode play --players 1 --mouse "$scratch/mouse" --size 800x600 \
-  --frames 120 --png-every 120 --png "$scratch"
-mv "$scratch/frame-00120.png" docs/pictures/opens.png
-
-build/release/bin/springtower chart --scenes uniform,wall --out "$scratch/chart" \
-  --peers bench/data/peers/records.csv,bench/data/peers/stacks.csv
-cp "$scratch/chart/uniform_penetration_mm.png" docs/pictures/speed_accuracy.png
-cp "$scratch/chart/wall_penetration_mm.png" docs/pictures/speed_accuracy_wall.png
->>>>>>> 0f52f363b55dd2af69d44bc68a9206c14dafe54e
 
 (($#)) || set -- moving stills charts
 for part in "$@"; do
