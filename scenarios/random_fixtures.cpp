@@ -11,13 +11,6 @@ namespace {
 constexpr double kShareWithSurfaces = 0.5;
 constexpr double kShareWithFixtures = 0.3;
 
-Friction drawFriction(RandomDraw& draw, double most) {
-  Friction friction;
-  friction.staticFriction = draw.chance(0.1) ? 0.0 : draw.between(0.0, most);
-  friction.kineticFriction = friction.staticFriction * (draw.chance(0.4) ? draw.between(0.3, 1.0) : 1.0);
-  return friction;
-}
-
 double drawRestitution(RandomDraw& draw) {
   return std::array{0.0, 1.0, draw.between(0.0, 1.0)}[draw.pick({0.15, 0.05, 0.8})];
 }
@@ -66,18 +59,25 @@ Drive drawDrive(RandomDraw& draw, const Scene& scene, int block) {
 
 }  // namespace
 
+Friction drawFriction(RandomDraw& draw, double most) {
+  Friction friction;
+  friction.staticFriction = draw.chance(0.1) ? 0.0 : draw.between(0.0, most);
+  friction.kineticFriction = friction.staticFriction * (draw.chance(0.4) ? draw.between(0.3, 1.0) : 1.0);
+  return friction;
+}
+
 void drawSurfaces(RandomDraw& draw, double most, Scene& scene) {
   if (!draw.chance(kShareWithSurfaces)) return;
   scene.restitution = drawRestitution(draw);
   const bool blocks = draw.chance(0.3);
   for (BlockSpec& block : scene.blocks) {
-    const bool rebounds = draw.chance(0.3);
+    const bool ownRestitution = draw.chance(0.3);
     const double restitution = drawRestitution(draw);
-    const bool rubs = draw.chance(0.3);
+    const bool ownFriction = draw.chance(0.3);
     const Friction friction = drawFriction(draw, most);
     if (!blocks || block.row >= 0) continue;
-    if (rebounds) block.restitution = restitution;
-    if (rubs) block.friction = friction;
+    if (ownRestitution) block.restitution = restitution;
+    if (ownFriction) block.friction = friction;
   }
   if (draw.chance(0.2) && scene.floor) scene.floorFriction = drawFriction(draw, most);
   if (draw.chance(0.2)) drawFrictionPairs(draw, most, scene);

@@ -13,6 +13,9 @@ inline constexpr double kMaxDriveFrequency_hz = 10.0;
 
 // What random scenes have beside their blocks. Half of them have none of it, and one restitution and friction for all.
 
+/// Coefficients of friction: none in a tenth, else the static one evenly up to `most`; the kinetic one is smaller in 40 %.
+Friction drawFriction(RandomDraw& draw, double most);
+
 /// Restitution of the scene and of single blocks; friction of the floor, of single blocks and of pairs of blocks. Blocks of a
 /// tower (row not negative) have no surfaces of their own, as its code cannot say them. Static friction is at most `most`.
 void drawSurfaces(RandomDraw& draw, double most, Scene& scene);

@@ -29,8 +29,9 @@ void drawSurroundings(RandomDraw& draw, RandomScene& random) {
   const bool space = random.kind == RandomKind::space;
   const bool hand = random.kind == RandomKind::hand;
   scene.floor = !space;
-  scene.staticFriction = draw.chance(0.1) ? 0.0 : draw.between(0.0, kMaxRandomFriction);
-  scene.kineticFriction = scene.staticFriction * (draw.chance(0.4) ? draw.between(0.3, 1.0) : 1.0);
+  const Friction friction = drawFriction(draw, kMaxRandomFriction);
+  scene.staticFriction = friction.staticFriction;
+  scene.kineticFriction = friction.kineticFriction;
   const double gravity = draw.between(hand ? 2.0 : 0.0, kMaxRandomGravity_m_s2);
   if (draw.chance(0.5)) scene.gravity.magnitude = gravity;
   if (!hand && draw.chance(0.03)) scene.gravity.magnitude = 0.0;

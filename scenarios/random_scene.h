@@ -43,8 +43,8 @@ struct RandomScene {
 };
 
 /// The scene of a seed: sizes, masses, friction, gravity, speeds, method and settings are drawn within the limits above, most of
-/// them evenly in their logarithm; then surfaces, fixed and driven blocks (scenarios/random_fixtures.h). checkScene accepts it: where a draw is refused the next of the same stream is taken. The same
-/// on every machine.
+/// them evenly in their logarithm; then surfaces, fixed and driven blocks (scenarios/random_fixtures.h). checkScene accepts it:
+/// where a draw is refused the next of the same stream is taken. The same on every machine.
 RandomScene randomScene(std::uint64_t seed);
 
 /// Puts the tower of `towerCode` in the place of the scene's first `towerBlocks` blocks. Throws InputError for a code, options,

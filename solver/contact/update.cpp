@@ -62,9 +62,9 @@ struct Paths {
 };
 
 // Adds the path of each block's fastest corner. A block of springs has diverged when its corners move relative to one another by
-// half its least side in one step; a rigid block may have any spin. Nor is any block as fast as tuning::kMaxSpeed: larger swept
-// boxes would be tried without end. The condition is written so that
-// NaN, which fails every comparison, counts as diverged.
+// half its least side in one step (a rigid block may have any spin), and every block has when it is faster than
+// tuning::kMaxSpeed, as larger swept boxes would be tried without end. The condition is written so that NaN, which fails every
+// comparison, counts as diverged.
 SPRINGTOWER_KERNEL
 Paths addPathsOf(IslandStep& step, std::span<const std::int32_t> blocks) {
   Paths paths;

@@ -43,7 +43,7 @@ Momenta momentaOf(const RigidIsland& island) {
 
 }  // namespace
 
-bool isApart(const RigidIsland& island) {
+bool isIsolated(const RigidIsland& island) {
   const auto moves = [&](std::int32_t at) {
     return at != unmovedBody(island) && island.bodies[static_cast<std::size_t>(at)].inverseMass != 0.0;
   };
@@ -71,12 +71,12 @@ void restoreAngularMomentum(const Vec3& momentum, RigidIsland& island) {
   }
 }
 
-void removeAddedEnergy(bool apart, double added_j, RigidIsland& island) {
+void removeAddedEnergy(bool isolated, double added_j, RigidIsland& island) {
   if (added_j <= 0.0) return;
   Momenta common;
   Vec3 spin = Vec3::Zero();
   double relative_j = kineticEnergy(island.bodies);
-  if (apart) {
+  if (isolated) {
     common = momentaOf(island);
     spin = common.moment.inverse() * common.angular;
     relative_j -= 0.5 * (common.mass * common.velocity.squaredNorm() + spin.dot(common.angular));

@@ -8,7 +8,7 @@ namespace springtower {
 
 /// Whether no block may touch what does not move by impulses in the substep: the floor, a fixed, driven or sleeping block. By the
 /// points that are packed.
-bool isApart(const RigidIsland& island);
+bool isIsolated(const RigidIsland& island);
 
 /// Angular momentum about the centre of mass, kg m2/s.
 Vec3 angularMomentum(const RigidIsland& island);
@@ -18,7 +18,7 @@ Vec3 angularMomentum(const RigidIsland& island);
 void restoreAngularMomentum(const Vec3& momentum, RigidIsland& island);
 
 /// Where push-out or unconverged passes have raised the kinetic energy by `added_j` (J) beyond the work of gravity: scales the
-/// velocities down by the excess. Of an island that is apart, only the motion relative to that of the whole is scaled.
-void removeAddedEnergy(bool apart, double added_j, RigidIsland& island);
+/// velocities down by the excess. Of an isolated island, only the motion relative to that of the whole is scaled.
+void removeAddedEnergy(bool isolated, double added_j, RigidIsland& island);
 
 }  // namespace springtower

@@ -118,6 +118,12 @@ double kineticEnergy(const std::vector<RigidBody>& bodies) {
   return 0.5 * twice;
 }
 
+void addWorkOfGravity(const IslandStep& step, RigidIsland& island) {
+  for (const RigidBody& body : island.bodies) {
+    if (body.inverseMass > 0.0) island.energyBefore_j += body.moved.dot(step.gravity) / body.inverseMass;
+  }
+}
+
 // The energy is a square polynomial of the share of the change.
 void boundRebound(RigidIsland& island, double most_j) {
   double start = 0.0;
@@ -159,11 +165,11 @@ double growthOf(const PackedPoints& packed, const PackedPair& pair, int lane) {
   return growth;
 }
 
-// Hands on which blocks are struck, from one to the next; returns whether any is new. Those whose velocity an impact has changed
-// are; so is a block that would be as fast without what is taken back on its other side: a light one that a heavy one presses on
-// the floor.
-bool handOnStruck(RigidIsland& island, double least) {
-  for (RigidBody& body : island.bodies) body.taken = 0.0;
+// Marks the blocks next to those that an impact has struck as struck too, where the push that is removed between them would
+// change their velocity as much; returns whether any is new. So is a light block between a heavy one and the floor, which keeps
+// its velocity while both push it.
+bool spreadImpact(RigidIsland& island, double least) {
+  for (RigidBody& body : island.bodies) body.removed = 0.0;
   const auto bodyAt = [&](std::int32_t at) {
     return at == unmovedBody(island) ? nullptr : &island.bodies[static_cast<std::size_t>(at)];
   };
@@ -173,13 +179,13 @@ bool handOnStruck(RigidIsland& island, double least) {
         RigidBody* upper = bodyAt(pair.upper[lane]);
         RigidBody* lower = bodyAt(pair.lower[lane]);
         if (pair.group[lane] < 0 || upper == nullptr || lower == nullptr || upper->struck == lower->struck) continue;
-        (upper->struck ? lower : upper)->taken += growthOf(*packed, pair, static_cast<int>(lane));
+        (upper->struck ? lower : upper)->removed += growthOf(*packed, pair, static_cast<int>(lane));
       }
     }
   }
   bool any = false;
   for (RigidBody& body : island.bodies) {
-    if (body.struck || !(body.taken * body.inverseMass > least)) continue;
+    if (body.struck || !(body.removed * body.inverseMass > least)) continue;
     body.struck = true;
     any = true;
   }
@@ -205,7 +211,7 @@ void forgetPair(PackedPoints& packed, const PackedPair& pair, int lane, bool& me
 void forgetImpact(IslandStep& step, RigidIsland& island) {
   const double least = leastReboundSpeed(step.simulation);
   for (RigidBody& body : island.bodies) body.struck = (body.velocity - body.velocityBefore).squaredNorm() > least * least;
-  while (handOnStruck(island, least)) {
+  while (spreadImpact(island, least)) {
   }
   const auto isStruck = [&](std::int32_t at) {
     return at != unmovedBody(island) && island.bodies[static_cast<std::size_t>(at)].struck;

@@ -30,6 +30,9 @@ void boundRebound(RigidIsland& island, double most_j);
 /// substep with the impulses that there were before; those of the impact would act a second time. Notes which pairs have met.
 void forgetImpact(IslandStep& step, RigidIsland& island);
 
+/// Adds the work of gravity in the substep, by the way of each body in it, to island.energyBefore_j.
+void addWorkOfGravity(const IslandStep& step, RigidIsland& island);
+
 /// Kinetic energy, J.
 double kineticEnergy(const std::vector<RigidBody>& bodies);
 

@@ -186,15 +186,6 @@ int rigidModePasses(const IslandStep& step, const RigidIsland& island) {
   return 2.0 * island.energyBefore_j < massOf(island) * slow * slow ? tuning::kSlowIslandPasses : tuning::kFastIslandPasses;
 }
 
-// Moves the bodies by their velocities; adds the work of gravity to island.energyBefore_j.
-void moveBodies(IslandStep& step, RigidIsland& island) {
-  for (RigidBody& body : island.bodies) {
-    moveInStep(step, body);
-    if (body.inverseMass == 0.0) continue;  // driven
-    island.energyBefore_j += body.moved.dot(step.gravity) / body.inverseMass;
-  }
-}
-
 }  // namespace
 
 // Sequential impulses (projected Gauss-Seidel on velocities; Catto 2005) with warm starting. Separated blocks may approach by
@@ -227,20 +218,21 @@ void stepImpulses(IslandStep& step, RigidIsland& island) {
   choosePatchFriction(step, island);
   applyForces(step);
   readVelocities(island);
-  const bool apart = isApart(island);
-  const Vec3 momentum = apart ? angularMomentum(island) : Vec3(Vec3::Zero());
+  const bool isolated = isIsolated(island);
+  const Vec3 momentum = isolated ? angularMomentum(island) : Vec3(Vec3::Zero());
   int passes = scene.settings.iterations;
   if (rigidMode) passes = std::max(passes, rigidModePasses(step, island));
   stopAtContact(step, island, passes);
   island.touches = markPushedByPoints(step, island);
-  moveBodies(step, island);
+  for (RigidBody& body : island.bodies) moveInStep(step, body);
+  addWorkOfGravity(step, island);
   moveGaps(island);
   relaxAndRebound(step, island, scene.settings.iterations);
+  if (isolated) restoreAngularMomentum(momentum, island);
   // Not in the rigid methods: there, blocks of a stack move by such slow pushes only, and the clamp would suppress them.
   // Nor with a driven block, which does work.
-  if (apart) restoreAngularMomentum(momentum, island);
   if (rigidMode && island.touches && step.driven.empty())
-    removeAddedEnergy(apart, kineticEnergy(island.bodies) - island.energyBefore_j, island);
+    removeAddedEnergy(isolated, kineticEnergy(island.bodies) - island.energyBefore_j, island);
   if (rigidMode) island.gained_j += kineticEnergy(island.bodies) - island.energyBefore_j;
 }
 

@@ -53,7 +53,7 @@ void markWhere(RigidIsland& island, const Pushes& pushes) {
 }
 
 // Bounds the change from the velocities in island.motions to those of the bodies.
-void boundChange(RigidIsland& island, double most_j) {
+void boundChange(RigidIsland& island) {
   Vec3 velocity;
   Vec3 spin;
   for (std::size_t i = 0; i < island.bodies.size(); ++i) {
@@ -65,7 +65,7 @@ void boundChange(RigidIsland& island, double most_j) {
     toLanes(velocity, island.motions[i].linear);
     toLanes(spin, island.motions[i].angular);
   }
-  boundRebound(island, most_j);
+  boundRebound(island, island.energyBefore_j);
   writeBodies(island);
 }
 
@@ -94,7 +94,7 @@ void markTouching(RigidIsland& island) {
   markWhere(island, [](const RigidContact& /*contact*/, const RigidBody& /*body*/) { return true; });
 }
 
-void applyContactRebounds(IslandStep& step, RigidIsland& island, double most_j) {
+void applyContactRebounds(IslandStep& step, RigidIsland& island) {
   markPushed(step, island);
   double fastest = 0.0;
   std::vector<double>& extra = island.pivoting.column;
@@ -118,7 +118,7 @@ void applyContactRebounds(IslandStep& step, RigidIsland& island, double most_j) 
     }
     step.counters.contactEvaluations += island.contacts.size();
   }
-  if (step.driven.empty()) boundChange(island, most_j);
+  if (step.driven.empty()) boundChange(island);
 }
 
 }  // namespace springtower

@@ -17,8 +17,8 @@ void markPushed(const IslandStep& step, RigidIsland& island);
 void markTouching(RigidIsland& island);
 
 /// After a step: what pushed and meets fast parts, by passes over the contacts that pushed. Marks the bodies that a contact
-/// pushes. Kinetic energy is at most `most_j` (J) after it, or what it was before: several blocks that meet at once, with
-/// friction, would gain some by Newton's law.
-void applyContactRebounds(IslandStep& step, RigidIsland& island, double most_j);
+/// pushes. Kinetic energy is at most island.energyBefore_j after it, or what it was before: several blocks that meet at once,
+/// with friction, would gain some by Newton's law.
+void applyContactRebounds(IslandStep& step, RigidIsland& island);
 
 }  // namespace springtower

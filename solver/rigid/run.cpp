@@ -128,7 +128,7 @@ void stepOnce(IslandStep& step) {
     body.moved.setZero();
     body.turned.setZero();
   }
-  double most_j = kineticEnergy(island.bodies);
+  island.energyBefore_j = kineticEnergy(island.bodies);
   gatherContacts(step, island);
   setContactRebounds(step, island);
   clock.lap(Stage::contacts);
@@ -137,10 +137,8 @@ void stepOnce(IslandStep& step) {
   } else {
     stepXpbd(step, island);
   }
-  for (const RigidBody& body : island.bodies) {
-    if (body.inverseMass > 0.0) most_j += body.moved.dot(step.gravity) / body.inverseMass;
-  }
-  applyContactRebounds(step, island, most_j);
+  addWorkOfGravity(step, island);
+  applyContactRebounds(step, island);
   storeForces(step, island);
   clock.lap(Stage::contacts);
   writePositions(island, step.blocks, step.simulation.state.position);

@@ -35,7 +35,7 @@ struct RigidBody : RigidPose {
   RigidPose before;                                          ///< at the start of the step
   Vec3 velocityBefore = Vec3::Zero();                        ///< m/s, at the start of the substep
   bool struck = false;                                       ///< whether an impact acts on it in the substep
-  double taken = 0.0;                                        ///< N s of that which the next substep does not start with
+  double removed = 0.0;                                      ///< N s of an impact with which its contacts do not start again
   Vec3 moved = Vec3::Zero();                                 ///< m, displacement so far in the step
   Vec3 turned = Vec3::Zero();                                ///< rad, rotation so far in the step, to first order
   bool pushed = false;                                       ///< whether a contact pushes it in this step

@@ -1,11 +1,11 @@
 #include "tests/random/judge.h"
 
 #include "scenarios/random_scene.h"
-#include "solver/block/inertia.h"
 #include "solver/hand/grip.h"
 #include "solver/law/user_force.h"
 #include "solver/metrics/penetration.h"
 #include "tests/random/course.h"
+#include "tests/support/momenta.h"
 
 #include <algorithm>
 #include <cmath>
@@ -110,32 +110,6 @@ class EnergyWatch {
   double scale_j_ = 0.0;
   double most_j_ = 0.0;
 };
-
-struct Momenta {
-  Vec3 linear = Vec3::Zero();
-  Vec3 angular = Vec3::Zero();  // about the centre of mass at the start
-  double linearSum = 0.0;       // without directions
-  double angularSum = 0.0;
-};
-
-// With the mass matrix in force: the mean of a block's corners moves with the whole mass, what differs from it with m / own each.
-Momenta momentaOf(const Simulation& simulation, const Vec3& about) {
-  Momenta sum;
-  const double own = inverseMass(simulation.scene.settings.inertia).own;
-  for (std::size_t b = 0; b < simulation.model.blockCount(); ++b) {
-    const double mass = simulation.model.mass[b];
-    const Vec3 mean = centre(simulation.state.velocity, b);
-    sum.linear += mass * mean;
-    sum.linearSum += mass * mean.norm();
-    for (std::size_t c = 0; c < kCorners; ++c) {
-      const Vec3 part = mass / kCorners * mean + mass / own * (simulation.state.velocity.at(b, c) - mean);
-      const Vec3 arm = simulation.state.position.at(b, c) - about;
-      sum.angular += arm.cross(part);
-      sum.angularSum += arm.norm() * part.norm();
-    }
-  }
-  return sum;
-}
 
 Vec3 centreOfMass(const Simulation& simulation) {
   Vec3 sum = Vec3::Zero();

@@ -45,8 +45,8 @@ TEST(ImpactEnergy, DoesNotRiseWithoutFriction) {
   }
 }
 
-// A heavy cube falls on a block that lies on the floor, which cannot give way: what pushes it from below in the impact ends with
-// it. The bounds are what the issue allows where blocks are pushed apart, in a frame and over a run.
+// A heavy cube falls on a block that lies on the floor: the floor's push in the impact ends with the impact. The bounds are what
+// the issue allows where blocks are pushed apart, in a frame and over a run.
 TEST(ImpactEnergy, DoesNotRiseWhereAHeavyBlockFallsOnALightOne) {
   for (const double ratio : {10.0, 100.0, 1000.0}) {
     for (const double tilt_rad : {0.0, 0.05, 0.17}) {
