@@ -38,12 +38,16 @@ function(springtower_precompile target)
     <Eigen/Cholesky> <Eigen/Core> <Eigen/Geometry> <Eigen/LU> ${ARGN})
 endfunction()
 
-# springtower_add_library(<folder> PUBLIC <targets> PRIVATE <targets>)
-# Adds springtower_<folder> from all sources of the current folder and the folders in it. A folder that has only headers becomes an interface library.
+# springtower_add_library(<folder> [WITHOUT <folder in it>] PUBLIC <targets> PRIVATE <targets>)
+# Adds springtower_<folder> from all sources of the current folder and the folders in it, but for one that is a library of its own.
+# A folder that has only headers becomes an interface library.
 function(springtower_add_library folder)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "PUBLIC;PRIVATE")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "WITHOUT" "PUBLIC;PRIVATE")
   set(target springtower_${folder})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/*.cpp")
+  if(arg_WITHOUT)
+    list(FILTER sources EXCLUDE REGEX "^${CMAKE_CURRENT_SOURCE_DIR}/${arg_WITHOUT}/")
+  endif()
   if(sources)
     add_library(${target} STATIC ${sources})
     springtower_configure_target(${target})

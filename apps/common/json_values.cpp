@@ -12,14 +12,6 @@ std::string jsonText(const nlohmann::ordered_json& json, int indent) {
   return json.dump(indent, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
-bool isUtf8(const std::string& text) {
-  try {
-    return !nlohmann::ordered_json(text).dump().empty();
-  } catch (const nlohmann::ordered_json::type_error&) {
-    return false;
-  }
-}
-
 nlohmann::ordered_json blockJson(BlockId block) {
   return block == kFloor ? nlohmann::ordered_json("floor") : nlohmann::ordered_json(index(block));
 }

@@ -17,9 +17,6 @@ nlohmann::ordered_json vectorJson(const Vec3& vector);
 /// those become U+FFFD.
 std::string jsonText(const nlohmann::ordered_json& json, int indent = -1);
 
-/// Whether a text can stand in JSON as it is.
-bool isUtf8(const std::string& text);
-
 /// The block's number, or "floor".
 nlohmann::ordered_json blockJson(BlockId block);
 

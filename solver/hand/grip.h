@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/hand.h"
 #include "core/tuning.h"
 #include "solver/world/simulation.h"
 
@@ -10,20 +11,6 @@ namespace springtower {
 // The hand holds a block as a whole: bounded springs, solved together with all others, pull its centre and orientation to the
 // targets set by a mouse or a script. Nothing overwrites a velocity, so the hand is never stronger than its limit (report 5.6 had
 // to choose between a block that swings round the cursor and a hand with "super strength").
-
-/// Target of the hand in one frame.
-struct Hand {
-  BlockId block = kFloor;                                    ///< kFloor: no block is held
-  Vec3 place = Vec3::Zero();                                 ///< m, target of the block's centre at the frame's end
-  Eigen::Quaterniond turn = Eigen::Quaterniond::Identity();  ///< from the block's axes to the world's; unit
-  double limit_n = tuning::kGripForce_n;  ///< N, largest force; the torque is limited to this times half the block's middle side,
-                                          ///< as for two fingers on its sides
-  Vec3 velocity = Vec3::Zero();           ///< m/s, of the place during the frame
-  double rate_rad_s = tuning::kFollowFrequency_rad_s;  ///< natural frequency of the spring to its place
-  Vec3 line = Vec3::Zero();  ///< unit if the hand draws along a line, otherwise zero. The block's supports then determine its
-                             ///< height, and the hand supports its overhang, so that its other end does not lift blocks on it;
-                             ///< both are limited by the block's weight
-};
 
 /// Distance left after a time, from rest at distance 1, of a free block that follows the hand: critically damped, (1 + w t) e^(-w
 /// t), so it never overshoots.

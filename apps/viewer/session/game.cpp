@@ -2,6 +2,7 @@
 
 #include "apps/viewer/session/footprint.h"
 #include "core/tuning.h"
+#include "scenarios/recorded/recording.h"
 #include "solver/block/inertia.h"
 #include "solver/statics/loose.h"
 

@@ -16,8 +16,6 @@ namespace springtower {
 // down any other block loses. All of it is a function of the blocks' positions and the hand, frame by frame, so a replay plays
 // the same game.
 
-inline constexpr int kMaxPlayers = 4;
-
 /// Where a move stands.
 enum class Phase { choose, moving, over };
 

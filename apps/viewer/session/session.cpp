@@ -129,26 +129,6 @@ Session::Session(const Scene& given, int players)
   keep(*this);
 }
 
-Tuning tuningOf(const Scene& scene) {
-  return {scene.settings.method, scene.settings.sleep, toleranceOf(scene), scene.staticFriction};
-}
-
-Scene withTuning(Scene scene, const Tuning& tuning) {
-  const Tuning own = tuningOf(scene);
-  scene.settings.method = tuning.method;
-  scene.settings.sleep = tuning.sleep;
-  if (tuning.tolerance_m != own.tolerance_m) {
-    scene.settings.tolerance_m = tuning.tolerance_m;
-    scene.settings.substeps = 0;
-  }
-  // A scene may give two coefficients; they stay two until the user sets one.
-  if (tuning.friction != own.friction) {
-    scene.staticFriction = tuning.friction;
-    scene.kineticFriction = tuning.friction;
-  }
-  return scene;
-}
-
 void prepareStart(Session& session) {
   if (session.frame > 0 || !session.failure.empty() || isPrepared(session.simulation)) return;
   try {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "apps/viewer/session/game.h"
+#include "scenarios/recorded/recording.h"
 #include "solver/hand/grip.h"
 
 #include <algorithm>
@@ -13,27 +14,6 @@
 #include <vector>
 
 namespace springtower {
-
-/// What a user may change while the scene runs.
-struct Tuning {
-  Method method = Method::semiImplicitEuler;
-  Sleep sleep = Sleep::on;
-  double tolerance_m = kBlockTolerance_m;
-  double friction = 0.4;
-  bool operator==(const Tuning&) const = default;
-};
-
-/// All that acts on one frame from outside: the input that a recording keeps.
-struct FrameInput {
-  Hand hand;
-  Tuning tuning;
-};
-
-/// One frame of the past: what acted on it, and the state it led to.
-struct LoggedFrame {
-  FrameInput input;
-  std::uint64_t hash = 0;  ///< stateHash after the frame
-};
 
 /// A state that can be gone back to.
 struct Keyframe {
@@ -72,12 +52,6 @@ struct Session {
   double frame_ms = 0.0;             ///< what the last frame took
   std::string failure;               ///< why the simulation ended; empty while it goes on
 };
-
-/// The tuning that a scene starts with.
-Tuning tuningOf(const Scene& scene);
-
-/// The scene with a tuning put over it.
-Scene withTuning(Scene scene, const Tuning& tuning);
 
 /// Finds the equilibrium that the first frame starts from, ahead of it: for uneven towers that takes as long as many frames. Does
 /// nothing after the first frame, and leaves a divergence to that.

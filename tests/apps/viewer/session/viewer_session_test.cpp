@@ -1,22 +1,16 @@
 #include "apps/viewer/session/recording.h"
 #include "apps/viewer/session/session.h"
-#include "core/error.h"
 #include "solver/metrics/measures.h"
 #include "tests/apps/commands/loose_tower.h"
 #include "tests/apps/viewer/session/viewer_play.h"
 #include "tests/support/program.h"
 
-#include <fmt/format.h>
 #include <fstream>
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <map>
 #include <sstream>
 
 namespace springtower {
 namespace {
-
-using ::testing::HasSubstr;
 
 constexpr double kFrame_s = 1.0 / 60.0;
 
@@ -220,112 +214,6 @@ TEST(ViewerRecording, NamesTheFrameThatDiffers) {
   EXPECT_EQ(*replay.differs, 30U);
 }
 
-TEST(ViewerRecording, BrokenFilesNameTheLine) {
-  const ScratchFolder scratch;
-  const std::string path = scratch.file("recording.jsonl");
-  const std::string head = R"({"springtower_recording":1,"scene":"tower:1","players":0})";
-  const std::pair<std::string, std::string> broken[] = {
-      {"", "empty"},
-      {R"({"scene":"tower:1"})", "line 1"},
-      {head + "\n{\"hash\":\"zz\"}", "line 2: hash"},
-      {head + "\n{\"hash\":\"0\"}\nnonsense", "line 3"},
-      {head + "\n" + R"({"hash":"0","hand":{"block":3,"place":[0,0,0],"turn":[1,0,0,0],"limit_n":5}})",
-       "found 3, allowed 0 to 2"}};
-  for (const auto& [text, expected] : broken) {
-    std::ofstream(path) << text;
-    try {
-      readRecording(path);
-      ADD_FAILURE() << text;
-    } catch (const InputError& error) {
-      EXPECT_THAT(error.what(), HasSubstr(expected));
-    }
-  }
-  EXPECT_THROW(readRecording(scratch.file("none")), InputError);
-}
-
-struct BadRecording {
-  const char* name;
-  const char* key;    // of the header, or of the hand or the tuning of the first frame
-  const char* value;  // in place of a good one
-  const char* found;  // part of what must be said
-};
-
-class ViewerRecordingNumbers : public ::testing::TestWithParam<BadRecording> {};
-
-// A number that is no whole one, or no number at all, is undefined where it is cast.
-TEST_P(ViewerRecordingNumbers, AreChecked) {
-  std::map<std::string, std::string> values = {
-      {"players", "0"},         {"seed", "1"},         {"heights_sigma_m", "0"},
-      {"mass_sigma_kg", "0"},   {"start_gap_m", "0"},  {"scene_bytes", "[116,111,119,101,114,58,49]"},
-      {"tolerance_m", "5e-05"}, {"friction", "0.4"},   {"block", "2"},
-      {"place", "[0,0,0.01]"},  {"turn", "[1,0,0,0]"}, {"limit_n", "5"}};
-  const auto write = [&](const std::string& path) {
-    const auto pair = [&](const std::string& key) { return fmt::format("\"{}\":{}", key, values.at(key)); };
-    std::ofstream(path) << fmt::format(
-        "{{\"springtower_recording\":1,\"scene\":\"tower:1\",{},{},{},{},{},{}}}\n{{\"hash\":\"1\",\"tuning\":{{"
-        "\"method\":\"implicit\",\"sleep\":\"on\",{},{}}},\"hand\":{{{},{},{},{}}}}}\n",
-        pair("players"), pair("seed"), pair("heights_sigma_m"), pair("mass_sigma_kg"), pair("start_gap_m"), pair("scene_bytes"),
-        pair("tolerance_m"), pair("friction"), pair("block"), pair("place"), pair("turn"), pair("limit_n"));
-  };
-  const ScratchFolder scratch;
-  const std::string path = scratch.file("recording.jsonl");
-  write(path);
-  EXPECT_EQ(readRecording(path).frames.size(), 1U);
-  const BadRecording& bad = GetParam();
-  values.at(bad.key) = bad.value;
-  write(path);
-  try {
-    readRecording(path);
-    ADD_FAILURE() << bad.key << ": " << bad.value;
-  } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), testing::StartsWith(path + ", line "));
-    EXPECT_THAT(error.what(), HasSubstr(bad.key));
-    EXPECT_THAT(error.what(), HasSubstr(bad.found));
-  }
-}
-
-INSTANTIATE_TEST_SUITE_P(All, ViewerRecordingNumbers,
-                         ::testing::Values(BadRecording{"PlayersFloat", "players", "1e300", "found 1e+300, allowed 0 to 4"},
-                                           BadRecording{"PlayersNegative", "players", "-5", "found -5"},
-                                           BadRecording{"PlayersMany", "players", "100000", "100000"},
-                                           BadRecording{"PlayersText", "players", "\"2\"", "found '\"2\"'"},
-                                           BadRecording{"SeedFloat", "seed", "1e300", "found 1e+300"},
-                                           BadRecording{"SeedNegative", "seed", "-1", "found -1"},
-                                           BadRecording{"SeedHuge", "seed", "18446744073709551615", "found 18446744073709551615"},
-                                           BadRecording{"HeightsSigma", "heights_sigma_m", "1", "found 1, allowed"},
-                                           BadRecording{"MassSigma", "mass_sigma_kg", "-1", "found -1"},
-                                           BadRecording{"StartGap", "start_gap_m", "null", "found 'null'"},
-                                           BadRecording{"NoByte", "scene_bytes", "[256]", "found 256, allowed 0 to 255"},
-                                           BadRecording{"NoBytes", "scene_bytes", "{}", "found an object"},
-                                           BadRecording{"Tolerance", "tolerance_m", "-1", "found -1, allowed"},
-                                           BadRecording{"ToleranceText", "tolerance_m", "\"1\"", "found '\"1\"'"},
-                                           BadRecording{"Friction", "friction", "11", "found 11"},
-                                           BadRecording{"BlockFloat", "block", "1e300", "found 1e+300"},
-                                           BadRecording{"BlockNotThere", "block", "3", "found 3, allowed 0 to 2"},
-                                           BadRecording{"Place", "place", "[0,0,1e308]", "found 1e+308"},
-                                           BadRecording{"PlaceShort", "place", "[0,0]", "found an array"},
-                                           BadRecording{"TurnZero", "turn", "[0,0,0,0]", "length of the quaternion"},
-                                           BadRecording{"TurnNotUnit", "turn", "[1,0.1,0,0]", "length of the quaternion"},
-                                           BadRecording{"LimitNegative", "limit_n", "-5", "found -5"},
-                                           BadRecording{"LimitHuge", "limit_n", "1e300", "found 1e+300"},
-                                           BadRecording{"Deep", "limit_n", "[[[[1]]]]", "found an array"}),
-                         [](const auto& given) { return given.param.name; });
-
-TEST(ViewerRecording, FoldersLongLinesAndBlocksThatAreFixedAreRefused) {
-  const ScratchFolder scratch;
-  EXPECT_THAT([&] { readRecording(scratch.path().string()); },
-              testing::ThrowsMessage<InputError>(HasSubstr("found a folder, allowed is a file")));
-  EXPECT_THAT([&] { readRecording("/dev/zero"); }, testing::ThrowsMessage<InputError>(HasSubstr("line 1: found more than 1 MB")));
-  std::ofstream(scratch.file("scene.toml"))
-      << "[[block]]\ncentre_m = [0, 0, 0.0091]\nfixed = true\n[[block]]\ncentre_m = [0, 0, 0.0273]\n";
-  std::ofstream(scratch.file("recording.jsonl")) << fmt::format(
-      "{{\"springtower_recording\":1,\"scene\":\"{}\",\"players\":0}}\n"
-      "{{\"hash\":\"1\",\"hand\":{{\"block\":0,\"place\":[0,0,0],\"turn\":[1,0,0,0],\"limit_n\":5}}}}\n",
-      scratch.file("scene.toml"));
-  EXPECT_THAT([&] { readRecording(scratch.file("recording.jsonl")); },
-              testing::ThrowsMessage<InputError>(HasSubstr("line 2: block: found")));
-}
-
 // What a file holds while a game goes on is at any time the game so far, also after ways back and a new begin.
 TEST(ViewerRecording, FollowsASessionBackAndForth) {
   const ScratchFolder scratch;
@@ -367,18 +255,6 @@ TEST(ViewerRecording, FollowsASessionBackAndForth) {
   goTo(session, 6);
   writer.finish(choice, session);
   EXPECT_EQ(contentOf(scratch.file("game")), expected(6));
-}
-
-TEST(ViewerRecording, OfABrokenOffFileIsReadUpToThere) {
-  const ScratchFolder scratch;
-  const std::string path = scratch.file("recording.jsonl");
-  std::ofstream(path)
-      << R"({"springtower_recording":1,"scene":"tower:1","players":0})"
-      << "\n{\"hash\":\"1\",\"tuning\":{\"method\":\"implicit\",\"sleep\":\"on\",\"tolerance_m\":1e-5,\"friction\":0.4}}\n"
-      << "{\"hash\":\"2\"}\n{\"hash\":";
-  const Recording recording = readRecording(path);
-  EXPECT_EQ(recording.frames.size(), 2U);
-  EXPECT_THAT(recording.missing, HasSubstr("line 4: the line is cut off; the 2 frames before it"));
 }
 
 }  // namespace
