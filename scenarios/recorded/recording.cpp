@@ -17,6 +17,7 @@
 #include <optional>
 #include <ostream>
 #include <stdexcept>
+#include <utility>
 
 namespace springtower {
 namespace {
@@ -216,11 +217,41 @@ Scene sceneOf(const SceneChoice& choice, const std::string& where) {
 
 LoggedFrame frameFrom(const Json& line, const Scene& scene, const Tuning& before, const std::string& where) {
   LoggedFrame frame;
-  frame.hash = hashFrom(text(line, "hash", where), where);
+  if (!line.is_object()) throw InputError(fmt::format("{}: found {}, allowed is an object", where, shown(line)));
+  if (line.contains("hash")) frame.hash = hashFrom(text(line, "hash", where), where);
   frame.input.tuning = line.contains("tuning") ? tuningFrom(line.at("tuning"), where) : before;
   if (line.contains("hand")) frame.input.hand = handFrom(line.at("hand"), scene, where);
   return frame;
 }
+
+// Reads a recording line by line.
+class RecordingReader {
+ public:
+  // Throws InputError naming where the line stands; Json::parse_error where it is no JSON.
+  void take(std::string_view text, const std::string& where) {
+    const Json line = Json::parse(text);
+    try {
+      if (!scene_) return begin(line, where);
+      recording.frames.push_back(frameFrom(line, *scene_, tuning_, where));
+      tuning_ = recording.frames.back().input.tuning;
+    } catch (const Json::exception& error) {
+      throw InputError(fmt::format("{}: {}", where, onOneLine(error.what())));
+    }
+  }
+  [[nodiscard]] bool begun() const { return scene_.has_value(); }
+
+  Recording recording;
+
+ private:
+  void begin(const Json& line, const std::string& where) {
+    recording.choice = choiceFrom(line, where);
+    scene_ = sceneOf(recording.choice, where);
+    tuning_ = tuningOf(*scene_);
+  }
+
+  std::optional<Scene> scene_;
+  Tuning tuning_;
+};
 
 }  // namespace
 
@@ -256,7 +287,8 @@ std::string headerLine(const SceneChoice& choice) {
 
 std::string frameLine(const std::vector<LoggedFrame>& frames, std::size_t i) {
   const LoggedFrame& frame = frames[i];
-  Json line = {{"hash", fmt::format("{:016x}", frame.hash)}};
+  Json line = Json::object();
+  if (frame.hash) line["hash"] = fmt::format("{:016x}", *frame.hash);
   if (i == 0 || !(frames[i - 1].input.tuning == frame.input.tuning)) line["tuning"] = json(frame.input.tuning);
   if (frame.input.hand.block != kFloor) line["hand"] = json(frame.input.hand);
   return lineOf(line);
@@ -269,33 +301,34 @@ void writeRecording(std::ostream& stream, const Recording& recording) {
 
 Recording readRecording(const std::string& path) {
   LineInput input(path);
-  Recording recording;
-  std::optional<Scene> scene;
-  Tuning tuning;
+  RecordingReader reader;
   for (std::string text; input.next(text);) {
-    const std::string where = input.where();
     try {
-      const Json line = Json::parse(text);
-      if (!scene) {
-        recording.choice = choiceFrom(line, where);
-        scene = sceneOf(recording.choice, where);
-        tuning = tuningOf(*scene);
-        continue;
-      }
-      recording.frames.push_back(frameFrom(line, *scene, tuning, where));
-      tuning = recording.frames.back().input.tuning;
+      reader.take(text, input.where());
     } catch (const Json::parse_error& error) {
       // No end of line, and JSON that lacks its end: the text stops where it was last written.
-      const bool brokenOff = input.endedWithFile() && scene && error.byte > text.size();
-      if (!brokenOff) throw InputError(fmt::format("{}: {}", where, onOneLine(error.what())));
-      recording.missing =
-          fmt::format("{}: the line is cut off; the {} frames before it are played", where, recording.frames.size());
-    } catch (const Json::exception& error) {
+      const bool brokenOff = input.endedWithFile() && reader.begun() && error.byte > text.size();
+      if (!brokenOff) throw InputError(fmt::format("{}: {}", input.where(), onOneLine(error.what())));
+      reader.recording.missing = fmt::format("{}: the line is cut off; the {} frames before it are played", input.where(),
+                                             reader.recording.frames.size());
+    }
+  }
+  if (!reader.begun()) throw InputError(fmt::format("{}: found an empty file, allowed is a recording", onOneLine(path)));
+  return std::move(reader.recording);
+}
+
+Recording recordingOf(std::span<const std::string_view> lines, const std::string& name) {
+  RecordingReader reader;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const std::string where = fmt::format("{}, line {}", name, i + 1);
+    try {
+      reader.take(lines[i], where);
+    } catch (const Json::parse_error& error) {
       throw InputError(fmt::format("{}: {}", where, onOneLine(error.what())));
     }
   }
-  if (!scene) throw InputError(fmt::format("{}: found an empty file, allowed is a recording", onOneLine(path)));
-  return recording;
+  if (!reader.begun()) throw InputError(fmt::format("{}: found no line, allowed is a recording", name));
+  return std::move(reader.recording);
 }
 
 }  // namespace springtower

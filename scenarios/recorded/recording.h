@@ -9,7 +9,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <iosfwd>
+#include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace springtower {
@@ -49,7 +52,7 @@ struct FrameInput {
 /// One frame of the past: what acted on it, and the state it led to.
 struct LoggedFrame {
   FrameInput input;
-  std::uint64_t hash = 0;  ///< stateHash after the frame
+  std::optional<std::uint64_t> hash = {};  ///< stateHash after the frame; empty where it was not kept
 };
 
 /// The tuning that a scene starts with.
@@ -65,8 +68,9 @@ struct Recording {
   std::string missing = {};  ///< what a file that was broken off lacks, in a line; empty for a whole one
 };
 
-/// Writes a recording, one JSON object a line: first the scene, then each frame with the hash of the state it led to, the hand
-/// where it holds a block, and the tuning where it changed. Numbers are written so that they read back as they were.
+/// Writes a recording, one JSON object a line: first the scene, then each frame with the hash of the state it led to where that
+/// is known, the hand where it holds a block, and the tuning where it changed. Numbers are written so that they read back as they
+/// were.
 void writeRecording(std::ostream& stream, const Recording& recording);
 
 /// Its first line, with the line end.
@@ -79,5 +83,8 @@ std::string frameLine(const std::vector<LoggedFrame>& frames, std::size_t frame)
 /// read, and `missing` says so. Throws InputError naming the file, the line and the key, what was found and what is allowed:
 /// every number is within the limits of what it sets, blocks are the scene's and may move, orientations are unit quaternions.
 Recording readRecording(const std::string& path);
+
+/// The same of its lines, without line ends. `name`: what messages call it.
+Recording recordingOf(std::span<const std::string_view> lines, const std::string& name);
 
 }  // namespace springtower

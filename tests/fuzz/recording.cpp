@@ -31,7 +31,7 @@ void play(const Recording& recording) {
   if (!session.failure.empty()) requireMessage(session.failure);
   const std::uint64_t end = session.log.size();
   if (end == 0) return;
-  const std::uint64_t hash = session.log[end - 1].hash;
+  const std::optional<std::uint64_t> hash = session.log[end - 1].hash;
   goTo(session, end / 2);
   goTo(session, end);
   requireThat(stateHash(session.simulation) == hash, "going back and forth leads to the same state");

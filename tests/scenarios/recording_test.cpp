@@ -9,6 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <map>
+#include <sstream>
 #include <string>
 #include <utility>
 
@@ -25,6 +26,7 @@ TEST(Recording, BrokenFilesNameTheLine) {
       {"", "empty"},
       {R"({"scene":"tower:1"})", "line 1"},
       {head + "\n{\"hash\":\"zz\"}", "line 2: hash"},
+      {head + "\n[1]", "line 2: found an array, allowed is an object"},
       {head + "\n{\"hash\":\"0\"}\nnonsense", "line 3"},
       {head + "\n" + R"({"hash":"0","hand":{"block":3,"place":[0,0,0],"turn":[1,0,0,0],"limit_n":5}})",
        "found 3, allowed 0 to 2"}};
@@ -121,6 +123,22 @@ TEST(Recording, FoldersLongLinesAndBlocksThatAreFixedAreRefused) {
       scratch.file("scene.toml"));
   EXPECT_THAT([&] { readRecording(scratch.file("recording.jsonl")); },
               testing::ThrowsMessage<InputError>(HasSubstr("line 2: block: found")));
+}
+
+TEST(Recording, HashesMayBeMissing) {
+  const ScratchFolder scratch;
+  const std::string text = fmt::format("{}{}{{\"hash\":\"00000000000000ff\"}}\n{{}}\n", headerLine({}),
+                                       R"({"tuning":{"method":"implicit","sleep":"on","tolerance_m":5e-05,"friction":0.4}})"
+                                       "\n");
+  std::ofstream(scratch.file("recording.jsonl")) << text;
+  const Recording recording = readRecording(scratch.file("recording.jsonl"));
+  ASSERT_EQ(recording.frames.size(), 3U);
+  EXPECT_FALSE(recording.frames[0].hash);
+  EXPECT_EQ(recording.frames[1].hash, 255U);
+  EXPECT_FALSE(recording.frames[2].hash);
+  std::ostringstream again;
+  writeRecording(again, recording);
+  EXPECT_EQ(again.str(), text);
 }
 
 TEST(Recording, OfABrokenOffFileIsReadUpToThere) {

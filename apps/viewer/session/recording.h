@@ -43,7 +43,7 @@ struct Replay {
 /// The input of the session's next frame, or empty at the recording's end.
 std::optional<FrameInput> nextInput(const Replay& replay, const Session& session);
 
-/// Compares the state that the last frame led to with the recorded one.
+/// Compares the state that the last frame led to with the recorded one, where its hash was kept.
 void compare(Replay& replay, const Session& session);
 
 }  // namespace springtower

@@ -3,6 +3,7 @@
 #include "core/error.h"
 #include "solver/frame/inputs.h"
 #include "solver/frame/prepare.h"
+#include "solver/hand/played_frame.h"
 #include "solver/world/memory_use.h"
 
 #include <algorithm>
@@ -71,29 +72,23 @@ void keep(Session& session) {
   thinOut(session);
 }
 
-// One frame of physics and game, without the past.
-void advance(Session& session, const FrameInput& input) {
+// One frame of physics and game, without the past. Returns the input that acted: without a hand that the game does not allow.
+FrameInput advance(Session& session, FrameInput input) {
   const auto start = std::chrono::steady_clock::now();
   Simulation& simulation = session.simulation;
   tune(session, input.tuning);
   session.before = simulation.state.position;
-  const BlockId held = mayTake(session.game, input.hand.block) ? input.hand.block : kFloor;
-  if (held == kFloor) {
-    session.grip = {};
-    letGo(simulation);
-  } else {
-    hold(input.hand, session.contacts, session.grip, simulation);
-  }
-  prepare(simulation);
-  stepFrame(simulation);
+  if (!mayTake(session.game, input.hand.block)) input.hand = {};
+  const BlockId held = input.hand.block;
+  stepPlayed(input.hand, session.grip, session.contacts, simulation);
   session.gripForce = gripForce(simulation);
-  session.contacts = contactForces(simulation);
   session.hold = held == kFloor ? Hold::none : holdOf(session.contacts, held);
   ++session.frame;
   const bool turnEnded = followGame(session.game, simulation, held, session.frame);
   session.frame_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   if (turnEnded && session.turns.back() < session.frame) session.turns.push_back(session.frame);
   if (turnEnded || session.frame % kKeyEvery == 0) keep(session);
+  return input;
 }
 
 // The last keyframe at or before a frame; the first one is of frame 0.
@@ -156,8 +151,9 @@ void step(Session& session, const FrameInput& input) {
   if (!session.failure.empty()) return;
   while (session.keyframes.back().frame > session.frame) session.keyframes.pop_back();
   while (session.turns.back() > session.frame) session.turns.pop_back();
+  FrameInput acted;
   try {
-    advance(session, input);
+    acted = advance(session, input);
   } catch (const DivergenceError& error) {
     session.failure = error.what();
     return;
@@ -165,7 +161,7 @@ void step(Session& session, const FrameInput& input) {
   // A future that was gone back from ends here.
   session.log.resize(session.frame);
   session.logKept = std::min(session.logKept, session.frame - 1);
-  session.log.back() = {input, stateHash(session.simulation)};
+  session.log.back() = {acted, stateHash(session.simulation)};
 }
 
 void goTo(Session& session, std::uint64_t frame) {

@@ -60,8 +60,8 @@ void prepareStart(Session& session);
 /// Goes back to the start and forgets what was played. Takes no longer than a frame where the start was prepared.
 void startAgain(Session& session);
 
-/// Steps one frame. A hand that the game does not allow to take its block is left out. Does nothing after a failure; a divergence
-/// becomes one. What was logged after the present frame is forgotten.
+/// Steps one frame. A hand that the game does not allow to take its block is left out, in the log too. Does nothing after a
+/// failure; a divergence becomes one. What was logged after the present frame is forgotten.
 void step(Session& session, const FrameInput& input);
 
 /// Goes to another frame of the log; the game and the hand's grip go with it. What was logged after it stays until the next step,

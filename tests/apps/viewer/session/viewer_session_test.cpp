@@ -99,6 +99,17 @@ TEST(ViewerSession, GoesBackAndForthToTheVeryStatesItHad) {
   EXPECT_NE(session.log.back().hash, log[50].hash);
 }
 
+// What is logged is what acted, so that it plays the same without the rules of the game.
+TEST(ViewerSession, LogsNoHandThatTheGameDoesNotAllow) {
+  Session session(towerScene(6), 1);
+  const Hand below = handOn(session, 0);
+  const Hand top = handOn(session, 17);
+  step(session, {top, session.tuning});
+  step(session, {below, session.tuning});
+  EXPECT_EQ(session.log[0].input.hand.block, kFloor);
+  EXPECT_EQ(session.log[1].input.hand.block, blockId(0));
+}
+
 // A long way costs what lies between keyframes, not all that was played, in either direction.
 TEST(ViewerSession, KeepsItsKeyframesUntilAnotherFutureBegins) {
   Session session = playedSession(100);

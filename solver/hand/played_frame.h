@@ -1,0 +1,15 @@
+#pragma once
+
+#include "core/hand.h"
+#include "solver/hand/grip.h"
+#include "solver/world/simulation.h"
+
+#include <vector>
+
+namespace springtower {
+
+/// Steps a frame of a game: the hand holds its block in it, or none. `contacts`: all contact forces at the present state
+/// (contactForces); on return those after the frame, which the next one needs. Throws DivergenceError.
+void stepPlayed(const Hand& hand, Grip& grip, std::vector<ContactForce>& contacts, Simulation& simulation);
+
+}  // namespace springtower
