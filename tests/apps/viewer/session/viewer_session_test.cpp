@@ -1,5 +1,7 @@
 #include "apps/viewer/session/recording.h"
 #include "apps/viewer/session/session.h"
+#include "scenarios/recorded/recorded_game.h"
+#include "solver/hand/played_frame.h"
 #include "solver/metrics/measures.h"
 #include "tests/apps/commands/loose_tower.h"
 #include "tests/apps/viewer/session/viewer_play.h"
@@ -210,6 +212,25 @@ TEST(ViewerRecording, ReadsBackAndReplaysToTheSameStates) {
   EXPECT_EQ(again.frame, 100U);
   EXPECT_FALSE(replay.differs);
   EXPECT_EQ(stateHash(again.simulation), stateHash(session.simulation));
+}
+
+// What plays it without the viewer (`springtower profile`, the instruction counts) plays the same frames.
+TEST(ViewerRecording, TheRecordedGameReplaysToTheStatesOfTheEngineAlone) {
+  const Recording& game = recordedGame();
+  Replay replay{game, {}};
+  Session session(sceneOf(game.choice), game.choice.players);
+  Simulation simulation(recordedTower());
+  Grip grip;
+  std::vector<ContactForce> contacts;
+  while (const auto input = nextInput(replay, session)) {
+    step(session, *input);
+    stepPlayed(input->hand, grip, contacts, simulation);
+    ASSERT_EQ(stateHash(session.simulation), stateHash(simulation)) << "frame " << session.frame;
+    EXPECT_EQ(session.log.back().input.hand.block, input->hand.block) << "the game allowed all of it";
+  }
+  EXPECT_EQ(session.frame, game.frames.size());
+  EXPECT_EQ(session.game.moves, 2);
+  EXPECT_EQ(session.game.phase, Phase::over);
 }
 
 TEST(ViewerRecording, NamesTheFrameThatDiffers) {
