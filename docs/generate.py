@@ -22,8 +22,8 @@ PEERS = ROOT / "bench" / "data" / "peers"
 
 def measurements(peers_stacks):
     """Tables of docs/performance.md, of what docs/measure.py has recorded so far."""
-    tables = {"runs": recorded.runs, "rows": recorded.rows, "motion": recorded.motion, "towers": recorded.towers,
-              "stacks": lambda rows: recorded.stacks(rows, peers_stacks), "falls": recorded.falls}
+    tables = {"runs": recorded.runs, "rows": recorded.rows, "motion": recorded.motion, "game": recorded.motion,
+              "towers": recorded.towers, "stacks": lambda rows: recorded.stacks(rows, peers_stacks), "falls": recorded.falls}
     parts = {}
     for name, table in tables.items():
         if (DATA / f"{name}.csv").exists():

@@ -8,6 +8,7 @@ on a quiet machine. Parts:
   runs      docs/data/runs.csv         18 rows at rest in nine ways: reports of `run`
   rows      docs/data/rows.csv         towers of 9 to 144 rows, implicit and explicit
   motion    docs/data/motion.csv       18 rows in motion
+  game      docs/data/game.csv         the recorded game
   towers    docs/data/towers.csv       64 and 640 towers, one thread and two
   stacks    docs/data/stacks.csv       walls and pyramids, with Bullet
   falls     docs/data/falls.csv        what moves in large numbers, with Bullet
@@ -43,6 +44,7 @@ PARTS = {
     "rows": ("profile --scenes rest --rows 9,18,36,72,144 --methods implicit,semi-implicit-euler", "profile.csv", "rows.csv"),
     "motion": ("profile --rows 18 --tolerances 1e-5 --methods implicit --scenes rest,sway,heights,pull,pull-sleep,collapse,asleep",
                "profile.csv", "motion.csv"),
+    "game": ("profile --scenes game", "profile.csv", "game.csv"),
     "towers": ("profile --scenes towers --towers 64,640 --threads 1,2 --tolerances 1e-5 --methods implicit", "profile.csv",
                "towers.csv"),
     "stacks": ("profile --scenes walls,pyramids", "stacks.csv", "stacks.csv"),

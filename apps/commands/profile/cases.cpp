@@ -5,6 +5,7 @@
 #include "apps/common/options.h"
 #include "core/error.h"
 #include "core/limits.h"
+#include "scenarios/recorded/recorded_game.h"
 
 #include <algorithm>
 #include <cmath>
@@ -22,6 +23,7 @@ constexpr Range kTowersRange{1, 2000, ""};
 constexpr Range kToleranceRange{1e-7, 1e-2, "m"};
 constexpr double kFullPeer_s = 60.0;
 constexpr int kTowersRows = 18;
+constexpr int kGameRows = 18;  // the recorded game's
 
 std::string offered(const auto& names) {
   return fmt::format("{}", fmt::join(names, ", "));
@@ -76,7 +78,8 @@ std::vector<ProfileScene> scenesOf(const ProfileCommand& command) {
   }
   if (command.scenes.empty()) {
     if (command.quick) return {ProfileScene::rest, ProfileScene::collapse};
-    return {ProfileScene::rest, ProfileScene::pull, ProfileScene::collapse, ProfileScene::asleep, ProfileScene::towers};
+    return {ProfileScene::rest,     ProfileScene::pull,   ProfileScene::game,
+            ProfileScene::collapse, ProfileScene::asleep, ProfileScene::towers};
   }
   std::vector<ProfileScene> scenes;
   for (const std::string& name : command.scenes) {
@@ -88,6 +91,12 @@ std::vector<ProfileScene> scenesOf(const ProfileCommand& command) {
     if (std::find(scenes.begin(), scenes.end(), scene) == scenes.end()) scenes.push_back(scene);
   }
   return scenes;
+}
+
+// As given, or the default one; of the recorded game that with which it was played.
+std::vector<double> tolerancesOf(const ProfileCommand& command, ProfileScene scene) {
+  const double usual_m = scene == ProfileScene::game ? toleranceOf(recordedTower()) : kBlockTolerance_m;
+  return numbers(command.tolerances_m, kToleranceRange, "--tolerances", false, {usual_m});
 }
 
 // As given, or the usual method, beside which a tower at rest also shows the report's for comparison.
@@ -125,14 +134,13 @@ std::vector<ProfileCase> casesOf(const ProfileCommand& command) {
       command.quick ? std::vector<double>{3, 6, 9, 18} : std::vector<double>{3, 6, 9, 12, 18, 24, 36, 54, 72};
   const std::vector<double> rows = numbers(command.rows, kProfileRowsRange, "--rows", true, usualRows);
   const std::vector<double> towers = numbers(command.towers, kTowersRange, "--towers", true, {1, 4, 16, 64});
-  const std::vector<double> tolerances =
-      numbers(command.tolerances_m, kToleranceRange, "--tolerances", false, {kBlockTolerance_m});
   const std::vector<double> threads = numbers(command.threads, kThreadsRange, "--threads", true, {1});
   const Inertia inertia = command.inertia ? inertiaFromName(*command.inertia, "--inertia") : Settings{}.inertia;
   std::vector<ProfileCase> cases;
   for (const ProfileScene scene : scenesOf(command)) {
     const bool many = scene == ProfileScene::towers;
     const std::vector<Method> methods = methodsOf(command, scene);
+    const std::vector<double> tolerances = tolerancesOf(command, scene);
     const auto addAll = [&](ProfileCase what, const std::vector<double>& counts) {
       for (const Method method : methods) {
         for (const double tolerance : tolerances) {
@@ -149,6 +157,10 @@ std::vector<ProfileCase> casesOf(const ProfileCommand& command) {
     if (isNamed(scene)) {
       for (const std::string& name : namedOf(command, scene))
         addAll({.scene = scene, .rows = 1, .named = name}, command.threads.empty() ? std::vector<double>{1, 2} : threads);
+      continue;
+    }
+    if (scene == ProfileScene::game) {
+      addAll({.scene = scene, .rows = kGameRows}, threads);
       continue;
     }
     for (const double size : many ? towers : rows) {

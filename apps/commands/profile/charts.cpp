@@ -58,6 +58,8 @@ std::string describe(ProfileScene scene) {
       return "a block of the middle row pulled out at 4 cm/s, all blocks awake";
     case ProfileScene::pullSleep:
       return "a block of the middle row pulled out at 4 cm/s, with sleep";
+    case ProfileScene::game:
+      return "a recorded game: two blocks are drawn out and laid on top, with a third the tower falls";
     case ProfileScene::collapse:
       return "gravity tilted by 14.5 degrees";
     case ProfileScene::asleep:
@@ -115,10 +117,10 @@ class Charts {
 
   std::vector<NamedPlot> all() {
     for (const auto& [scene, results] : byScene_) {
-      if (scene != ProfileScene::towers && !isNamed(scene)) rowsAgainstRate(scene, results);
+      if (scene != ProfileScene::towers && scene != ProfileScene::game && !isNamed(scene)) rowsAgainstRate(scene, results);
       stages(scene, results);
-      if (scene == ProfileScene::pull || scene == ProfileScene::pullSleep || scene == ProfileScene::collapse ||
-          scene == ProfileScene::pile) {
+      if (scene == ProfileScene::pull || scene == ProfileScene::pullSleep || scene == ProfileScene::game ||
+          scene == ProfileScene::collapse || scene == ProfileScene::pile) {
         frameByFrame(scene, results);
       }
     }

@@ -42,12 +42,14 @@ frame counts, then their median, 99th percentile and largest. On one thread that
 A run with --out that was broken off goes on where it was.
 
 scenes: rest (settled, awake), sway (gravity sways by 0.1 degree), heights (varying by 0.2 mm), pull (a block at 4 cm/s, all
-awake), pull-sleep (the same with sleep), collapse (gravity tilted by 14.5 degrees), asleep, towers (many of 18 rows, awake),
-pile (a connected stack of 108 blocks a row, dropped from 10 cm: its first frames on the floor), walls (running bond, half
-blocks at the ends), pyramids (cubes of 20 mm; bricks laid across); of both: the search for the equilibrium, depth, creep, what is required of
-some, Bullet with the steps that come nearest in depth, and the growth of cost with blocks; on one thread and two; some 2 minutes
-falls, each timed whole, awake, on one thread and two, with depth, energy, memory, what is required, and Bullet beside: topple (towers
-under gravity tilted by 14.5 degrees), hit (a block at 5 m/s), heaps, piles, rain; some 5 minutes
+awake), pull-sleep (the same with sleep), game (a recorded game on 18 rows, whole, as the viewer plays it, with sleep: a hand
+that hesitates draws out two blocks, lifts them and lays them on top; with a third the tower falls), collapse (gravity tilted by
+14.5 degrees), asleep, towers (many of 18 rows, awake), pile (a connected stack of 108 blocks a row, dropped from 10 cm: its
+first frames on the floor), walls (running bond, half blocks at the ends), pyramids (cubes of 20 mm; bricks laid across); of
+both: the search for the equilibrium, depth, creep, what is required of some, Bullet with the steps that come nearest in depth,
+and the growth of cost with blocks; on one thread and two; some 2 minutes
+falls, each timed whole, awake, on one thread and two, with depth, energy, memory, what is required, and Bullet beside: topple
+(towers under gravity tilted by 14.5 degrees), hit (a block at 5 m/s), heaps, piles, rain; some 5 minutes
 
 examples:
   springtower profile --quick                                     a look at rest and collapse in a few seconds
@@ -58,6 +60,7 @@ examples:
   springtower profile --stacks wall:20x12,cubes:60 --peer-limit 0 these alone, without Bullet
   springtower profile --scenes topple,hit,heaps,piles,rain        the table of what moves in large numbers
   springtower profile --falls heap:100,shot:18 --threads 1        these alone, on one thread
+  springtower profile --scenes game --trace game.json             its median, 99th percentile and worst frame, and each frame
   springtower profile --rows 18 --scenes pull --frames 60 --trace pull.json   then open pull.json at ui.perfetto.dev
   springtower profile --from figures/profile.json --out figures   draws the charts again without timing anything)help";
 
@@ -194,9 +197,9 @@ CLI::App* defineProfile(CLI::App& program, ProfileCommand& command) {
     profile->add_option(name, target, description)->delimiter(',')->type_name(type);
   };
   list("--rows", command.rows, "N,N,...", "rows of the tower (default 3,6,9,12,18,24,36,54,72)");
-  list("--scenes", command.scenes, "NAME,...", "what the blocks do (default rest,pull,collapse,asleep,towers; see below)");
+  list("--scenes", command.scenes, "NAME,...", "what the blocks do (default rest,pull,game,collapse,asleep,towers; see below)");
   list("--methods", command.methods, "NAME,...", "as in `run` (default: its default; at rest also report, for comparison)");
-  list("--tolerances", command.tolerances_m, "METRES,...", "as in `run` (default 5e-05)");
+  list("--tolerances", command.tolerances_m, "METRES,...", "as in `run` (default 5e-05; of `game` as it was played)");
   list("--threads", command.threads, "N,N,...", "threads to use (default 1; of what has a name and a size 1,2)");
   list("--towers", command.towers, "N,N,...", "how many towers scene `towers` has (default 1,4,16,64)");
   list("--stacks", command.stacks, "NAME:SIZE,...",

@@ -6,6 +6,7 @@
 #include "apps/common/interruption.h"
 #include "core/error.h"
 #include "core/processor_time.h"
+#include "scenarios/recorded/recorded_game.h"
 #include "solver/metrics/measures.h"
 #include "solver/metrics/penetration.h"
 #include "solver/runner/run.h"
@@ -63,12 +64,13 @@ TracedFrame tracedFrame(const Simulation& simulation, const StageTimes& stages, 
   return frame;
 }
 
-// A fall is timed whole, and fewer times: it takes as long as many samples of another scene.
+// A game and a fall are timed whole; a fall fewer times, as it takes as long as many samples of another scene.
 ProfileLimits limitsOf(const ProfileCase& what, ProfileLimits limits) {
   constexpr int kFallSamples = 2;
-  if (!isFall(what.scene)) return limits;
-  limits.frames = fallFamilyOf(what.named).frames;
-  limits.samples = std::min(limits.samples, kFallSamples);
+  const bool isGame = what.scene == ProfileScene::game;
+  if (!isGame && !isFall(what.scene)) return limits;
+  limits.frames = isGame ? static_cast<int>(recordedGame().frames.size()) : fallFamilyOf(what.named).frames;
+  if (!isGame) limits.samples = std::min(limits.samples, kFallSamples);
   limits.sample_s = std::numeric_limits<double>::infinity();
   return limits;
 }

@@ -22,6 +22,7 @@ enum class ProfileScene {
   heights,    ///< a settled tower whose heights vary by 0.2 mm, awake
   pull,       ///< a block is pulled out of the middle row at 4 cm/s, all blocks awake
   pullSleep,  ///< the same with sleep on
+  game,       ///< the recorded game (scenarios/recorded/recorded_game.h), whole, as the viewer plays it
   collapse,   ///< gravity leans by 14.5 degrees from the start
   asleep,     ///< all blocks asleep
   towers,     ///< many towers side by side at rest, awake
@@ -37,8 +38,8 @@ enum class ProfileScene {
 
 /// Names as the command line spells them, in the order of the enumeration.
 inline constexpr auto kProfileSceneNames =
-    std::to_array<std::string_view>({"rest", "sway", "heights", "pull", "pull-sleep", "collapse", "asleep", "towers", "pile",
-                                     "walls", "pyramids", "topple", "hit", "heaps", "piles", "rain"});
+    std::to_array<std::string_view>({"rest", "sway", "heights", "pull", "pull-sleep", "game", "collapse", "asleep", "towers",
+                                     "pile", "walls", "pyramids", "topple", "hit", "heaps", "piles", "rain"});
 constexpr std::string_view nameOf(ProfileScene scene) {
   return kProfileSceneNames[static_cast<std::size_t>(scene)];
 }

@@ -5,9 +5,11 @@
 #include "apps/common/interruption.h"
 #include "core/error.h"
 #include "core/processor_time.h"
+#include "scenarios/recorded/recorded_game.h"
 #include "scenarios/towers.h"
 #include "scenarios/walls.h"
 #include "solver/frame/prepare.h"
+#include "solver/hand/played_frame.h"
 
 #include <chrono>
 #include <cstddef>
@@ -93,6 +95,7 @@ void startPulling(PreparedScene& scene, const Deadline& deadline) {
 Scene blocksOf(const ProfileCase& what) {
   if (isStack(what.scene)) return stackScene(what.named);
   if (isFall(what.scene)) return fallScene(what.named);
+  if (what.scene == ProfileScene::game) return recordedTower();
   TowerOptions options;
   if (what.scene == ProfileScene::heights) options.heightsSigma_m = kUnevenHeightsSigma_m;
   Scene scene = towerScene(what.rows, options);
@@ -108,7 +111,19 @@ Scene blocksOf(const ProfileCase& what) {
 
 }  // namespace
 
+void PreparedScene::restore() {
+  restoreSnapshot(simulation, *snapshot);
+  hand = handKept;
+  if (game == nullptr) return;
+  grip = {};  // a game is kept as it begins
+  contacts = contactForces(simulation);
+}
+
 void PreparedScene::step() {
+  if (game != nullptr) {
+    const bool goesOn = simulation.frame < game->frames.size();
+    return stepPlayed(goesOn ? game->frames[simulation.frame].input.hand : Hand{}, grip, contacts, simulation);
+  }
   prepare(simulation);
   const BlockId held = hand.hand.block;
   if (held != kFloor) advancePull(hand, contactForcesOn(simulation, held), simulation);
@@ -121,6 +136,7 @@ Scene sceneOf(const ProfileCase& what) {
   settings.method = what.method;
   settings.inertia = what.inertia;
   settings.tolerance_m = what.tolerance_m;
+  if (what.scene == ProfileScene::game) return scene;  // it sleeps as it was played
   const bool sleeps = what.scene == ProfileScene::asleep || what.scene == ProfileScene::pullSleep;
   settings.sleep = sleeps ? Sleep::on : Sleep::off;
   return scene;
@@ -128,8 +144,10 @@ Scene sceneOf(const ProfileCase& what) {
 
 std::unique_ptr<PreparedScene> prepareScene(const ProfileCase& what, const ProfileLimits& limits) {
   auto scene = std::make_unique<PreparedScene>(what);
+  if (what.scene == ProfileScene::game) scene->game = &recordedGame();
   // None of what falls has a place to keep.
-  if (what.scene == ProfileScene::pile || isFall(what.scene)) scene->leftOut.assign(scene->simulation.scene.blocks.size(), 1);
+  if (what.scene == ProfileScene::pile || what.scene == ProfileScene::game || isFall(what.scene))
+    scene->leftOut.assign(scene->simulation.scene.blocks.size(), 1);
   try {
     if (isStack(what.scene)) {
       scene->equilibrium_s = prepare(scene->simulation).processor_s;  // it may take longer than all else
@@ -137,6 +155,8 @@ std::unique_ptr<PreparedScene> prepareScene(const ProfileCase& what, const Profi
     const Deadline deadline(limits.prepare_s);
     if (what.scene == ProfileScene::asleep) {
       fallAsleep(*scene, deadline);
+    } else if (what.scene == ProfileScene::game) {
+      prepare(scene->simulation);
     } else if (what.scene == ProfileScene::collapse || isFall(what.scene)) {
       prepare(scene->simulation);
       scene->step();

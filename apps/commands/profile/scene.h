@@ -2,6 +2,7 @@
 
 #include "apps/commands/profile/profile.h"
 #include "core/scene/scene.h"
+#include "scenarios/recorded/recording.h"
 #include "solver/hand/grip.h"
 #include "solver/world/simulation.h"
 
@@ -20,7 +21,10 @@ struct PreparedScene {
   explicit PreparedScene(const ProfileCase& what) : simulation(sceneOf(what)) {}
 
   Simulation simulation;
-  Draw hand;  ///< that pulls a block; it holds none in other scenes
+  Draw hand;                           ///< that pulls a block; it holds none in other scenes
+  const Recording* game = nullptr;     ///< whose hand acts, from the first frame on; null in other scenes
+  Grip grip;                           ///< of that hand
+  std::vector<ContactForce> contacts;  ///< of a game, at the present state
   std::shared_ptr<const Snapshot> snapshot;
   Draw handKept;                      ///< the hand of the snapshot
   std::vector<std::uint8_t> leftOut;  ///< 1 for blocks that need not stand: the pulled one, what falls; [blocks] or empty
@@ -28,10 +32,7 @@ struct PreparedScene {
   std::string failure;                ///< why the scene does not come to what is to be timed; empty when it does
 
   /// Back to the kept state.
-  void restore() {
-    restoreSnapshot(simulation, *snapshot);
-    hand = handKept;
-  }
+  void restore();
   /// One frame, the hand included.
   void step();
 };

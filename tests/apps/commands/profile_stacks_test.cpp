@@ -33,8 +33,8 @@ TEST(ProfileStacks, RefusesWhatItDoesNotKnowAndWritesNothing) {
   const ScratchFolder scratch;
   const std::vector<std::pair<std::vector<std::string>, std::string>> refused = {
       {{"--scenes", "walls,castle"},
-       "--scenes: found 'castle', allowed are rest, sway, heights, pull, pull-sleep, collapse, asleep, "
-       "towers, pile, walls, pyramids, topple, hit, heaps, piles, rain"},
+       "--scenes: found 'castle', allowed are rest, sway, heights, pull, pull-sleep, game, collapse, "
+       "asleep, towers, pile, walls, pyramids, topple, hit, heaps, piles, rain"},
       {{"--stacks", "castle:3"},
        "--stacks: found 'castle:3', allowed are wall:COLUMNSxCOURSES of 1 to 4000 and 1 to 100, cubes:ROWS "
        "of 1 to 400, bricks:ROWS of 1 to 400"},

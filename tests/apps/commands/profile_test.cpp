@@ -1,4 +1,6 @@
 // springtower profile, run as a user would.
+#include "apps/viewer/session/session.h"
+#include "scenarios/recorded/recorded_game.h"
 #include "tests/support/program.h"
 
 #include <algorithm>
@@ -73,7 +75,7 @@ TEST(Profile, RefusesAnotherFileThanAProfile) {
 TEST(Profile, HelpTeaches) {
   const ProgramResult result = profile({"--help"});
   EXPECT_EQ(result.exitCode, 0);
-  for (const char* word : {"--trace", "pull-sleep", "examples", "ui.perfetto.dev", "processor time"}) {
+  for (const char* word : {"--trace", "pull-sleep", "game (a recorded game", "examples", "ui.perfetto.dev", "processor time"}) {
     EXPECT_THAT(result.output, HasSubstr(word));
   }
 }
@@ -288,6 +290,34 @@ TEST(Profile, TowersAndACollapse) {
   EXPECT_THAT(lines, Contains(::testing::ContainsRegex("^collapse +9 +27 .* 2 .*fallen")));
   EXPECT_THAT(lines, Contains(::testing::ContainsRegex("^towers +1x18 +54 ")));
   EXPECT_THAT(lines, Contains(::testing::ContainsRegex("^towers +2x18 +108 ")));
+}
+
+// All of its frames, each with the steps and contacts that it has in the viewer.
+TEST(Profile, TheRecordedGameIsPlayedAsTheViewerPlaysIt) {
+  const ScratchFolder scratch;
+  const ProgramResult result = profile({"--scenes", "game", "--samples", "1", "--out", scratch.file("out")});
+  ASSERT_EQ(result.exitCode, 0) << result.error;
+  EXPECT_THAT(linesOf(result.output), Contains(::testing::ContainsRegex("^game +18 +54 implicit ")));
+  EXPECT_TRUE(std::filesystem::exists(scratch.file("out/frames_game.svg")));
+  const Json cases = Json::parse(contentOf(scratch.file("out/profile.json"))).at("cases");
+  ASSERT_EQ(cases.size(), 1U);
+  const Json& one = cases.at(0);
+  const Recording& game = recordedGame();
+  EXPECT_EQ(one.at("frames"), game.frames.size());
+  EXPECT_EQ(one.at("tolerance_m"), game.frames.front().input.tuning.tolerance_m);
+
+  Session session(sceneOf(game.choice), game.choice.players);
+  prepareStart(session);
+  const Counters before = session.simulation.counters;
+  for (const LoggedFrame& frame : game.frames) step(session, frame.input);
+  const Counters& after = session.simulation.counters;
+  const auto expectCounted = [&](const char* name, std::uint64_t count) {
+    const double played = one.at("counters_per_frame").at(name).get<double>() * static_cast<double>(game.frames.size());
+    EXPECT_NEAR(played, static_cast<double>(count), 0.1) << name;
+  };
+  expectCounted("steps", after.steps - before.steps);
+  expectCounted("contact_evaluations", after.contactEvaluations - before.contactEvaluations);
+  expectCounted("contacts_born", after.contactsCreated - before.contactsCreated);
 }
 
 // A stack of 108 blocks a row that lands: as deep and as many steps with two threads as with one, from the same state.
