@@ -1,16 +1,19 @@
-// Fixed scenes whose instructions are counted by callgrind (bench/callgrind.py): one thread, a few frames each, everything awake.
+// Fixed scenes whose instructions are counted by callgrind (bench/callgrind.py): one thread, a few frames each; towers with
+// everything awake, and parts of the recorded game as it was played.
 //   gate_scenes            lists the scenes
 //   gate_scenes SCENE      runs one and prints a JSON object: accuracy and the hash of the state at the end. Only the last frames
 //                          are counted; what comes before brings the scene to where it is interesting.
-//   gate_scenes SCENE 300  runs it for 300 frames instead: what accuracy it settles to
+//   gate_scenes SCENE 300  runs a tower for 300 frames instead: what accuracy it settles to
 
 #include "core/error.h"
 #include "core/scene/scene.h"
 #include "core/version.h"
 #include "scenarios/gate.h"
+#include "scenarios/recorded/recorded_game.h"
 #include "scenarios/towers.h"
 #include "solver/frame/inputs.h"
 #include "solver/frame/prepare.h"
+#include "solver/hand/played_frame.h"
 #include "solver/metrics/measures.h"
 #include "solver/metrics/penetration.h"
 #include "solver/world/simulation.h"
@@ -34,7 +37,7 @@
 namespace springtower {
 namespace {
 
-// What is run before, and what of it is counted, frames.
+// What is run of a tower before, and what of it is counted, frames.
 constexpr int kBefore = 20;
 constexpr int kCounted = 5;
 
@@ -57,6 +60,27 @@ void pull(Simulation& simulation, std::size_t block, double speed_m_s, double& f
   setOnlyForce(simulation, forceForOneFrame(simulation, block, (friction_n + 0.5 * unit_n) * along));
 }
 
+std::string nameOf(const GamePart& part) {
+  return fmt::format("{} {}", part.name, nameOf(recordedGame().frames.front().input.tuning.method));
+}
+
+// `pulled`: the block of the hand.
+void printFigures(const std::string& name, const Simulation& simulation, const ParticleArray& start, std::size_t pulled) {
+  PenetrationWorkspace workspace;
+  const ParticleArray& position = simulation.state.position;
+  std::vector<int> row;
+  for (const BlockSpec& block : simulation.scene.blocks) row.push_back(block.row);
+  fmt::print(
+      "{{\"scene\": \"{}\", \"max_penetration_mm\": {}, \"bottom_row_compression_mm\": {}, \"max_strain\": {}, "
+      "\"speed_mm_s\": {}, \"energy_j\": {}, \"pulled_mm\": {}, \"steps\": {}, \"contact_evaluations\": {}, \"state_hash\": "
+      "\"{:016x}\", \"compiler\": \"{}\", \"flags\": \"{}\"}}\n",
+      name, 1e3 * maxPenetration(position, simulation.scene.floor, workspace).depth,
+      1e3 * meanRowCompression(simulation.model, start, position, bottomRow(simulation.model, start, row)),
+      maxStrain(simulation.model, position), 1e3 * rootMeanSquareCornerSpeed(simulation.state.velocity),
+      energy(simulation).total(), 1e3 * (centre(position, pulled) - centre(start, pulled)).norm(), simulation.counters.steps,
+      simulation.counters.contactEvaluations, stateHash(simulation), kCompiler, kCompilerFlags);
+}
+
 void runGate(const GateTower& gate, Method method, int frames) {
   Simulation simulation(sceneOf(gate, method));
   prepare(simulation);
@@ -72,20 +96,25 @@ void runGate(const GateTower& gate, Method method, int frames) {
   CALLGRIND_START_INSTRUMENTATION;
   for (int frame = 0; frame < kCounted; ++frame) step();
   CALLGRIND_STOP_INSTRUMENTATION;
+  printFigures(fmt::format("{} {}", gate.name, nameOf(method)), simulation, start, pulled);
+}
 
-  PenetrationWorkspace workspace;
-  const ParticleArray& position = simulation.state.position;
-  std::vector<int> row;
-  for (const BlockSpec& block : simulation.scene.blocks) row.push_back(block.row);
-  fmt::print(
-      "{{\"scene\": \"{} {}\", \"max_penetration_mm\": {}, \"bottom_row_compression_mm\": {}, \"max_strain\": {}, "
-      "\"speed_mm_s\": {}, \"energy_j\": {}, \"pulled_mm\": {}, \"steps\": {}, \"contact_evaluations\": {}, \"state_hash\": "
-      "\"{:016x}\", \"compiler\": \"{}\", \"flags\": \"{}\"}}\n",
-      gate.name, nameOf(method), 1e3 * maxPenetration(position, simulation.scene.floor, workspace).depth,
-      1e3 * meanRowCompression(simulation.model, start, position, bottomRow(simulation.model, start, row)),
-      maxStrain(simulation.model, position), 1e3 * rootMeanSquareCornerSpeed(simulation.state.velocity),
-      energy(simulation).total(), 1e3 * (centre(position, pulled) - centre(start, pulled)).norm(), simulation.counters.steps,
-      simulation.counters.contactEvaluations, stateHash(simulation), kCompiler, kCompilerFlags);
+// With the default method, with which it was played.
+void runPart(const GamePart& part) {
+  const std::vector<LoggedFrame>& frames = recordedGame().frames;
+  Simulation simulation(recordedTower());
+  prepare(simulation);
+  const ParticleArray start = simulation.state.position;
+  Grip grip;
+  std::vector<ContactForce> contacts = contactForces(simulation);
+  const auto playTo = [&](std::size_t last) {
+    while (simulation.frame < last) stepPlayed(frames[simulation.frame].input.hand, grip, contacts, simulation);
+  };
+  playTo(part.first - 1);
+  CALLGRIND_START_INSTRUMENTATION;
+  playTo(part.last);
+  CALLGRIND_STOP_INSTRUMENTATION;
+  printFigures(nameOf(part), simulation, start, index(frames[part.first - 1].input.hand.block));
 }
 
 int gate(const std::vector<std::string_view>& arguments) {
@@ -100,6 +129,14 @@ int gate(const std::vector<std::string_view>& arguments) {
         found = true;
         runGate(gate, method, arguments.size() > 1 ? std::stoi(std::string(arguments[1])) : kBefore + kCounted);
       }
+    }
+  }
+  for (const GamePart& part : gameParts()) {
+    if (arguments.empty()) {
+      fmt::print("{}\n", nameOf(part));
+    } else if (arguments[0] == nameOf(part)) {
+      found = true;
+      runPart(part);
     }
   }
   if (found) return 0;

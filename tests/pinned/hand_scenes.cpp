@@ -1,3 +1,4 @@
+#include "scenarios/recorded/recorded_game.h"
 #include "solver/hand/grip.h"
 #include "solver/hand/moves.h"
 #include "tests/pinned/pinned_scene.h"
@@ -79,6 +80,21 @@ Leader kicks(std::uint64_t every, const Vec3& velocity_m_s) {
   };
 }
 
+// As the hand was led in the recorded game.
+Leader recordedHand() {
+  return [grip = Grip()](Simulation& simulation) mutable {
+    const Hand& hand = recordedGame().frames[simulation.frame].input.hand;
+    if (hand.block != kFloor) return hold(hand, contactForces(simulation), grip, simulation);
+    grip = {};
+    letGo(simulation);
+  };
+}
+
+// To the last frame that is counted.
+int recordedFrames() {
+  return static_cast<int>(gameParts().back().last);
+}
+
 }  // namespace
 
 std::vector<PinnedScene> pinnedHands() {
@@ -92,6 +108,7 @@ std::vector<PinnedScene> pinnedHands() {
       {"TakeAndDrop", 400, takeAndDrop, scriptedHand},
       {"TakeTheLastSupport", 300, takeTheLastSupport, scriptedHand},
       {"ReportMoves", 1900, [] { return sceneOfFile("moves"); }, scriptedHand},
+      {"RecordedGame", recordedFrames(), recordedTower, recordedHand},
   };
 }
 

@@ -1,4 +1,5 @@
 // Scenes of which not a bit may move without notice: whoever rearranges the engine proves by them that it does what it did.
+#include "scenarios/recorded/recorded_game.h"
 #include "tests/pinned/pin.h"
 
 #include <algorithm>
@@ -98,6 +99,17 @@ TEST(Pins, OfGatesAreThoseOfTheCountedScenes) {
       const Pin& pin = pinsOfFile().at(fmt::format("Gate{}{}", scene, isImplicit ? "Implicit" : "Explicit"));
       EXPECT_EQ(fmt::format("{:016x}", pin.hashes.back()), hash) << name;
     }
+  }
+}
+
+TEST(Pins, OfTheRecordedGameAreThoseOfItsCountedParts) {
+  std::ifstream file(SPRINGTOWER_SOURCE_DIR "/bench/baseline.json");
+  const nlohmann::json counted = nlohmann::json::parse(file).at("scenes");
+  const std::vector<std::uint64_t>& hashes = pinsOfFile().at("RecordedGame").hashes;
+  for (const GamePart& part : gameParts()) {
+    ASSERT_EQ(part.last % kFramesAPin, 0U) << part.name;
+    const std::string hash = counted.at(std::string(part.name) + " implicit").at("state_hash");
+    EXPECT_EQ(fmt::format("{:016x}", hashes.at(part.last / kFramesAPin - 1)), hash) << part.name;
   }
 }
 
