@@ -44,7 +44,8 @@ def marked_parts(commands, viewer, scenes, settings):
         "docs/validation.md": {"claims": recorded.claims_summary(recorded.read_json(DATA / "validation.json"))},
         "docs/performance.md": measurements(peers_stacks),
         "docs/accuracy.md": {"peers-at-rest": recorded.peers_at_rest(peers_at_rest),
-                             "peers-stacks": recorded.peers_stacks(peers_stacks)},
+                             "peers-stacks": recorded.peers_stacks(peers_stacks),
+                             "peers-falls": recorded.peers_falls(recorded.read_csv(PEERS / "falls.csv"))},
     }
 
 

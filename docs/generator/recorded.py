@@ -163,22 +163,41 @@ def peers_at_rest(recorded):
                    row["worst_penetration_mm"], row["creep_mm"], cell(row["stands_60_s"])) for row in recorded])
 
 
-def peers_stacks(recorded):
-    """Box3D and Jolt on walls and pyramids, one thread, for docs/accuracy.md. What was measured more than once has the range."""
+def _by_setting(recorded):
+    """Rows on one thread by scene and setting, in order: [((scene, blocks, engine, settings), rows)]."""
     groups = {}
     for row in recorded:
         if row["threads"] == "1":
             groups.setdefault((row["scene"], int(row["blocks"]), row["engine"], row["settings"]), []).append(row)
 
-    def extent(rows, column, digits):
-        values = [float(row[column]) for row in rows]
-        least, most = number(min(values), digits), number(max(values), digits)
-        return least if least == most else f"{least} to {most}"
-    ordered = sorted(groups.items(), key=lambda item: (item[0][0].split(":")[0], item[0][1], item[0][2], int(item[0][3].split()[1])))
+    def order(item):
+        scene, blocks, engine, settings = item[0]
+        return scene.split(":")[0], blocks, engine, [int(word) for word in settings.split() if word.isdigit()]
+    return sorted(groups.items(), key=order)
+
+
+def _extent(rows, column, digits):
+    """The range of what was measured more than once; empty where it was not recorded."""
+    values = [float(row[column]) for row in rows if row[column]]
+    if not values:
+        return ""
+    least, most = number(min(values), digits), number(max(values), digits)
+    return least if least == most else f"{least} to {most}"
+
+
+def peers_stacks(recorded):
+    """Box3D and Jolt on walls and pyramids, one thread, for docs/accuracy.md."""
     return table(["scene", "blocks", "engine", "settings", "ms a frame, median", "slowest, ms", "penetration at the end, mm", "verdict"],
-                 [(f"`{scene}`", str(blocks), engine, settings, extent(rows, "median_ms", 3), extent(rows, "max_ms", 3),
-                   extent(rows, "penetration_end_mm", 2), " / ".join(sorted({cell(row["verdict"].split("@")[0]) for row in rows})))
-                  for (scene, blocks, engine, settings), rows in ordered])
+                 [(f"`{scene}`", str(blocks), engine, settings, _extent(rows, "median_ms", 3), _extent(rows, "max_ms", 3),
+                   _extent(rows, "penetration_end_mm", 2), " / ".join(sorted({cell(row["verdict"].split("@")[0]) for row in rows})))
+                  for (scene, blocks, engine, settings), rows in _by_setting(recorded)])
+
+
+def peers_falls(recorded):
+    """Box3D and Jolt on what falls, one thread, for docs/accuracy.md."""
+    return table(["scene", "blocks", "engine", "settings", "ms a frame, median", "worst but the first, ms", "largest penetration, mm"],
+                 [(f"`{scene}`", str(blocks), engine, settings, _extent(rows, "median_ms", 3), _extent(rows, "worst_ms", 3),
+                   _extent(rows, "penetration_max_mm", 2)) for (scene, blocks, engine, settings), rows in _by_setting(recorded)])
 
 
 def read_json(path):
