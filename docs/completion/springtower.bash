@@ -129,7 +129,7 @@ _springtower() {
       ;;
     chart)
       case $previous in
-        --scenes) _springtower_listed "uniform heights pull drop collapse spin heavy-light wall pyramid holes lean tall slide heap thrown"; return ;;
+        --scenes) _springtower_listed "uniform heights pull drop collapse spin heavy-light wall pyramid shot heap-200 rain-200 pile-3 holes lean tall slide heap thrown"; return ;;
         --methods) _springtower_listed "implicit bdf2 implicit-euler implicit-eigen bdf2-eigen semi-implicit-euler midpoint runge-kutta-4 report legacy-2003 rigid-pgs rigid-lcp xpbd auto"; return ;;
         --rows) COMPREPLY=(); return ;;
         --seconds) COMPREPLY=(); return ;;

@@ -97,7 +97,7 @@ complete -c springtower -n '__fish_seen_subcommand_from statics' -l keep-going -
 complete -c springtower -n '__fish_seen_subcommand_from statics' -l threads -x -d 'threads to use (default: one for each processor); 1 to 1024'
 complete -c springtower -n '__fish_seen_subcommand_from chart' -s h -l help -d 'prints this help'
 complete -c springtower -n '__fish_seen_subcommand_from chart' -l help-all -d 'prints the help of all commands'
-complete -c springtower -n '__fish_seen_subcommand_from chart' -l scenes -x -a 'uniform heights pull drop collapse spin heavy-light wall pyramid holes lean tall slide heap thrown' -d 'what the blocks do (default all; see below)'
+complete -c springtower -n '__fish_seen_subcommand_from chart' -l scenes -x -a 'uniform heights pull drop collapse spin heavy-light wall pyramid shot heap-200 rain-200 pile-3 holes lean tall slide heap thrown' -d 'what the blocks do (default all; see below)'
 complete -c springtower -n '__fish_seen_subcommand_from chart' -l methods -x -a 'implicit bdf2 implicit-euler implicit-eigen bdf2-eigen semi-implicit-euler midpoint runge-kutta-4 report legacy-2003 rigid-pgs rigid-lcp xpbd auto' -d 'as in `run`, or bullet and ode where their programs are (default all)'
 complete -c springtower -n '__fish_seen_subcommand_from chart' -l rows -x -d 'rows of the towers (default 18); 2 to 200'
 complete -c springtower -n '__fish_seen_subcommand_from chart' -l seconds -x -d 'simulated; the second half counts for rest (default 10); 0.2 to 1000 s'

@@ -47,6 +47,14 @@ std::string describe(ChartScene scene, const ChartLimits& limits) {
       return fmt::format("a wall of {} columns and {} courses in running bond at rest", limits.wallColumns, limits.wallCourses);
     case ChartScene::pyramid:
       return fmt::format("a pyramid of {} rows of cubes of 20 mm at rest", limits.pyramidRows);
+    case ChartScene::shot:
+      return fmt::format("a block that flies into a tower of {} rows at 5 m/s", rows);
+    case ChartScene::heap200:
+      return "200 blocks turned at random that fall into a heap";
+    case ChartScene::rain200:
+      return "200 blocks turned at random that land within a second";
+    case ChartScene::pile3:
+      return "three square rows of 108 blocks, shifted by half a block, that land after 10 cm";
     case ChartScene::holes:
       return "a tower of twelve rows, half of them with blocks missing";
     case ChartScene::lean:
@@ -63,8 +71,9 @@ std::string describe(ChartScene scene, const ChartLimits& limits) {
   return "";
 }
 
-// Beside a point: only what went wrong, and where it counts that less time was looked at.
+// Beside a point: only what went wrong, and where it counts that less time was looked at. That a fall falls went well.
 std::string labelOf(const ChartResult& result, ChartMeasure measure) {
+  if (isFall(result.what.scene) && result.outcome == ChartOutcome::timedOut) return std::string(nameOf(result.outcome));
   if (result.outcome == ChartOutcome::cutShort && measure != ChartMeasure::creep) return "";
   return result.outcome == ChartOutcome::right ? "" : result.note;
 }
@@ -133,7 +142,7 @@ void addResults(const Chart& chart, ChartScene scene, ChartMeasure measure, Plot
       if (drawn(result, measure)) {
         line.points.push_back({shown(result, measure), result.frame_ms});
         line.labels.push_back(labelOf(result, measure));
-      } else {
+      } else if (std::isfinite(result.frame_ms)) {  // else it has no place, and must not widen the axis
         line.points.insert(line.points.end(), {{kNowhere, kNowhere}, {rail, result.frame_ms}});
         line.labels.insert(line.labels.end(), {"", std::string(nameOf(result.outcome))});
       }
@@ -146,8 +155,9 @@ void addResults(const Chart& chart, ChartScene scene, ChartMeasure measure, Plot
   }
 }
 
-// A record of a stack says in a sentence which block has moved where.
+// A record of a stack says in a sentence which block has moved where; of a fall, that it does.
 std::string labelOf(const PeerResult& peer) {
+  if (isFall(peer.scene)) return "";
   if (isStack(peer.scene)) return peer.verdict == "stands" ? "" : "fell";
   return peer.verdict.starts_with("yes") ? "" : peer.verdict;
 }
@@ -165,7 +175,7 @@ void addPeers(const Chart& chart, ChartScene scene, ChartMeasure measure, Plot& 
     if (line == plot.lines.end()) {
       line = plot.lines.insert(line, {name, {}, Marker::hollow});
       line->style = kElsewhereStyle + engines++;
-      line->joined = !isStack(scene);  // these were measured more than once
+      line->joined = !isDrawnAsRecorded(scene);  // these were measured more than once
     }
     line->points.push_back({std::max(value, row.floor), frame_ms});
     line->labels.push_back(labelOf(peer));
@@ -181,14 +191,50 @@ void addFront(const std::vector<const ChartResult*>& front, ChartMeasure measure
   plot.lines.push_back(std::move(line));
 }
 
-Plot plotOf(const Chart& chart, ChartScene scene, ChartMeasure measure) {
+// What the times of a chart's frames are.
+enum class ChartCost { mean, median, worst };
+constexpr std::array<std::string_view, 3> kChartCostNames = {"mean", "median", "largest"};
+
+ChartCost usualCost(ChartScene scene) {
+  return isFall(scene) ? ChartCost::median : ChartCost::mean;
+}
+
+// The same chart with the cost of the worst frame in place of the usual one.
+Chart withWorstFrames(Chart chart) {
+  for (ChartResult& result : chart.results) result.frame_ms = result.worst_ms;
+  for (PeerResult& peer : chart.peers) peer.frame_ms = peer.worst_ms;
+  return chart;
+}
+
+std::string costTitle(ChartCost cost) {
+  switch (cost) {
+    case ChartCost::mean:
+      break;
+    case ChartCost::median:
+      return "median processor time of a frame of 1/60 s, ms";
+    case ChartCost::worst:
+      return "processor time of the worst frame but the first, ms";
+  }
+  return "processor time of a frame of 1/60 s, ms";
+}
+
+// Where the hollow points come from, and which are missing.
+std::string elsewhereText(const Chart& chart, ChartScene scene, ChartCost cost) {
+  if (std::none_of(chart.peers.begin(), chart.peers.end(), [&](const PeerResult& peer) { return peer.scene == scene; }))
+    return "";
+  if (!isDrawnAsRecorded(scene)) return "Hollow: other engines, measured elsewhere and carried over by their ratio to Bullet. ";
+  return fmt::format("Hollow: other engines, measured elsewhere on an AMD EPYC (Zen 4), as they were recorded{}. ",
+                     cost == ChartCost::worst ? "; without those of which only the first frame, their longest, is known" : "");
+}
+
+Plot plotOf(const Chart& chart, ChartScene scene, ChartMeasure measure, ChartCost cost) {
   const ChartMeasureRow& row = kChartMeasureRows[static_cast<std::size_t>(measure)];
   Plot plot;
   const std::string title = titleOf(scene, measure, chart.limits);
   plot.title = "Speed against accuracy: " + title;
   plot.subtitle = describe(scene, chart.limits);
   plot.x = {title, true};
-  plot.y = {"processor time of a frame of 1/60 s, ms", true};
+  plot.y = {costTitle(cost), true};
   plot.references = {{kFrame_ms, "16.7 ms: real time"}};
   std::string missing;
   std::string cut;
@@ -202,15 +248,11 @@ Plot plotOf(const Chart& chart, ChartScene scene, ChartMeasure measure) {
     plot.footnote +=
         fmt::format("Looked at for less time{}: {}. ", measure == ChartMeasure::creep ? ", and left out of the front" : "", cut);
   }
-  const bool elsewhere =
-      std::any_of(chart.peers.begin(), chart.peers.end(), [&](const PeerResult& peer) { return peer.scene == scene; });
-  if (elsewhere) {
-    plot.footnote += isStack(scene) ? "Hollow: other engines, measured elsewhere on an AMD EPYC (Zen 4), as they were recorded. "
-                                    : "Hollow: other engines, measured elsewhere and carried over by their ratio to Bullet. ";
-  }
-  plot.footnote += fmt::format(
-      "One thread; mean over up to {} frames, of each the least of up to {} samples, or more where they are short. {}",
-      chart.limits.frames, chart.limits.samples, footnote(chart.provenance));
+  plot.footnote += elsewhereText(chart, scene, cost);
+  plot.footnote +=
+      fmt::format("One thread; {} {} up to {} frames, of each the least of up to {} samples, or more where they are short. {}",
+                  kChartCostNames[static_cast<std::size_t>(cost)], cost == ChartCost::worst ? "of" : "over", chart.limits.frames,
+                  chart.limits.samples, footnote(chart.provenance));
   return plot;
 }
 
@@ -275,6 +317,7 @@ AutoChoice choiceOf(const Chart& chart, ChartScene scene) {
 
 std::vector<std::pair<std::string, Plot>> chartPlots(const Chart& chart) {
   std::vector<std::pair<std::string, Plot>> plots;
+  const Chart worst = withWorstFrames(chart);
   for (const ChartScene scene : scenesIn(chart)) {
     for (std::size_t i = 0; i < kChartMeasures; ++i) {
       const auto measure = static_cast<ChartMeasure>(i);
@@ -284,7 +327,9 @@ std::vector<std::pair<std::string, Plot>> chartPlots(const Chart& chart) {
       if (!any) continue;
       std::string name = fmt::format("{}_{}", nameOf(scene), kChartMeasureRows[i].key);
       std::replace(name.begin(), name.end(), '-', '_');
-      plots.emplace_back(name, plotOf(chart, scene, measure));
+      plots.emplace_back(name, plotOf(chart, scene, measure, usualCost(scene)));
+      if (isFall(scene) && measure == ChartMeasure::penetration)
+        plots.emplace_back(name + "_worst", plotOf(worst, scene, measure, ChartCost::worst));
     }
   }
   return plots;

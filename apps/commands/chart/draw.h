@@ -31,7 +31,8 @@ struct AutoChoice {
 };
 AutoChoice choiceOf(const Chart& chart, ChartScene scene);
 
-/// One chart for each scene and measure that has results, with a file name without extension.
+/// One chart for each scene and measure that has results, with a file name without extension; of the depth of a fall a second
+/// one, of its worst frame.
 std::vector<std::pair<std::string, Plot>> chartPlots(const Chart& chart);
 
 /// The index page (Markdown): the table of tolerances, the charts, and every case that failed. `names`: of the charts.

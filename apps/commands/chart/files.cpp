@@ -54,6 +54,7 @@ Json resultJson(const ChartResult& result) {
   json["simulated_s"] = result.simulated_s;
   json["from_s"] = result.from_s;
   json["cpu_ms_per_frame"] = number(result.frame_ms);
+  json["cpu_ms_worst_frame"] = number(result.worst_ms);
   json["frames"] = result.frames;
   json["samples"] = result.samples;
   for (std::size_t i = 0; i < kChartMeasures; ++i) json[std::string(kChartMeasureRows[i].key)] = number(result.measured[i]);
@@ -86,6 +87,7 @@ ChartResult chartResultFromJson(const Json& json) {
   json.at("simulated_s").get_to(result.simulated_s);
   json.at("from_s").get_to(result.from_s);
   result.frame_ms = numberFrom(json.at("cpu_ms_per_frame"));
+  result.worst_ms = numberFrom(json.at("cpu_ms_worst_frame"));
   json.at("frames").get_to(result.frames);
   json.at("samples").get_to(result.samples);
   for (std::size_t i = 0; i < kChartMeasures; ++i)
@@ -132,7 +134,7 @@ void writeChartCsv(std::ostream& stream, const Chart& chart) {
   stream << "measured,scene,rows,method,knob,value,iterations,outcome,note,simulated_s,settled_from_s,frames,samples,"
             "cpu_ms_per_frame,cpu_s_per_simulated_s";
   for (const ChartMeasureRow& row : kChartMeasureRows) stream << ',' << row.key;
-  stream << ",commit,compiler,flags,cpu,date\n";
+  stream << ",cpu_ms_worst_frame,commit,compiler,flags,cpu,date\n";
   const Provenance& from = chart.provenance;
   constexpr double kFramesInASecond = 60.0;
   for (const ChartResult& r : chart.results) {
@@ -141,14 +143,14 @@ void writeChartCsv(std::ostream& stream, const Chart& chart) {
                           r.what.iterations, csvText(nameOf(r.outcome)), csvText(r.note), r.simulated_s, r.from_s, r.frames,
                           r.samples, csvNumber(r.frame_ms), csvNumber(1e-3 * kFramesInASecond * r.frame_ms));
     for (const double value : r.measured) stream << ',' << csvNumber(value);
-    stream << fmt::format(",{}\n", csvText(from));
+    stream << fmt::format(",{},{}\n", csvNumber(r.worst_ms), csvText(from));
   }
   for (const PeerResult& peer : chart.peers) {
     stream << fmt::format("elsewhere,{},{},{},settings,{},,{},,,,,,{},{}", nameOf(peer.scene), sizeText(peer.scene, chart.limits),
                           csvText(peer.engine), csvText(peer.settings), csvText(peer.verdict),
                           csvNumber(drawnTime_ms(chart, peer)), csvNumber(1e-3 * kFramesInASecond * drawnTime_ms(chart, peer)));
     for (const double value : peer.measured) stream << ',' << csvNumber(value);
-    stream << ",elsewhere,,,,\n";
+    stream << fmt::format(",{},elsewhere,,,,\n", csvNumber(peer.worst_ms));
   }
 }
 

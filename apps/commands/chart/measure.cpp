@@ -8,6 +8,7 @@
 #include "solver/metrics/balance.h"
 #include "solver/metrics/measures.h"
 #include "solver/metrics/penetration.h"
+#include "solver/runner/run.h"
 
 #include <algorithm>
 #include <cmath>
@@ -24,7 +25,7 @@ namespace {
 // A tower may be looked at from here on, s.
 constexpr double kEarliest_s = 1.0;
 constexpr double kMotionLimits = 2.0;
-constexpr double kStackLimits = 4.0;      // for a fifth of the simulated time, and twenty times the blocks
+constexpr double kHundredsLimits = 4.0;   // for a fifth of the simulated time, and twenty times the blocks
 constexpr double kShortSamples_s = 0.03;  // of a case in all, s of processor time, and no more than
 constexpr double kShortShare = 0.15;      // this share of what one sample may take
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
@@ -190,7 +191,7 @@ class ChartRun {
   // What is in motion is not timed beside, and has to be seen to its end.
   [[nodiscard]] double caseLimit_s() const {
     const ChartScene scene = result.what.scene;
-    return (isInMotion(scene) ? kMotionLimits : isStack(scene) ? kStackLimits : 1.0) * limits_.case_s;
+    return (hasHundreds(scene) ? kHundredsLimits : isInMotion(scene) ? kMotionLimits : 1.0) * limits_.case_s;
   }
 
   // A slow method that comes to rest is looked at before its time, so that it has figures at all. Returns whether the run may go
@@ -252,7 +253,13 @@ class ChartRun {
 
   void takeTimes() {
     result.frames = static_cast<int>(frame_ms_.size());
-    if (result.frames > 0) result.frame_ms = std::accumulate(frame_ms_.begin(), frame_ms_.end(), 0.0) / result.frames;
+    if (result.frames == 0) return;
+    if (isFall(result.what.scene)) {
+      result.frame_ms = quantile(frame_ms_, 0.5);
+      result.worst_ms = quantile(frame_ms_, 1.0);
+    } else {
+      result.frame_ms = std::accumulate(frame_ms_.begin(), frame_ms_.end(), 0.0) / result.frames;
+    }
   }
 
   // What is looked at after every frame.
@@ -264,7 +271,7 @@ class ChartRun {
       if (!now.stands) fall_ = fmt::format("fell at {:.2f} s", simulation_.time_s);
     }
     const bool settled = simulation_.time_s > times_.from_s + halfFrame();
-    const bool wholeRun = scene == ChartScene::drop || scene == ChartScene::collapse;
+    const bool wholeRun = scene == ChartScene::drop || isFall(scene);
     if (wholeRun || settled) {
       strain_ = std::max(strain_, maxStrain(simulation_.model, position));
       penetration_m_ =

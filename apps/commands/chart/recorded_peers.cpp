@@ -11,6 +11,7 @@
 #include <map>
 #include <optional>
 #include <span>
+#include <utility>
 
 namespace springtower {
 namespace {
@@ -30,8 +31,13 @@ constexpr const char* kTowerColumns[] = {"engine",
                                          "jitter_mm_s",
                                          "ms_per_frame",
                                          "ratio_to_bullet_16_substeps"};
-constexpr const char* kStackColumns[] = {"engine",  "version",   "settings",           "scene",
-                                         "threads", "median_ms", "penetration_end_mm", "verdict"};
+constexpr const char* kRecordedColumns[] = {"engine",  "version",   "settings",           "scene",
+                                            "threads", "median_ms", "penetration_end_mm", "verdict"};
+
+// Scenes whose figures are drawn as they were recorded, and what `springtower scenes` calls them without their size.
+constexpr std::pair<ChartScene, std::string_view> kRecordedScenes[] = {
+    {ChartScene::wall, "wall"},    {ChartScene::pyramid, "cubes"}, {ChartScene::collapse, "collapse"}, {ChartScene::shot, "shot"},
+    {ChartScene::heap200, "heap"}, {ChartScene::rain200, "rain"},  {ChartScene::pile3, "pile"}};
 
 std::vector<std::string> fieldsOf(const std::string& line) {
   std::vector<std::string> fields(1);
@@ -48,15 +54,24 @@ std::vector<std::string> fieldsOf(const std::string& line) {
   return fields;
 }
 
+InputError withoutColumn(const std::string& path, const char* name) {
+  return InputError(fmt::format("{}: found no column {}", onOneLine(path), inQuotes(name)));
+}
+
 // A line of a table, by the names of its columns.
 class TableLine {
  public:
-  TableLine(const std::map<std::string, std::size_t>& column, const std::vector<std::string>& fields)
-      : column_(column), fields_(fields) {}
-  [[nodiscard]] const std::string& text(const char* name) const { return fields_[column_.at(name)]; }
+  TableLine(const std::string& path, const std::map<std::string, std::size_t>& column, const std::vector<std::string>& fields)
+      : path_(path), column_(column), fields_(fields) {}
+  [[nodiscard]] const std::string& text(const char* name) const {
+    const auto found = column_.find(name);
+    if (found == column_.end()) throw withoutColumn(path_, name);
+    return fields_[found->second];
+  }
   [[nodiscard]] double value(const char* name) const { return parseNumber(text(name)).value_or(kNotRecorded); }
 
  private:
+  const std::string& path_;
   const std::map<std::string, std::size_t>& column_;
   const std::vector<std::string>& fields_;
 };
@@ -84,12 +99,15 @@ std::optional<PeerResult> towerResult(const TableLine& line, const ChartLimits& 
   return peer;
 }
 
-std::optional<PeerResult> stackResult(const TableLine& line, const ChartLimits& limits) {
-  for (const auto& [scene, kind] : {std::pair{ChartScene::wall, "wall"}, std::pair{ChartScene::pyramid, "cubes"}}) {
+// What rests has sunk as deep as it does at the end, what falls is deepest on its way.
+std::optional<PeerResult> recordedResult(const TableLine& line, const ChartLimits& limits) {
+  for (const auto& [scene, kind] : kRecordedScenes) {
     if (line.text("scene") != fmt::format("{}:{}", kind, sizeText(scene, limits))) continue;
     PeerResult peer = described(line, scene, "verdict");
-    peer.measured[static_cast<std::size_t>(ChartMeasure::penetration)] = line.value("penetration_end_mm");
+    peer.measured[static_cast<std::size_t>(ChartMeasure::penetration)] =
+        line.value(isFall(scene) ? "penetration_max_mm" : "penetration_end_mm");
     peer.frame_ms = line.value("median_ms");
+    if (isFall(scene)) peer.worst_ms = line.value("worst_ms");
     peer.ratioToBullet = kNotRecorded;
     return peer;
   }
@@ -99,7 +117,7 @@ std::optional<PeerResult> stackResult(const TableLine& line, const ChartLimits& 
 }  // namespace
 
 double drawnTime_ms(const Chart& chart, const PeerResult& peer) {
-  if (isStack(peer.scene)) return peer.frame_ms;
+  if (isDrawnAsRecorded(peer.scene)) return peer.frame_ms;
   const ChartCase bullet{ChartScene::uniform, Method::rigidPgs, Knob::substeps, 16.0, Peer::bullet, 0};
   const auto found =
       std::find_if(chart.results.begin(), chart.results.end(), [&](const ChartResult& result) { return result.what == bullet; });
@@ -114,10 +132,10 @@ std::vector<PeerResult> readPeers(const std::string& path, const ChartLimits& li
   std::map<std::string, std::size_t> column;
   const std::vector<std::string> names = fieldsOf(text);
   for (std::size_t i = 0; i < names.size(); ++i) column[names[i]] = i;
-  const bool ofStacks = column.contains("penetration_end_mm");
+  const bool asRecorded = column.contains("penetration_end_mm");
   for (const char* needed :
-       ofStacks ? std::span<const char* const>(kStackColumns) : std::span<const char* const>(kTowerColumns)) {
-    if (!column.contains(needed)) throw InputError(fmt::format("{}: found no column {}", onOneLine(path), inQuotes(needed)));
+       asRecorded ? std::span<const char* const>(kRecordedColumns) : std::span<const char* const>(kTowerColumns)) {
+    if (!column.contains(needed)) throw withoutColumn(path, needed);
   }
   std::vector<PeerResult> peers;
   while (input.next(text)) {
@@ -126,9 +144,9 @@ std::vector<PeerResult> readPeers(const std::string& path, const ChartLimits& li
       throw InputError(
           fmt::format("{}:{}: found {} fields, allowed are {}", onOneLine(path), input.number(), fields.size(), names.size()));
     }
-    const TableLine line(column, fields);
+    const TableLine line(path, column, fields);
     if (line.value("threads") != 1.0) continue;
-    const std::optional<PeerResult> peer = ofStacks ? stackResult(line, limits) : towerResult(line, limits);
+    const std::optional<PeerResult> peer = asRecorded ? recordedResult(line, limits) : towerResult(line, limits);
     if (peer) peers.push_back(*peer);
   }
   return peers;

@@ -1,5 +1,6 @@
 #include "apps/commands/chart/scene.h"
 
+#include "scenarios/falling.h"
 #include "scenarios/loose.h"
 #include "scenarios/towers.h"
 #include "scenarios/walls.h"
@@ -20,22 +21,35 @@ constexpr double kHeavyFactor = 10.0;
 constexpr int kLeanRows = 9;
 constexpr double kLean_deg = 9.0;
 constexpr int kTallRows = 36;
+constexpr int kFallingBlocks = 200;
+constexpr int kPileRows = 3;
+constexpr double kPileFall_m = 0.1;
 constexpr double kMotion_s = 2.0;  // of scenes that do not come to rest
 constexpr double kStack_s = 2.0;   // in half of which a wall or pyramid has sunk as deep as an engine lets it
 
-// Blocks on their own.
+// Blocks that are no tower.
 Scene looseBlocks(ChartScene kind) {
   constexpr int kHeap = 8;
-  Scene scene = kind == ChartScene::heap     ? askewPileScene(kHeap)
-                : kind == ChartScene::thrown ? thrownPairScene()
-                : kind == ChartScene::spin   ? spinningBlockScene()
-                                             : slidingBlockScene();
-  scene.name = kind == ChartScene::spin ? "one block" : nameOf(kind);
-  return scene;
+  switch (kind) {
+    case ChartScene::heap:
+      return askewPileScene(kHeap);
+    case ChartScene::thrown:
+      return thrownPairScene();
+    case ChartScene::spin:
+      return spinningBlockScene();
+    case ChartScene::heap200:
+      return heapScene(kFallingBlocks);
+    case ChartScene::rain200:
+      return rainScene(kFallingBlocks);
+    case ChartScene::pile3:
+      return pileScene(kPileRows, {.fall_m = kPileFall_m});
+    default:
+      return slidingBlockScene();
+  }
 }
 
 bool hasRows(ChartScene scene) {
-  return !isStack(scene) && scene != ChartScene::spin && scene != ChartScene::slide && scene != ChartScene::heap &&
+  return !hasHundreds(scene) && scene != ChartScene::spin && scene != ChartScene::slide && scene != ChartScene::heap &&
          scene != ChartScene::thrown;
 }
 
@@ -43,7 +57,12 @@ Scene blocksOf(ChartScene scene, const ChartLimits& limits) {
   int rows = limits.rows;
   if (scene == ChartScene::wall) return wallScene(limits.wallColumns, limits.wallCourses);
   if (scene == ChartScene::pyramid) return cubePyramidScene(limits.pyramidRows);
-  if (!hasRows(scene)) return looseBlocks(scene);
+  if (!hasRows(scene)) {
+    Scene loose = looseBlocks(scene);
+    loose.name = scene == ChartScene::spin ? "one block" : nameOf(scene);
+    return loose;
+  }
+  if (scene == ChartScene::shot) return shotTowerScene(rows);
   if (scene == ChartScene::holes) return towerWithHolesScene();
   if (scene == ChartScene::lean) rows = kLeanRows;
   if (scene == ChartScene::tall) rows = kTallRows;
@@ -90,9 +109,9 @@ const std::vector<StepsAndIterations> kPeerKnobs = {{1, 0}, {1, 200}, {4, 0}, {4
 const std::vector<StepsAndIterations> kQuickPeerKnobs = {{1, 0}, {16, 0}};
 const std::vector<StepsAndIterations> kMoreIterations = {{4, 16}, {8, 16}, {16, 16}};
 
-// Of a stack, whose frames take twenty times as long as a tower's: no explicit steps, which take seconds for one, no matrices of
-// pivoting or of Eigen's, and of what iterates a few settings. Bullet has all of its own.
-const std::vector<Sweep>& stackSweeps() {
+// Of hundreds of blocks, whose frames take twenty times as long as a tower's: no explicit steps, which take seconds for one, no
+// matrices of pivoting or of Eigen's, and of what iterates a few settings. Bullet has all of its own.
+const std::vector<Sweep>& sweepsOfHundreds() {
   static const std::vector<Sweep> all = {
       {Method::implicit, Knob::tolerance, {2e-4, 1e-4, 5e-5, 2e-5, 1e-5, 5e-6, 1e-6}, {5e-5, 1e-5}},
       {Method::implicitEuler, Knob::tolerance, {2e-4, 5e-5, 1e-5}, {5e-5}},
@@ -101,11 +120,11 @@ const std::vector<Sweep>& stackSweeps() {
   };
   return all;
 }
-const std::vector<StepsAndIterations> kStackOdeKnobs = {{1, 0}, {4, 0}};
+const std::vector<StepsAndIterations> kOdeKnobsOfHundreds = {{1, 0}, {4, 0}};
 
 const std::vector<StepsAndIterations>& peerKnobs(ChartScene scene, Peer peer, bool quick) {
   if (quick) return kQuickPeerKnobs;
-  return isStack(scene) && peer == Peer::ode ? kStackOdeKnobs : kPeerKnobs;
+  return hasHundreds(scene) && peer == Peer::ode ? kOdeKnobsOfHundreds : kPeerKnobs;
 }
 
 }  // namespace
@@ -118,6 +137,8 @@ std::string nameOf(const ChartCase& what) {
 
 std::string sizeText(ChartScene scene, const ChartLimits& limits) {
   if (scene == ChartScene::wall) return fmt::format("{}x{}", limits.wallColumns, limits.wallCourses);
+  if (scene == ChartScene::heap200 || scene == ChartScene::rain200) return fmt::format("{}", kFallingBlocks);
+  if (scene == ChartScene::pile3) return fmt::format("{}", kPileRows);
   return fmt::format("{}", scene == ChartScene::pyramid ? limits.pyramidRows : limits.rows);
 }
 
@@ -136,10 +157,10 @@ Scene sceneOf(const ChartCase& what, const ChartLimits& limits) {
 
 std::vector<ChartCase> casesOf(ChartScene scene, const std::vector<Method>& methods, const std::vector<Peer>& peers, bool quick) {
   std::vector<ChartCase> cases;
-  for (const Sweep& sweep : isStack(scene) ? stackSweeps() : sweeps()) {
+  for (const Sweep& sweep : hasHundreds(scene) ? sweepsOfHundreds() : sweeps()) {
     if (std::find(methods.begin(), methods.end(), sweep.method) == methods.end()) continue;
     for (const double value : quick ? sweep.quick : sweep.values) cases.push_back({scene, sweep.method, sweep.knob, value});
-    if (quick || isStack(scene) || (sweep.method != Method::rigidPgs && sweep.method != Method::xpbd)) continue;
+    if (quick || hasHundreds(scene) || (sweep.method != Method::rigidPgs && sweep.method != Method::xpbd)) continue;
     for (const StepsAndIterations& knobs : kMoreIterations)
       cases.push_back({scene, sweep.method, Knob::substeps, knobs.substeps, Peer::none, knobs.iterations});
   }
@@ -173,6 +194,10 @@ ChartTimes timesOf(ChartScene scene, const ChartLimits& limits) {
       return {0.0, half_s, limits.seconds};
     case ChartScene::collapse:
     case ChartScene::spin:
+    case ChartScene::shot:
+    case ChartScene::heap200:
+    case ChartScene::rain200:
+    case ChartScene::pile3:
       break;
   }
   return {0.0, 0.0, std::min(kMotion_s, limits.seconds)};
@@ -180,11 +205,12 @@ ChartTimes timesOf(ChartScene scene, const ChartLimits& limits) {
 
 int towerRows(ChartScene scene, const ChartLimits& limits) {
   if (scene == ChartScene::tall) return kTallRows;
-  return isCharted(scene) && !isStack(scene) && scene != ChartScene::drop && scene != ChartScene::spin ? limits.rows : 0;
+  return isCharted(scene) && hasRows(scene) && scene != ChartScene::drop ? limits.rows : 0;
 }
 
 std::optional<bool> expectedToStand(ChartScene scene) {
-  if (!hasRows(scene) && !isStack(scene)) return {};
+  if (isStack(scene)) return true;
+  if (!hasRows(scene) || scene == ChartScene::shot) return {};
   return scene != ChartScene::collapse;
 }
 

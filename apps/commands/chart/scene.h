@@ -29,7 +29,7 @@ ChartTimes timesOf(ChartScene scene, const ChartLimits& limits);
 /// Rows of a scene that is a tower of full rows, else 0.
 int towerRows(ChartScene scene, const ChartLimits& limits);
 
-/// Whether the blocks have to stand at the end; empty for blocks on their own.
+/// Whether the blocks have to stand at the end; empty for blocks that are no stack, and for a tower that is hit.
 std::optional<bool> expectedToStand(ChartScene scene);
 
 /// The block that is pulled in scene `pull`: the middle one of the middle row. -1 in other scenes.

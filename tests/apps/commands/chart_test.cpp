@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 
 namespace springtower {
@@ -309,6 +310,82 @@ TEST(Chart, DrawsAWallAndAPyramidBesideRecordedPoints) {
   EXPECT_THAT(table, ::testing::Not(HasSubstr("elsewhere,wall"))) << "none of ten columns and six courses";
   for (const char* name : {"wall_penetration_mm.svg", "pyramid_penetration_mm.png", "pyramid_penetration_mm.pdf"})
     EXPECT_GT(contentOf(scratch.file("out") + "/" + name).size(), 1000U) << name;
+}
+
+// Falls, beside them what other engines took elsewhere: the deepest of the whole fall, the median of the frames and the worst.
+TEST(Chart, DrawsFallsBesideRecordedPoints) {
+  const ScratchFolder scratch;
+  const std::string records = std::string(SPRINGTOWER_SOURCE_DIR) + "/bench/data/peers/falls.csv";
+  const ProgramResult result =
+      chart({"--quick", "--rows", "18", "--seconds", "0.5", "--scenes", "collapse,shot,heap-200", "--methods", "implicit,bullet",
+             "--peers", records, "--case-limit", "60", "--out", scratch.file("out")});
+  ASSERT_EQ(result.exitCode, 0) << result.error;
+  const Json file = Json::parse(contentOf(scratch.file("out/chart.json")));
+  ASSERT_EQ(file.at("cases").size(), 12U) << "three falls, two tolerances, and two settings of Bullet";
+  for (const Json& one : file.at("cases")) {
+    SCOPED_TRACE(one.dump());
+    EXPECT_EQ(one.at("outcome"), "right");
+    EXPECT_EQ(one.at("frames"), 20) << "of all methods the same";
+    EXPECT_GE(one.at("cpu_ms_worst_frame").get<double>(), one.at("cpu_ms_per_frame").get<double>());
+    if (one.at("method") == "implicit") {
+      EXPECT_LT(one.at("penetration_mm").get<double>(), 1.5);
+    }
+    EXPECT_TRUE(one.at("creep_mm").is_null()) << "nothing rests";
+  }
+  const std::vector<std::string> table = linesOf(contentOf(scratch.file("out/chart.csv")));
+  const auto recorded = [&](const std::string& scene, const std::string& settings, const std::string& figures) {
+    EXPECT_THAT(table, ::testing::Contains(::testing::ContainsRegex("^elsewhere," + scene + ",settings,\"[^\"]*" + settings +
+                                                                    "\",.*," + figures + ",elsewhere,,,,$")))
+        << scene << ", " << settings;
+  };
+  // Median (ms a frame, then s a second), depth, and the worst frame; where that was the first, no other is known.
+  recorded("heap-200,200,\"Box3D\"", "8 steps x 4 substeps", "3.8517,0.231102,6.2226,,,,,,,,5.1953");
+  recorded("collapse,18,\"Jolt\"", "steps 8", "0.8148,0.048888,2.0501,,,,,,,,2.2982");
+  recorded("shot,18,\"Jolt\"", "steps 4", "0.864,0.05184,3.3639,,,,,,,,");
+  for (const char* name :
+       {"collapse_penetration_mm.svg", "shot_penetration_mm.png", "heap_200_penetration_mm.pdf",
+        "collapse_penetration_mm_worst.svg", "shot_penetration_mm_worst.png", "heap_200_penetration_mm_worst.pdf"})
+    EXPECT_GT(contentOf(scratch.file("out") + "/" + name).size(), 1000U) << name;
+  const std::string index = contentOf(scratch.file("out/index.md"));
+  EXPECT_THAT(index, HasSubstr("](heap_200_penetration_mm_worst.png)"));
+  EXPECT_THAT(index, ::testing::Not(HasSubstr("| heap-200 | implicit"))) << "a fall is held to no tolerance at rest";
+}
+
+// Of other scenes, sizes and numbers of threads nothing is drawn, and the file is named.
+TEST(Chart, LeavesOutRecordsOfScenesThatItDoesNotDraw) {
+  const ScratchFolder scratch;
+  const std::string head =
+      "engine,version,settings,scene,threads,median_ms,worst_ms,penetration_end_mm,penetration_max_mm,verdict\n";
+  std::ofstream(scratch.file("peers.csv")) << head
+                                           << "Box,1,a,flood:200,1,1,2,3,4,moves\n"
+                                              "Box,1,a,heap:1000,1,1,2,3,4,moves\n"
+                                              "Box,1,a,shot:18,1,1,2,3,4,moves\n"
+                                              "Box,1,a,heap:200,2,1,2,3,4,moves\n";
+  const ProgramResult result = chart({"--quick", "--scenes", "spin", "--methods", "rigid-pgs", "--peers",
+                                      scratch.file("peers.csv"), "--out", scratch.file("out")});
+  ASSERT_EQ(result.exitCode, 0) << result.error;
+  EXPECT_THAT(result.output, HasSubstr("peers.csv: no figures for 6 rows"));
+  EXPECT_THAT(contentOf(scratch.file("out/chart.csv")), ::testing::Not(HasSubstr("elsewhere")));
+}
+
+// A quick chart of all scenes takes less than a minute (test apps.QuickChart), so falls of hundreds of blocks have to be named.
+TEST(Chart, QuickLeavesOutFallsOfHundredsOfBlocks) {
+  const ScratchFolder scratch;
+  const ProgramResult result =
+      chart({"--quick", "--rows", "2", "--seconds", "0.2", "--methods", "rigid-pgs", "--out", scratch.file("out")});
+  ASSERT_EQ(result.exitCode, 0) << result.error;
+  std::set<std::string> scenes;
+  const Json file = Json::parse(contentOf(scratch.file("out/chart.json")));
+  for (const Json& one : file.at("cases")) scenes.insert(one.at("scene"));
+  EXPECT_EQ(scenes, (std::set<std::string>{"uniform", "heights", "pull", "drop", "collapse", "spin", "heavy-light", "wall",
+                                           "pyramid", "shot"}));
+}
+
+TEST(Chart, RefusesRecordsOfFallsWithoutTheirColumns) {
+  const ScratchFolder scratch;
+  std::ofstream(scratch.file("peers.csv"))
+      << "engine,version,settings,scene,threads,median_ms,penetration_end_mm,verdict\nBox,1,a,heap:200,1,1,0.1,moves\n";
+  expectRefusal({"--peers", scratch.file("peers.csv"), "--out", scratch.file("out")}, "no column 'penetration_max_mm'");
 }
 
 TEST(Chart, RefusesRecordsOfStacksWithoutTheirColumns) {
