@@ -162,10 +162,21 @@ std::string labelOf(const PeerResult& peer) {
   return peer.verdict.starts_with("yes") ? "" : peer.verdict;
 }
 
+// An engine has one colour in all charts of a scene, also in those in which another has no point. Those that were measured here
+// have their own.
+int elsewhereStyle(const Chart& chart, ChartScene scene, const std::string& engine) {
+  std::vector<std::string> before;
+  for (const PeerResult& peer : chart.peers) {
+    if (peer.scene != scene || measuredHere(chart, peer)) continue;
+    if (peer.engine == engine) break;
+    if (std::find(before.begin(), before.end(), peer.engine) == before.end()) before.push_back(peer.engine);
+  }
+  return kElsewhereStyle + static_cast<int>(before.size());
+}
+
 // Adds other engines as they were measured elsewhere.
 void addPeers(const Chart& chart, ChartScene scene, ChartMeasure measure, Plot& plot) {
   const ChartMeasureRow& row = kChartMeasureRows[static_cast<std::size_t>(measure)];
-  int engines = 0;
   for (const PeerResult& peer : chart.peers) {
     const double value = peer.measured[static_cast<std::size_t>(measure)];
     const double frame_ms = drawnTime_ms(chart, peer);
@@ -174,7 +185,7 @@ void addPeers(const Chart& chart, ChartScene scene, ChartMeasure measure, Plot& 
     auto line = std::find_if(plot.lines.begin(), plot.lines.end(), [&](const PlotLine& one) { return one.name == name; });
     if (line == plot.lines.end()) {
       line = plot.lines.insert(line, {name, {}, Marker::hollow});
-      line->style = kElsewhereStyle + engines++;
+      line->style = elsewhereStyle(chart, scene, peer.engine);
       line->joined = !isDrawnAsRecorded(scene);  // these were measured more than once
     }
     line->points.push_back({std::max(value, row.floor), frame_ms});

@@ -351,6 +351,40 @@ TEST(Chart, DrawsFallsBesideRecordedPoints) {
   EXPECT_THAT(index, ::testing::Not(HasSubstr("| heap-200 | implicit"))) << "a fall is held to no tolerance at rest";
 }
 
+// All that a chart is drawn with.
+std::set<std::string> coloursOf(const std::string& svg) {
+  std::set<std::string> colours;
+  const std::string text = contentOf(svg);
+  for (std::size_t at = text.find("rgb("); at != std::string::npos; at = text.find("rgb(", at + 1))
+    colours.insert(text.substr(at, text.find(')', at) - at));
+  return colours;
+}
+
+// Of the first engine the worst frame but the first is not known. That must not give its colour to the second.
+TEST(Chart, AnEngineHasOneColourInAllChartsOfAScene) {
+  const ScratchFolder scratch;
+  const std::string head =
+      "engine,version,settings,scene,threads,median_ms,worst_ms,penetration_end_mm,penetration_max_mm,verdict\n";
+  const std::string first = "First,1,a,shot:2,1,1,,0.1,2,moves\n";
+  std::ofstream(scratch.file("first.csv")) << head << first;
+  std::ofstream(scratch.file("both.csv")) << head << first << "Second,1,a,shot:2,1,1,2,0.1,3,moves\n";
+  for (const std::string name : {"first", "both"}) {
+    const ProgramResult result = chart({"--quick", "--rows", "2", "--seconds", "0.2", "--scenes", "shot", "--methods",
+                                        "rigid-pgs", "--peers", scratch.file(name + ".csv"), "--out", scratch.file(name)});
+    ASSERT_EQ(result.exitCode, 0) << result.error;
+  }
+  const std::set<std::string> without = coloursOf(scratch.file("first/shot_penetration_mm_worst.svg"));
+  const std::set<std::string> worst = coloursOf(scratch.file("both/shot_penetration_mm_worst.svg"));
+  int ofFirst = 0;
+  for (const std::string& colour : coloursOf(scratch.file("first/shot_penetration_mm.svg"))) {
+    if (without.contains(colour)) continue;
+    ++ofFirst;
+    EXPECT_FALSE(worst.contains(colour)) << colour;
+  }
+  EXPECT_EQ(ofFirst, 1);
+  EXPECT_EQ(worst.size(), without.size() + 1) << "that of the second";
+}
+
 // Of other scenes, sizes and numbers of threads nothing is drawn, and the file is named.
 TEST(Chart, LeavesOutRecordsOfScenesThatItDoesNotDraw) {
   const ScratchFolder scratch;
