@@ -39,8 +39,8 @@ auto engineValue(const Table& table, Public value, const char* what) {
   for (const auto& match : table) {
     if (match.shown == value) return match.engine;
   }
-  throw InputError(
-      fmt::format("{}: found number {}, allowed 0 to {}", what, static_cast<int>(value), static_cast<int>(table.size()) - 1));
+  throw InputError(fmt::format("{}: expected a number from 0 to {}, got {}", what, static_cast<int>(table.size()) - 1,
+                               static_cast<int>(value)));
 }
 
 template <class Table, class Engine>

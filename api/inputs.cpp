@@ -31,7 +31,7 @@ void requireInPlane(const springtower::Simulation& simulation, double y, const c
 Hand& heldHand(WorldImpl& impl, const char* what) {
   Hand& hand = impl.lead.draw.hand;
   if (hand.block == springtower::kFloor)
-    throw InputError(fmt::format("{}: found a hand that holds nothing, allowed is one that has grabbed a block", what));
+    throw InputError(fmt::format("{}: expected a hand that has grabbed a block, got one that holds nothing", what));
   return hand;
 }
 
@@ -40,7 +40,7 @@ springtower::Vec3 unitOf(const Vec3& direction, const char* what) {
   requireVector(direction, kComponentRange, what);
   const springtower::Vec3 vector = toEngine(direction);
   const double length = vector.stableNorm();
-  if (!(length > 0.0)) throw InputError(fmt::format("{}: found a length of {}, allowed is one above 0", what, length));
+  if (!(length > 0.0)) throw InputError(fmt::format("{}: expected a length above 0, got {}", what, length));
   return vector / length;
 }
 

@@ -12,7 +12,7 @@ namespace {
 // A scene as worlds take it: they play no moves.
 Scene withoutMoves(const springtower::Scene& scene, const std::string& source) {
   if (!scene.moves.empty()) {
-    throw InputError(fmt::format("{}: found {} moves of a scripted hand, allowed is a scene without moves", onOneLine(source),
+    throw InputError(fmt::format("{}: expected a scene without moves, got {} moves of a scripted hand", onOneLine(source),
                                  scene.moves.size()));
   }
   return toPublic(scene);

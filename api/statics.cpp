@@ -21,13 +21,14 @@ StaticScene analysed(const Scene& scene, int left = kFloor) {
   springtower::checkScene(blocks, source);
   if (blocks.blocks.size() > kMaxStaticBlocks) {
     throw InputError(
-        fmt::format("{}: found {} blocks, allowed for statics 1 to {}", source, blocks.blocks.size(), kMaxStaticBlocks));
+        fmt::format("{}: expected 1 to {} blocks for statics, got {}", source, kMaxStaticBlocks, blocks.blocks.size()));
   }
   if (!(blocks.gravity.magnitude > 0.0))
-    throw InputError(fmt::format("{}: found no gravity, allowed for statics is a magnitude above 0", source));
+    throw InputError(fmt::format("{}: expected gravity above 0 for statics, got none", source));
   blocks.forces.clear();
   if (left != kFloor) {
-    if (blocks.blocks.size() < 2) throw InputError(fmt::format("{}: found one block, allowed to leave one out are two", source));
+    if (blocks.blocks.size() < 2)
+      throw InputError(fmt::format("{}: expected at least two blocks to leave one out, got one", source));
     removeBlock(blocks, static_cast<std::size_t>(left));
   }
   return staticScene(blocks);
@@ -83,7 +84,7 @@ std::optional<double> pullLimit(const Scene& scene, int block, const Vec3& direc
     const springtower::Vec3 along = toEngine(direction);
     const double length = along.stableNorm();
     if (!(length > 0.0) || !std::isfinite(length))
-      throw InputError(fmt::format("direction: found a length of {}, allowed is a finite one above 0", length));
+      throw InputError(fmt::format("direction: expected a finite length above 0, got {}", length));
     return springtower::pullLimit(analysed(scene), blockId(b), along / length);
   });
 }

@@ -124,13 +124,13 @@ void stepWithPassingForces(WorldImpl& impl) {
 }
 
 void requirePrepared(const WorldImpl& impl) {
-  if (!isPrepared(impl.simulation)) throw InputError("step: found a world that is not prepared, allowed is one after prepare()");
+  if (!isPrepared(impl.simulation)) throw InputError("step: expected a world after prepare(), got one that is not prepared");
 }
 
 }  // namespace
 
 WorldImpl& WorldAccess::impl(World& world) {
-  if (world.impl_ == nullptr) throw InputError("world: found one that has been moved from, allowed is one that holds a scene");
+  if (world.impl_ == nullptr) throw InputError("world: expected one that holds a scene, got one that has been moved from");
   return *world.impl_;
 }
 
@@ -141,8 +141,8 @@ const WorldImpl& WorldAccess::impl(const World& world) {
 WorldImpl& WorldAccess::running(World& world) {
   WorldImpl& inside = impl(world);
   if (inside.divergence) {
-    throw InputError(fmt::format("world: found one that has failed ({}), allowed is one that runs: restore a snapshot",
-                                 inside.divergence->cause));
+    throw InputError(
+        fmt::format("world: expected one that runs, got one that has failed ({}): restore a snapshot", inside.divergence->cause));
   }
   return inside;
 }
@@ -153,17 +153,17 @@ const WorldImpl& WorldAccess::running(const World& world) {
 
 std::size_t checkedBlock(int block, std::size_t count, const char* what) {
   if (block < 0 || static_cast<std::size_t>(block) >= count)
-    throw InputError(fmt::format("{}: found {}, allowed 0 to {}", what, block, count - 1));
+    throw InputError(fmt::format("{}: expected 0 to {}, got {}", what, count - 1, block));
   return static_cast<std::size_t>(block);
 }
 
 double Snapshot::time_s() const {
-  if (empty()) throw InputError("snapshot: found an empty one, allowed is one that a world has taken");
+  if (empty()) throw InputError("snapshot: expected one that a world has taken, got an empty one");
   return data_->time_s;
 }
 
 std::vector<std::byte> Snapshot::bytes() const {
-  if (empty()) throw InputError("snapshot: found an empty one, allowed is one that a world has taken");
+  if (empty()) throw InputError("snapshot: expected one that a world has taken, got an empty one");
   ByteWriter writer;
   const SnapshotData& data = *data_;
   writer(data.sceneHash, data.time_s, data.lead, data.passing);
@@ -201,7 +201,7 @@ World::World(const Scene& scene) {
 
 Preparation World::prepare(const PrepareOptions& options) {
   WorldImpl& impl = WorldAccess::running(*this);
-  if (isPrepared(impl.simulation)) throw InputError("prepare: found a world that is prepared, allowed is one that is not");
+  if (isPrepared(impl.simulation)) throw InputError("prepare: expected a world that is not prepared, got one that is");
   springtower::PrepareOptions how;
   how.budget_s = options.budget_s;
   if (options.goesOn) {
@@ -236,7 +236,7 @@ std::optional<Divergence> World::step() {
 }
 
 std::optional<Divergence> World::step(int frames) {
-  if (frames < 0) throw InputError(fmt::format("step: found {} frames, allowed 0 or more", frames));
+  if (frames < 0) throw InputError(fmt::format("step: expected 0 or more frames, got {}", frames));
   WorldImpl& impl = WorldAccess::impl(*this);
   requirePrepared(impl);
   for (int done = 0; done < frames && !impl.divergence; ++done) stepWithPassingForces(impl);
@@ -316,7 +316,7 @@ double World::mass_kg(int block) const {
 void World::poses(std::span<Pose> into) const {
   const springtower::Simulation& simulation = WorldAccess::running(*this).simulation;
   const std::size_t count = simulation.model.blockCount();
-  if (into.size() != count) throw InputError(fmt::format("poses: found room for {}, allowed for {}", into.size(), count));
+  if (into.size() != count) throw InputError(fmt::format("poses: expected room for {}, got room for {}", count, into.size()));
   for (std::size_t b = 0; b < count; ++b)
     into[b] = {toPublic(centre(simulation.state.position, b)), toPublic(orientationOf(simulation.state.position, b))};
 }
@@ -331,10 +331,10 @@ Snapshot World::snapshot() const {
 
 void World::restore(const Snapshot& snapshot) {
   WorldImpl& impl = WorldAccess::impl(*this);
-  if (snapshot.empty()) throw InputError("restore: found an empty snapshot, allowed is one that a world has taken");
+  if (snapshot.empty()) throw InputError("restore: expected a snapshot that a world has taken, got an empty one");
   const SnapshotData& data = *snapshot.data_;
   if (data.sceneHash != impl.sceneHash)
-    throw InputError("restore: found a snapshot of another scene, allowed is one of a world made of the same scene");
+    throw InputError("restore: expected a snapshot of a world made of the same scene, got one of another scene");
   withPublicErrors([&] { checkFits(*data.simulation, impl.simulation, "restore"); });
   // Until all is there.
   impl.divergence = {kFloor, data.time_s, "a snapshot could not be restored"};

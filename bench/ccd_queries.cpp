@@ -138,8 +138,9 @@ int runProgram(int argc, char** argv) {
     if (error.get_exit_code() == 0) return program.exit(error);
     // CLI11 names unknown arguments from the last to the first.
     const std::vector<std::string> unknown = program.remaining();
-    const std::string what =
-        unknown.empty() ? error.what() : fmt::format("found the unknown arguments {}", fmt::join(unknown, ", "));
+    const std::string what = unknown.empty() ? error.what()
+                                             : fmt::format("expected arguments that --help lists, got the unknown arguments {}",
+                                                           fmt::join(unknown, ", "));
     return complain(what + " (try 'ccd_queries --help')", kBadInput);
   }
   options.kind = kind == "vf" ? QueryKind::pointTriangle : QueryKind::edgeEdge;

@@ -140,7 +140,7 @@ int gate(const std::vector<std::string_view>& arguments) {
     }
   }
   if (found) return 0;
-  fmt::print(stderr, "gate_scenes: found '{}', allowed is a scene as the program lists them without arguments\n", arguments[0]);
+  fmt::print(stderr, "gate_scenes: expected a scene as the program lists them without arguments, got '{}'\n", arguments[0]);
   return 2;
 }
 

@@ -52,7 +52,7 @@ PeerPush readPush(std::size_t blocks) {
   PeerPush push;
   push.block = static_cast<std::size_t>(values[0]);
   if (push.block >= blocks)
-    throw std::runtime_error("found a push on block " + std::to_string(push.block) + ", which there is not");
+    throw std::runtime_error("expected a push on a block of the scene, got block " + std::to_string(push.block));
   for (std::size_t k = 0; k < 3; ++k) push.force[k] = values[k + 1] * kPeerUnitsPerKilogram * kPeerUnitsPerMetre;
   return push;
 }
@@ -113,7 +113,7 @@ int servePeer(const std::function<void(const PeerPush&)>& stepFrame, const std::
     } else if (command == 'b') {
       return 0;
     } else {
-      throw std::runtime_error(std::string("found command '") + command + "', allowed s, p, k and b");
+      throw std::runtime_error(std::string("expected command s, p, k or b, got '") + command + "'");
     }
   }
   return 1;

@@ -36,7 +36,7 @@ std::uint64_t checksumOf(std::string_view bytes) {
 }
 
 [[noreturn]] void refuseSeal(std::string_view source, std::string_view found, std::string_view allowed) {
-  throw InputError(fmt::format("{}: found {}, allowed is {}", source, found, allowed));
+  throw InputError(fmt::format("{}: expected {}, got {}", source, allowed, found));
 }
 
 void checkLetters(SealKind kind, std::string_view bytes, std::string_view source) {
@@ -62,7 +62,7 @@ void ByteReader::raw(void* into, std::size_t size) {
 std::size_t ByteReader::count() {
   std::uint64_t size = 0;
   raw(&size, sizeof size);
-  if (size > left_.size()) refuse(fmt::format("a list of {}", size), fmt::format("one that fits in {} bytes", left_.size()));
+  if (size > left_.size()) refuse(fmt::format("one of {}", size), fmt::format("a list that fits in {} bytes", left_.size()));
   return size;
 }
 
@@ -71,7 +71,7 @@ void ByteReader::refuse(std::string_view found, std::string_view allowed) const 
 }
 
 void ByteReader::end() const {
-  if (!left_.empty()) refuse(fmt::format("{} bytes behind the end", left_.size()), "none");
+  if (!left_.empty()) refuse(fmt::format("{} bytes", left_.size()), "nothing behind the end");
 }
 
 std::string sealed(SealKind kind, std::string_view payload) {
@@ -88,7 +88,7 @@ Unsealed unsealed(SealKind kind, std::string_view bytes, std::string_view source
   ByteReader reader(bytes.substr(kLetters), source);
   std::uint32_t format = 0;
   reader(format);
-  if (format != kFormat) refuseSeal(source, fmt::format("format {}", format), fmt::format("{}", kFormat));
+  if (format != kFormat) refuseSeal(source, fmt::format("{}", format), fmt::format("format {}", kFormat));
   std::string version;
   Unsealed result;
   std::uint64_t size = 0;
@@ -100,7 +100,7 @@ Unsealed unsealed(SealKind kind, std::string_view bytes, std::string_view source
   if (room < kChecksumBytes || size > room - kChecksumBytes)
     refuseSeal(source, fmt::format("{} bytes, cut off", bytes.size()), "a file that is whole");
   if (size < room - kChecksumBytes)
-    refuseSeal(source, fmt::format("{} bytes behind the end", room - kChecksumBytes - size), "none");
+    refuseSeal(source, fmt::format("{} bytes", room - kChecksumBytes - size), "nothing behind the end");
   std::uint64_t checksum = 0;
   std::memcpy(&checksum, bytes.data() + head + size, sizeof checksum);
   if (checksum != checksumOf(bytes.substr(0, head + size)))
@@ -116,11 +116,11 @@ Unsealed unsealedFile(SealKind kind, const std::string& path, std::string_view s
   std::string bytes(kLetters, '\0');
   if (file) file.read(bytes.data(), kLetters);
   if (!file && file.gcount() == 0 && !file.eof())
-    refuseSeal(source, "no file that can be read", "one that springtower has written");
+    refuseSeal(source, "none that can be read", "a file that springtower has written");
   bytes.resize(static_cast<std::size_t>(file.gcount()));
   checkLetters(kind, bytes, source);
   bytes.append(std::istreambuf_iterator<char>(file), {});
-  if (file.bad()) refuseSeal(source, "a file that cannot be read to its end", "one that springtower has written");
+  if (file.bad()) refuseSeal(source, "one that cannot be read to its end", "a file that springtower has written");
   return unsealed(kind, bytes, source);
 }
 

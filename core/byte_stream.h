@@ -44,7 +44,7 @@ class ByteReader {
   void raw(void* into, std::size_t size);
   /// The number of elements of a container, of which each has a byte at least.
   std::size_t count();
-  /// Throws InputError: what was found, and what is allowed in its place.
+  /// Throws InputError: what is expected, and what it got in its place.
   [[noreturn]] void refuse(std::string_view found, std::string_view allowed) const;
   /// Throws InputError unless all bytes have been read.
   void end() const;
@@ -98,7 +98,7 @@ void transferSize(Stream& stream, Vector& vector, bool isWorkingSpace) {
     std::uint64_t size = 0;
     if (isWorkingSpace) {
       stream(size);
-      if (size > kMost) stream.refuse("a working space of more than any machine has", "a smaller one");
+      if (size > kMost) stream.refuse("a larger one", "a working space of no more than a machine can have");
     } else {
       size = stream.count();
     }
@@ -192,7 +192,7 @@ struct Unsealed {
   std::string commit;
 };
 
-/// Opens a seal. Throws InputError naming `source`, what was found and what is allowed for bytes of another kind, format or
+/// Opens a seal. Throws InputError naming `source`, what is expected and what it got for bytes of another kind, format or
 /// version, for those that are cut off, go on behind their end, or are other ones than were written.
 Unsealed unsealed(SealKind kind, std::string_view bytes, std::string_view source);
 

@@ -5,7 +5,7 @@
 
 namespace springtower {
 
-/// Bad input: a file, key or argument. The message is one line that names it, says what was found and what is allowed. Programs
+/// Bad input: a file, key or argument. The message is one line that names it, says what is expected and what it got. Programs
 /// print it and end with exit code 2.
 struct InputError : std::runtime_error {
   using std::runtime_error::runtime_error;

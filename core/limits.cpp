@@ -43,7 +43,7 @@ std::string describe(const Range& range) {
 
 void requireInRange(double value, const Range& range, std::string_view where) {
   if (isInside(value, range)) return;
-  throw InputError(fmt::format("{}: found {}, allowed {}", where, value, describe(range)));
+  throw InputError(fmt::format("{}: expected {}, got {}", where, describe(range), value));
 }
 
 }  // namespace springtower

@@ -64,7 +64,7 @@ constexpr bool isInside(double value, const Range& range) {
   return value >= range.least && value <= range.most;
 }
 
-/// Throws InputError "where: found VALUE, allowed RANGE" unless the value is a number inside the range.
+/// Throws InputError "where: expected RANGE, got VALUE" unless the value is a number inside the range.
 void requireInRange(double value, const Range& range, std::string_view where);
 
 }  // namespace springtower

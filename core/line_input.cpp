@@ -25,7 +25,7 @@ bool readLine(std::istream& stream, std::string& line, const std::string& where)
         return !line.empty();
       }
       if (line.size() == kMaxLineBytes)
-        throw InputError(fmt::format("{}: found more than {} MB in a line, allowed is less", where, kMaxLineBytes >> 20U));
+        throw InputError(fmt::format("{}: expected at most {} MB in a line, got more", where, kMaxLineBytes >> 20U));
       line.push_back(std::istream::traits_type::to_char_type(byte));
     }
   } catch (const InputError&) {
@@ -41,19 +41,19 @@ LineInput::LineInput(const std::string& path, const std::string& option) : name_
   const std::string prefix = option.empty() ? "" : option + ": ";
   std::error_code error;
   if (std::filesystem::is_directory(path, error))
-    throw InputError(fmt::format("{}{}: cannot be read: found a folder, allowed is a file", prefix, name_));
+    throw InputError(fmt::format("{}{}: expected a file, got a folder", prefix, name_));
   errno = 0;
   stream_.open(path, std::ios::binary);
   if (stream_.is_open()) return;
-  throw InputError(fmt::format("{}{}: cannot be opened for reading, allowed is a readable file{}{}", prefix, name_,
-                               errno == 0 ? "" : ": ", errno == 0 ? "" : std::strerror(errno)));
+  throw InputError(fmt::format("{}{}: expected a file that can be read, got none{}{}", prefix, name_, errno == 0 ? "" : ": ",
+                               errno == 0 ? "" : std::strerror(errno)));
 }
 
 bool LineInput::next(std::string& line) {
   ++number_;
   if (readLine(stream_, line, where())) return true;
   --number_;
-  if (stream_.bad()) throw InputError(fmt::format("{}: cannot be read to its end, allowed is a readable file", name_));
+  if (stream_.bad()) throw InputError(fmt::format("{}: expected a file that can be read to its end, got one that cannot", name_));
   return false;
 }
 

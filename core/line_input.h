@@ -12,7 +12,7 @@ namespace springtower {
 inline constexpr std::size_t kMaxLineBytes = std::size_t{1} << 20U;
 
 /// Reads the next line of a stream without its end, as std::getline does. Returns false at the end of the stream and when reading
-/// fails (stream.bad()). Throws InputError "where: found more than 1 MB in a line, allowed is less" for a longer one.
+/// fails (stream.bad()). Throws InputError "where: expected at most 1 MB in a line, got more" for a longer one.
 bool readLine(std::istream& stream, std::string& line, const std::string& where);
 
 /// A text file, read line by line.

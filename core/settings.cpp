@@ -16,8 +16,8 @@ namespace {
 constexpr auto kSettingTable = std::to_array<SettingRow>({
     {"frame_s", "s", "simulated time between two pictures; a screen of 60 Hz shows one each", 1e-4, 0.1, &Settings::frame_s},
     {"tolerance_m", "m",
-     "no resting penetration and no row compression above it; a smaller one means stiffer blocks and more steps; by default in "
-     "proportion to the block height",
+     "target penetration: no resting overlap and no row compression exceeds it; a smaller one means stiffer blocks; by default "
+     "in proportion to the block height",
      1e-7, 1e-2, &Settings::tolerance_m},
     {"substeps", "", "steps in a frame; 0 takes as many as the tolerance needs", 0, 100000, &Settings::substeps},
     {"allow_unstable", "", "runs a tolerance and substeps that do not fit together, to see what then happens", 0, 1,
@@ -48,8 +48,9 @@ constexpr auto kSettingTable = std::to_array<SettingRow>({
      &Settings::reportFrictionDrag},
     {"report_disable_distance_m", "m", "sleep report: a block whose particles travel less in a frame is disabled", 0, 1,
      &Settings::reportDisableDistance_m},
-    {"report_iterations", "", "method report: most passes of its collision loop in a step", 1, 1000, &Settings::reportIterations},
-    {"iterations", "", "rigid methods: passes over the contacts in a step; more of them hold taller towers", 1, 1000,
+    {"report_iterations", "", "method report: most iterations of its collision loop in a step", 1, 1000,
+     &Settings::reportIterations},
+    {"iterations", "", "rigid methods: iterations over the contacts in a substep; taller towers need more of them", 1, 1000,
      &Settings::iterations},
 });
 
@@ -99,7 +100,7 @@ T valueOf(Names<T> names, std::string_view name, std::string_view source, Names<
       if (named == names[i].second) allowed += fmt::format(" (also: {})", alias);
     }
   }
-  throw InputError(fmt::format("{}: found {}, allowed {}", source, inQuotes(name), allowed));
+  throw InputError(fmt::format("{}: expected {}, got {}", source, allowed, inQuotes(name)));
 }
 
 template <class T>

@@ -51,7 +51,7 @@ struct Settings {
   double reportDisableDistance_m = 2e-4;  ///< m; the report's threshold on the summed travel of a block's particles (its
                                           ///< appendix 2.5); the report's own number, for blocks of its unit size, scaled by h
   int reportIterations = 10;              ///< most passes of the report's collision loop in a step
-  int iterations = 1;                     ///< rigid methods: passes over the contacts in a step
+  int iterations = 1;                     ///< rigid methods: iterations over the contacts in a substep
 };
 
 /// One row of the table of settings: what the user may write, what it means, and what is allowed.
@@ -82,12 +82,12 @@ std::string_view formerKeyOf(std::string_view key);
 /// The value of a row as a number (0 and 1 for off and on); none where it is left to the scene.
 std::optional<double> numberOf(const Settings& settings, const SettingRow& row);
 
-/// Checks every setting against its row. Throws InputError naming the key, what was found and what is allowed.
+/// Checks every setting against its row. Throws InputError naming the key, what is expected and what it got.
 void checkSettings(const Settings& settings, std::string_view source);
 
 /// Names as the command line and scene files spell them; of a method also the name that it has elsewhere: `bdf2`, `bdf2-eigen`
 /// and `legacy-2003` for what is written as `implicit`, `implicit-eigen` and `report`. Each throws InputError naming `source`,
-/// what was found and what is allowed.
+/// what is expected and what it got.
 Method methodFromName(std::string_view name, std::string_view source);
 Inertia inertiaFromName(std::string_view name, std::string_view source);
 Sleep sleepFromName(std::string_view name, std::string_view source);

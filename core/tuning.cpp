@@ -61,7 +61,7 @@ TUNING_CONSTANT auto kTuningTable = rowsWithTheirGroups();
 
 #ifdef SPRINGTOWER_TUNING_FROM_FILE
 [[noreturn]] void refuse(const std::string& where, const std::string& found, const char* allowed) {
-  std::fprintf(stderr, "SPRINGTOWER_TUNING=%s: found '%s', allowed is %s\n", where.c_str(), found.c_str(), allowed);
+  std::fprintf(stderr, "SPRINGTOWER_TUNING=%s: expected %s, got %s\n", where.c_str(), allowed, found.c_str());
   std::exit(2);
 }
 
@@ -72,14 +72,14 @@ const std::map<std::string, double, std::less<>>& valuesOfFile() {
     const char* path = std::getenv("SPRINGTOWER_TUNING");
     if (path == nullptr) return read;
     std::ifstream file(path);
-    if (!file) refuse(path, "no file that can be read", "a file of lines `name value`");
+    if (!file) refuse(path, "none that can be read", "a file of lines `name value`");
     for (std::string line; std::getline(file, line);) {
       if (line.empty()) continue;
       std::istringstream words(line);
       std::string name;
       double value = 0.0;
       if (!(words >> name >> value) || !(words >> std::ws).eof() || std::find(kNames.begin(), kNames.end(), name) == kNames.end())
-        refuse(path, line, "the name of a constant of core/tuning.def and a number");
+        refuse(path, "'" + line + "'", "the name of a constant of core/tuning.def and a number");
       read[name] = value;
     }
     return read;

@@ -200,16 +200,16 @@ std::optional<ScenarioSize> parsedSize(const Scenario& scenario, std::string_vie
 
 InputError sizeError(const Scenario& scenario, std::string_view found) {
   if (numberCount(scenario) == 0) {
-    return InputError(fmt::format("{}: found the size {}, allowed is the name alone", scenario.name, inQuotes(found)));
+    return InputError(fmt::format("{}: expected the name alone, got the size {}", scenario.name, inQuotes(found)));
   }
-  return InputError(fmt::format("{}: found the size {}, allowed {}", usageOf(scenario), inQuotes(found), allowedSizes(scenario)));
+  return InputError(fmt::format("{}: expected {}, got the size {}", usageOf(scenario), allowedSizes(scenario), inQuotes(found)));
 }
 
 InputError unknownName(std::string_view name) {
   std::string allowed;
   for (const Scenario& scenario : scenarios()) allowed += usageOf(scenario) + ", ";
-  return InputError(fmt::format("{}: found no such scene, allowed are {}a bit code such as (010)-(111), or a .toml file",
-                                inQuotes(name), allowed));
+  return InputError(
+      fmt::format("{}: expected {}a bit code such as (010)-(111), or a .toml file, got none of them", inQuotes(name), allowed));
 }
 
 }  // namespace
@@ -262,7 +262,7 @@ Scene makeScene(const Scenario& scenario, const ScenarioSize& size, const TowerO
   const std::string name = nameWithSize(scenario, sizeText(scenario, size));
   const std::string_view given = firstGiven(options);
   if (!scenario.isTower && !given.empty()) {
-    throw InputError(fmt::format("{}: found {}, allowed for towers only", name, given));
+    throw InputError(fmt::format("{}: expected a tower for {}, got another scene", name, given));
   }
   Scene scene = scenario.make(size, options);
   scene.name = name;

@@ -39,7 +39,7 @@ int complainAboutArguments(const CLI::App& program, const CLI::ParseError& error
   const bool noCommand = program.get_subcommands().empty() && error.get_name() == "RequiredError";
   std::string complaint = complaintAbout(program, error);
   if (noCommand) {
-    complaint = program.remaining().empty() ? fmt::format("found no command, allowed are {}", commands)
+    complaint = program.remaining().empty() ? fmt::format("expected a command among {}, got none", commands)
                                             : fmt::format("{}; commands are {}", complaint, commands);
   }
   complain("springtower", complaint);
@@ -48,7 +48,8 @@ int complainAboutArguments(const CLI::App& program, const CLI::ParseError& error
 }
 
 int run(int argc, char** argv) {
-  CLI::App program("Towers of spring blocks, simulated until they stand or fall.", "springtower");
+  CLI::App program("Simulates stacks of wooden blocks: whether they stand, how they fall, what each block carries.",
+                   "springtower");
   program.set_help_flag("-h,--help", "prints this help");
   program.set_version_flag("--version", fmt::format("springtower {} ({}, {})", kVersion, kGitCommit, kBuildType),
                            "prints the version");

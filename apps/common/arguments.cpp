@@ -75,8 +75,7 @@ std::string complaintAbout(const CLI::App& program, const CLI::ParseError& error
     list += fmt::format("{}{}{}", list.empty() ? "" : ", ", inQuotes(word),
                         meant.empty() ? "" : fmt::format(" (did you mean {}?)", meant));
   }
-  return fmt::format("found the unknown argument{} {}, allowed are those that --help lists", unknown.size() == 1 ? "" : "s",
-                     list);
+  return fmt::format("expected arguments that --help lists, got the unknown argument{} {}", unknown.size() == 1 ? "" : "s", list);
 }
 
 }  // namespace springtower

@@ -36,8 +36,7 @@ bool LineReader::next(std::string& line, const std::function<bool()>& stop) {
   std::size_t end = buffer_.find('\n', searched);
   while (end == std::string::npos) {
     if (buffer_.size() - begin_ > kMaxLine) {
-      throw InputError(
-          fmt::format("{}: line {}: found more than {} MB in a line, allowed is less", source_, number_, kMaxLine >> 20U));
+      throw InputError(fmt::format("{}: line {}: expected at most {} MB in a line, got more", source_, number_, kMaxLine >> 20U));
     }
     buffer_.erase(0, begin_);
     begin_ = 0;

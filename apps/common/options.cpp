@@ -30,7 +30,7 @@ CLI::Validator numberIn(const Range& range) {
   return {[range](std::string& text) -> std::string {
             const std::optional<double> value = parseNumber(text);
             if (value && *value >= range.least && *value <= range.most) return {};
-            return fmt::format("found {}, allowed is a number, {}", inQuotes(text), describe(range));
+            return fmt::format("expected a number from {}, got {}", describe(range), inQuotes(text));
           },
           ""};
 }
@@ -39,7 +39,7 @@ CLI::Validator wholeNumberIn(const Range& range) {
   return {[range](std::string& text) -> std::string {
             const std::optional<std::int64_t> value = parsed<std::int64_t>(text);
             if (value && static_cast<double>(*value) >= range.least && static_cast<double>(*value) <= range.most) return {};
-            return fmt::format("found {}, allowed is a whole number, {}", inQuotes(text), describe(range));
+            return fmt::format("expected a whole number from {}, got {}", describe(range), inQuotes(text));
           },
           ""};
 }
@@ -85,13 +85,14 @@ void addPhysicsOptions(CLI::App& app, PhysicsOptions& options) {
                  "how corners carry the mass: cuboid (default, a uniform cuboid's) or lumped (eight equal masses)")
       ->type_name("NAME");
   addNumber(app, "--tolerance", options.tolerance_m, settingRange("tolerance_m"), "METRES",
-            "no resting penetration and no compression of a row above this; decides the stiffness, and that the substeps "
+            "target penetration: no resting overlap and no compression of a row exceeds it; sets stiffness, and so the substeps "
             "(default 5e-05)");
-  addWholeNumber(app, "--substeps", options.substeps, settingRange("substeps"),
-                 "steps of a frame; alone, with explicit methods, the tolerance follows from them and is printed; implicit and "
-                 "rigid methods are stable with any");
+  addWholeNumber(
+      app, "--substeps", options.substeps, settingRange("substeps"),
+      "substeps of a frame; alone, with explicit methods, the tolerance follows from them and is printed; implicit and "
+      "rigid methods are stable with any");
   addWholeNumber(app, "--iterations", options.iterations, settingRange("iterations"),
-                 "rigid methods: passes over the contacts in a step (default 1)");
+                 "rigid methods: iterations over the contacts in a substep (default 1)");
   app.add_flag("--no-sleep", options.noSleep, "simulate blocks at rest like all others");
   CLI::Option* allowUnstable =
       app.add_flag("--allow-unstable", options.allowUnstable, "allow a tolerance and substeps that do not fit together");

@@ -34,7 +34,7 @@ std::string textOf(const PeerSettings& settings, const Scene& scene) {
                                  settings.iterations, scene.settings.frame_s, scene.staticFriction, gravity.x(), gravity.y(),
                                  gravity.z(), scene.floor ? 1 : 0);
   for (const BlockSpec& block : scene.blocks) {
-    if (block.fixed) throw InputError(fmt::format("{}: found a fixed block, allowed are none for other engines", scene.name));
+    if (block.fixed) throw InputError(fmt::format("{}: expected no fixed block for other engines, got one", scene.name));
     const Eigen::Quaterniond& q = block.orientation;
     const Vec3 vectors[] = {block.velocity, block.spin, block.dimensions};
     text += fmt::format("{:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g}", block.centre.x(), block.centre.y(),

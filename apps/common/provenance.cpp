@@ -70,10 +70,10 @@ bool sameOrigin(const Provenance& a, const Provenance& b) {
 void checkCommitted(const Provenance& then, const Provenance& now, const std::string& where) {
   const bool isDirty = now.commit.ends_with("-dirty");
   if (!isDirty && !then.commit.ends_with("-dirty")) return;
-  throw InputError(
-      fmt::format("{}: found results to go on with, but {} has uncommitted changes, so that its commit does not say whether they "
-                  "are of the same sources; allowed are builds of a commit, or --no-resume",
-                  where, isDirty ? "this build" : "the build that measured them"));
+  throw InputError(fmt::format(
+      "{}: expected results of builds of a commit, or --no-resume, got others: {} has uncommitted changes, so that its "
+      "commit does not say whether they are of the same sources",
+      where, isDirty ? "this build" : "the build that measured them"));
 }
 
 std::string csvText(const Provenance& provenance) {

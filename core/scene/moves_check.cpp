@@ -19,7 +19,7 @@ void checkNumbers(const Move& move, const std::string& where) {
   requireInRange(move.row, {0.0, kMaxRows - 1.0, ""}, where + ": row");
   requireInRange(move.position, {1.0, 3.0, ""}, where + ": position");
   if (move.towards.cwiseAbs() == Vec3::UnitX() || move.towards.cwiseAbs() == Vec3::UnitY()) return;
-  throw InputError(where + ": found another direction, allowed +x, -x, +y, -y");
+  throw InputError(where + ": expected the direction +x, -x, +y or -y, got another");
 }
 
 }  // namespace
@@ -39,26 +39,26 @@ void checkMoves(const Scene& scene, std::string_view source) {
     const std::string place = fmt::format("row {}, position {}", move.row, move.position);
     checkNumbers(move, where);
     if (move.kind == MoveKind::take) {
-      if (held) throw InputError(where + ": found a block to take with another in the hand, allowed after put or put-aside");
+      if (held) throw InputError(where + ": expected put or put-aside before the next take, got take with a block in the hand");
       if (fixed.contains({move.row, move.position}))
-        throw InputError(fmt::format("{}: found {}, whose block is fixed, allowed one that moves", where, place));
+        throw InputError(fmt::format("{}: expected a block that moves, got {}, whose block is fixed", where, place));
       if (taken.erase({move.row, move.position}) == 0) {
-        throw InputError(fmt::format("{}: found {} without a block, allowed a place of the tower that has one", where, place));
+        throw InputError(fmt::format("{}: expected a place of the tower that has a block, got {} without one", where, place));
       }
       held = true;
       continue;
     }
-    if (!held) throw InputError(where + ": found nothing in the hand to put, allowed after take");
+    if (!held) throw InputError(where + ": expected take before it, got nothing in the hand to put");
     held = false;
     if (move.kind == MoveKind::putAside) {
-      if (!scene.floor) throw InputError(where + ": found no floor to put a block on, allowed with a floor");
+      if (!scene.floor) throw InputError(where + ": expected a floor to put a block on, got none");
       continue;
     }
     const bool carried =
         move.row == 0 || std::any_of(taken.begin(), taken.end(), [&](const auto& other) { return other.first == move.row - 1; });
     if (!carried || !taken.emplace(move.row, move.position).second) {
       throw InputError(
-          fmt::format("{}: found {} {}, allowed a free place on a row", where, place, carried ? "with a block" : "on no row"));
+          fmt::format("{}: expected a free place on a row, got {} {}", where, place, carried ? "with a block" : "on no row"));
     }
   }
 }

@@ -52,7 +52,7 @@ class BitCodeReader {
         fail("a row without blocks", "at least one block in every row");
       }
       if (next_ == code_.size()) return rows;
-      if (rows.size() == static_cast<std::size_t>(kMaxRows)) fail("more rows", fmt::format("1 to {}", kMaxRows));
+      if (rows.size() == static_cast<std::size_t>(kMaxRows)) fail("more", fmt::format("1 to {} rows", kMaxRows));
       if (code_[next_] != '-') fail(found(), "- or the end");
       ++next_;
       expect('(');
@@ -80,7 +80,7 @@ class BitCodeReader {
   [[nodiscard]] std::string found() const { return next_ < code_.size() ? inQuotes(code_.substr(next_, 1)) : "the end"; }
 
   [[noreturn]] void fail(std::string_view found, std::string_view allowed) const {
-    throw InputError(fmt::format("bit code {}: character {}: found {}, allowed {}", inQuotes(code_), next_ + 1, found, allowed));
+    throw InputError(fmt::format("bit code {}: character {}: expected {}, got {}", inQuotes(code_), next_ + 1, allowed, found));
   }
 
   std::string_view code_;
@@ -94,13 +94,13 @@ Place& presentPlace(std::vector<Row>& rows, int row, int position, std::string_v
     Place& place = rows[static_cast<std::size_t>(row)][static_cast<std::size_t>(position) - 1];
     if (place.present) return place;
   }
-  throw InputError(fmt::format("{}: found no block there, allowed rows 0 to {} and positions 1 to 3 where a block is present",
+  throw InputError(fmt::format("{}: expected rows 0 to {} and positions 1 to 3 where a block is present, got no block there",
                                what, rows.size() - 1));
 }
 
 void requireFirstNaming(std::vector<std::array<int, 2>>& named, std::array<int, 2> place, std::string_view what) {
   if (std::find(named.begin(), named.end(), place) != named.end()) {
-    throw InputError(fmt::format("{}: found it twice, allowed once", what));
+    throw InputError(fmt::format("{}: expected once, got it twice", what));
   }
   named.push_back(place);
 }
@@ -213,7 +213,7 @@ std::string_view firstGiven(const TowerOptions& options) {
 Scene towerScene(int rows, const TowerOptions& options) {
   const std::string name = fmt::format("tower:{}", rows);
   if (rows < 1 || rows > kMaxRows) {
-    throw InputError(fmt::format("{}: found {} rows, allowed 1 to {}", name, rows, kMaxRows));
+    throw InputError(fmt::format("{}: expected 1 to {} rows, got {}", name, kMaxRows, rows));
   }
   Row full;
   full.fill({.present = true});
@@ -231,8 +231,8 @@ Scene sceneFromName(const std::string& name, const TowerOptions& options) {
     const char* const end = name.data() + name.size();
     const auto [stop, error] = std::from_chars(name.data() + kTower.size(), end, rows);
     if (error != std::errc{} || stop != end) {
-      throw InputError(fmt::format("tower:R: found {} rows, allowed a whole number from 1 to {}",
-                                   inQuotes(std::string_view(name).substr(kTower.size())), kMaxRows));
+      throw InputError(fmt::format("tower:R: expected a whole number of rows from 1 to {}, got {}", kMaxRows,
+                                   inQuotes(std::string_view(name).substr(kTower.size()))));
     }
     return towerScene(rows, options);
   }

@@ -71,7 +71,7 @@ struct Gravity {
   double magnitude = kStandardGravity_m_s2;  ///< m/s2
   double tilt_deg = 0.0;                     ///< from straight down
   double direction_deg = 0.0;                ///< towards which side it leans, from +x over +y
-  double sway_deg = 0.0;                     ///< amplitude of a sinus added to the tilt
+  double sway_deg = 0.0;                     ///< amplitude of a sine added to the tilt
   double sway_hz = 0.0;                      ///< its frequency
 
   /// Acceleration at a time (s), m/s2.
@@ -140,8 +140,8 @@ Scene towerScene(int rows, const TowerOptions& options = {});
 Scene bitCodeScene(std::string_view code, const TowerOptions& options = {});
 
 /// A scene from a TOML file; scenes/annotated.toml shows every key. The file may describe a tower, single blocks or both. Options
-/// that are given replace those of the file's tower. Throws InputError naming the file, the place in it, the key, what was found
-/// and what is allowed; options for a file without a tower are an error too.
+/// that are given replace those of the file's tower. Throws InputError naming the file, the place in it, the key, what is
+/// expected and what it got; options for a file without a tower are an error too.
 Scene sceneFromToml(const std::string& path, const TowerOptions& options = {});
 
 /// A scene from what the command line names: `tower:R`, a bit code, or a TOML file. Throws InputError.
@@ -156,7 +156,7 @@ double blockHeightOf(const Scene& scene);
 double toleranceOf(const Scene& scene);
 
 /// Checks the scene's moves as a sequence: a block is taken where there is one and with an empty hand, put where there is none,
-/// and all numbers are within limits. Throws InputError naming `source`, the move, what was found and what is allowed.
+/// and all numbers are within limits. Throws InputError naming `source`, the move, what is expected and what it got.
 void checkMoves(const Scene& scene, std::string_view source);
 
 /// How deep two blocks of which the thinner has this least side, or a block and the floor, may overlap at the start, m: as deep
@@ -170,7 +170,7 @@ double allowedOverlap_m(const Scene& scene, double side_m);
 /// or the overlap allowed; fixed blocks have no velocity and no spin, and drives are of fixed blocks; in a plane: blocks whose
 /// centres and gravity lie in y = 0, with an axis along y, that neither move nor are pushed out of it. The scenes above have been
 /// checked; check again after changing one. Throws InputError naming `source`, the block (or both blocks and how deep they
-/// overlap), what was found and what is allowed.
+/// overlap), what is expected and what it got.
 void checkScene(const Scene& scene, std::string_view source);
 
 }  // namespace springtower

@@ -88,10 +88,10 @@ void checkFixed(const Scene& scene, std::string_view source) {
     const BlockSpec& block = scene.blocks[b];
     if (!block.fixed || (block.velocity.isZero(0.0) && block.spin.isZero(0.0))) continue;
     throw InputError(
-        fmt::format("{}: {}: found a velocity or a spin, allowed none for a fixed block", source, nameOfBlock(scene, b)));
+        fmt::format("{}: {}: expected no velocity and no spin for a fixed block, got one", source, nameOfBlock(scene, b)));
   }
   if (std::all_of(scene.blocks.begin(), scene.blocks.end(), [](const BlockSpec& block) { return block.fixed; }))
-    throw InputError(fmt::format("{}: found fixed blocks only, allowed at least one that is not", source));
+    throw InputError(fmt::format("{}: expected at least one block that is not fixed, got fixed blocks only", source));
 }
 
 // A drive that moves something, of a block that nothing else moves.
@@ -100,7 +100,7 @@ void checkDrive(const Scene& scene, const Drive& drive, const std::string& where
   const auto block = static_cast<std::size_t>(drive.block);
   if (!scene.blocks[block].fixed)
     throw InputError(
-        fmt::format("{}: block: found {}, which is not fixed, allowed is a fixed block", where, nameOfBlock(scene, block)));
+        fmt::format("{}: block: expected a fixed block, got {}, which is not fixed", where, nameOfBlock(scene, block)));
   checkVector(drive.velocity, kVelocityRange, where + ": velocity");
   checkVector(drive.spin, kSpinRange, where + ": spin");
   checkVector(drive.amplitude, kAmplitudeRange, where + ": amplitude");
@@ -108,9 +108,9 @@ void checkDrive(const Scene& scene, const Drive& drive, const std::string& where
   requireInRange(drive.start_s, kTimeRange, where + ": start");
   requireInRange(drive.end_s, {drive.start_s, kTimeRange.most, kTimeRange.unit}, where + ": end");
   if (drive.amplitude.isZero(0.0) != (drive.frequency_hz == 0.0))
-    throw InputError(where + ": found an amplitude or a frequency without the other, allowed both or neither");
+    throw InputError(where + ": expected both an amplitude and a frequency or neither, got one without the other");
   if (drive.mostSpeed_m_s(0.0) == 0.0 && drive.spin.isZero(0.0))
-    throw InputError(where + ": found neither a velocity, a spin nor an amplitude, allowed at least one of them");
+    throw InputError(where + ": expected at least one of a velocity, a spin and an amplitude, got none");
   requireInRange(drive.mostSpeed_m_s(0.5 * scene.blocks[block].dimensions.norm()),
                  {0.0, kVelocityRange.most, kVelocityRange.unit}, where + ": fastest corner");
 }
@@ -138,10 +138,10 @@ void checkStrains(const Scene& scene, std::string_view source) {
       const double apart_m = (*block.strain)[c].norm();
       if (apart_m <= allowed_m) continue;
       throw InputError(
-          fmt::format("{}: {}: corner {}: found {:.4g} mm from that of a cuboid of {:g} x {:g} x {:g} m, allowed up to "
-                      "{:.4g} mm (corners in the order of run --poses)",
-                      source, nameOfBlock(scene, b), c, 1e3 * apart_m, block.dimensions.x(), block.dimensions.y(),
-                      block.dimensions.z(), 1e3 * allowed_m));
+          fmt::format("{}: {}: corner {}: expected up to {:.4g} mm from that of a cuboid of {:g} x {:g} x {:g} m (corners in "
+                      "the order of run --poses), got {:.4g} mm",
+                      source, nameOfBlock(scene, b), c, 1e3 * allowed_m, block.dimensions.x(), block.dimensions.y(),
+                      block.dimensions.z(), 1e3 * apart_m));
     }
   }
 }
@@ -153,8 +153,8 @@ void checkFloor(const Scene& scene, const std::vector<OrientedBox>& boxes, std::
     const double depth = boxes[b].reach().z() - boxes[b].centre.z();
     const double allowed_m = overlapAllowed(tolerance_m, scene.blocks[b].dimensions.minCoeff());
     if (depth <= allowed_m) continue;
-    throw InputError(fmt::format("{}: {} starts {:.4g} mm inside the floor z = 0, allowed up to {:.4g} mm, as at rest", source,
-                                 nameOfBlock(scene, b), 1e3 * depth, 1e3 * allowed_m));
+    throw InputError(fmt::format("{}: {}: expected a start up to {:.4g} mm inside the floor z = 0, as at rest, got {:.4g} mm",
+                                 source, nameOfBlock(scene, b), 1e3 * allowed_m, 1e3 * depth));
   }
 }
 
@@ -200,8 +200,8 @@ void checkPair(const Scene& scene, const std::vector<OrientedBox>& boxes, double
   const double size = std::min(scene.blocks[first].dimensions.minCoeff(), scene.blocks[second].dimensions.minCoeff());
   const double allowed_m = overlapAllowed(tolerance_m, size);
   if (depth <= allowed_m) return;
-  throw InputError(fmt::format("{}: {} and {} start {:.4g} mm inside each other, allowed up to {:.4g} mm, as at rest", source,
-                               nameOfBlock(scene, first), nameOfBlock(scene, second), 1e3 * depth, 1e3 * allowed_m));
+  throw InputError(fmt::format("{}: {} and {}: expected a start up to {:.4g} mm inside each other, as at rest, got {:.4g} mm",
+                               source, nameOfBlock(scene, first), nameOfBlock(scene, second), 1e3 * allowed_m, 1e3 * depth));
 }
 
 void checkPairs(const Scene& scene, const std::vector<OrientedBox>& boxes, std::string_view source) {
@@ -254,13 +254,13 @@ void checkForce(const UserForce& force, std::span<const Vec3> dimensions, std::s
 
 void requireBlock(std::size_t block, std::size_t blocks, std::string_view source) {
   if (block < blocks) return;
-  throw InputError(fmt::format("{}: found block {}, allowed are those of the scene, from 0 to {}", source, block,
-                               static_cast<std::int64_t>(blocks) - 1));
+  throw InputError(fmt::format("{}: expected a block of the scene, from 0 to {}, got {}", source,
+                               static_cast<std::int64_t>(blocks) - 1, block));
 }
 
 void requireMovable(const Scene& scene, std::size_t block, std::string_view source) {
   if (!scene.blocks[block].fixed) return;
-  throw InputError(fmt::format("{}: found {}, which is fixed, allowed is a block that moves", source, nameOfBlock(scene, block)));
+  throw InputError(fmt::format("{}: expected a block that moves, got {}, which is fixed", source, nameOfBlock(scene, block)));
 }
 
 namespace {
@@ -300,7 +300,7 @@ void checkFrictions(const Scene& scene, std::string_view source) {
     const std::string where = fmt::format("friction pair {}", i);
     for (const int block : {pair.a, pair.b})
       requireInRange(block, {-1.0, last, "(-1 is the floor)"}, fmt::format("{}: {}: block", source, where));
-    if (pair.a == pair.b) throw InputError(fmt::format("{}: {}: found block {} twice, allowed two", source, where, pair.a));
+    if (pair.a == pair.b) throw InputError(fmt::format("{}: {}: expected two blocks, got block {} twice", source, where, pair.a));
     check(pair.friction, where);
     known.emplace_back(std::minmax(pair.a, pair.b));
   }
@@ -308,7 +308,7 @@ void checkFrictions(const Scene& scene, std::string_view source) {
   const auto twice = std::adjacent_find(known.begin(), known.end());
   if (twice == known.end()) return;
   throw InputError(
-      fmt::format("{}: found two friction pairs of blocks {} and {}, allowed is one", source, twice->first, twice->second));
+      fmt::format("{}: expected one friction pair of blocks {} and {}, got two", source, twice->first, twice->second));
 }
 
 void checkForceInPlane(const UserForce& force, std::string_view source) {

@@ -27,8 +27,7 @@ constexpr std::int64_t kMaxWhole = std::numeric_limits<std::int64_t>::max();
 // Corners as `run --poses` writes them. Near which cuboid they lie is for checkScene to see.
 void readCorners(const Table& table, BlockSpec& block) {
   for (const std::string_view key : {"centre_m", "rotation_deg"}) {
-    if (table.has(key))
-      throw InputError(fmt::format("{}: found {} beside corners_m, allowed is one of them", table.where(key), key));
+    if (table.has(key)) throw InputError(fmt::format("{}: expected {} or corners_m, got both", table.where(key), key));
   }
   CornerPlaces corners;
   table.read("corners_m", corners, kPlaceRange);
@@ -40,7 +39,7 @@ void readSurface(const Table& table, std::optional<Friction>& friction) {
   const bool both = table.has("static_friction") || table.has("kinetic_friction");
   if (!both && !table.has("friction")) return;
   if (both && table.has("friction"))
-    throw InputError(table.where() + ": found friction and static_friction or kinetic_friction, allowed either");
+    throw InputError(table.where() + ": expected either friction or static_friction with kinetic_friction, got both");
   Friction& read = friction.emplace();
   if (!both) {
     table.read("friction", read.staticFriction, kFrictionRange);
@@ -61,8 +60,7 @@ FrictionPair readFrictionPair(const Table& table, std::size_t blocks) {
   table.readWhole("b", pair.b, -1, last);
   std::optional<Friction> friction;
   readSurface(table, friction);
-  if (!friction)
-    throw InputError(table.where() + ": found no friction, allowed friction or static_friction with kinetic_friction");
+  if (!friction) throw InputError(table.where() + ": expected friction or static_friction with kinetic_friction, got neither");
   pair.friction = *friction;
   return pair;
 }
@@ -94,16 +92,15 @@ void readPoint(const Table& table, const Vec3& dimensions, UserForce& force) {
   Vec3& point = force.point.emplace(Vec3::Zero());
   table.read("point_m", point, {-half.maxCoeff(), half.maxCoeff(), "m"});
   if ((point.cwiseAbs().array() > half.array()).any()) {
-    throw InputError(
-        fmt::format("{}: found [{}, {}, {}], allowed a point within the block: up to {}, {} and {} m from its centre",
-                    table.where("point_m"), point.x(), point.y(), point.z(), half.x(), half.y(), half.z()));
+    throw InputError(fmt::format("{}: expected a point within the block, up to {}, {} and {} m from its centre, got [{}, {}, {}]",
+                                 table.where("point_m"), half.x(), half.y(), half.z(), point.x(), point.y(), point.z()));
   }
 }
 
 // Force and torque, and what they change to.
 void readLoad(const Table& table, UserForce& force) {
   if (!table.has("force_n") && !table.has("torque_n_m"))
-    throw InputError(table.where() + ": found neither force_n nor torque_n_m, allowed one of them or both");
+    throw InputError(table.where() + ": expected force_n, torque_n_m or both, got neither");
   table.read("force_n", force.force, kForceRange);
   table.read("torque_n_m", force.torque, kTorqueRange);
   if (table.has("force_end_n")) {
@@ -119,7 +116,7 @@ void readLoad(const Table& table, UserForce& force) {
 // The block that a table names by number, or by its place in the tower.
 int namedBlock(const Table& table, const Scene& scene) {
   if (table.has("block") == (table.has("row") || table.has("position"))) {
-    throw InputError(table.where() + ": found both or neither of block and row with position, allowed either");
+    throw InputError(table.where() + ": expected either block or row with position, got both or neither");
   }
   int number = 0;
   if (table.has("block")) {
@@ -136,7 +133,7 @@ int namedBlock(const Table& table, const Scene& scene) {
     return candidate.row == row && candidate.position == position;
   });
   if (block == scene.blocks.end()) {
-    throw InputError(fmt::format("{}: found row {}, position {}, allowed a block of the tower", table.where(), row, position));
+    throw InputError(fmt::format("{}: expected a block of the tower, got row {}, position {}", table.where(), row, position));
   }
   return static_cast<int>(block - scene.blocks.begin());
 }
@@ -144,8 +141,7 @@ int namedBlock(const Table& table, const Scene& scene) {
 UserForce readForce(const Table& table, const Scene& scene) {
   UserForce force;
   force.block = namedBlock(table, scene);
-  if (table.has("corner") && table.has("point_m"))
-    throw InputError(table.where() + ": found both corner and point_m, allowed one of them");
+  if (table.has("corner") && table.has("point_m")) throw InputError(table.where() + ": expected corner or point_m, got both");
   table.readWhole("corner", force.corner, 0, 7);
   if (table.has("point_m")) readPoint(table, scene.blocks[static_cast<std::size_t>(force.block)].dimensions, force);
   readLoad(table, force);
@@ -171,7 +167,7 @@ Drive readDrive(const Table& table, Scene& scene) {
 
 void readFriction(const Table& table, Scene& scene) {
   if (table.has("coefficient") == (table.has("static") || table.has("kinetic"))) {
-    throw InputError(table.where() + ": found both or neither of coefficient and static with kinetic, allowed either");
+    throw InputError(table.where() + ": expected either coefficient or static with kinetic, got both or neither");
   }
   if (table.has("coefficient")) {
     table.read("coefficient", scene.staticFriction, kFrictionRange);
@@ -206,8 +202,7 @@ std::string_view keyIn(const Table& table, const SettingRow& row) {
   const std::string_view former = formerKeyOf(row.key);
   if (former.empty() || !table.has(former)) return row.key;
   if (!table.has(row.key)) return former;
-  throw InputError(
-      fmt::format("{}: found {} and its former name {}, allowed is one of them", table.where(row.key), row.key, former));
+  throw InputError(fmt::format("{}: expected {} or its former name {}, got both", table.where(row.key), row.key, former));
 }
 
 void readSettings(const Table& table, Settings& settings) {
@@ -270,7 +265,7 @@ std::vector<BlockSpec> readTower(const Table& table, const TowerOptions& given) 
   if (!given.loose.empty()) options.loose = given.loose;
 
   if (table.has("rows") == table.has("code")) {
-    throw InputError(table.where() + ": found both or neither of rows and code, allowed either");
+    throw InputError(table.where() + ": expected either rows or code, got both or neither");
   }
   int rows = 0;
   std::string code;
@@ -285,8 +280,7 @@ std::vector<BlockSpec> readTower(const Table& table, const TowerOptions& given) 
 
 void refuseTowerOptions(const TowerOptions& given, const std::string& file) {
   const std::string_view name = firstGiven(given);
-  if (!name.empty())
-    throw InputError(fmt::format("{}: found {} for a scene without [tower], allowed for towers only", file, name));
+  if (!name.empty()) throw InputError(fmt::format("{}: expected a [tower] for {}, got a scene without", file, name));
 }
 
 Scene readScene(const Table& top, const TowerOptions& given, const std::string& file) {
@@ -302,7 +296,7 @@ Scene readScene(const Table& top, const TowerOptions& given, const std::string& 
                  {"centre_m", "dimensions_m", "mass_kg", "rotation_deg", "velocity_m_s", "spin_rad_s", "restitution", "fixed",
                   "friction", "static_friction", "kinetic_friction", "corners_m"},
                  [&](const Table& table) { scene.blocks.push_back(readBlock(table)); });
-  if (scene.blocks.empty()) throw InputError(file + ": found no blocks, allowed a [tower], [[block]]s or both");
+  if (scene.blocks.empty()) throw InputError(file + ": expected a [tower], [[block]]s or both, got no blocks");
   top.readTables("force",
                  {"block", "row", "position", "corner", "point_m", "force_n", "force_end_n", "torque_n_m", "torque_end_n_m",
                   "start_s", "end_s"},
@@ -329,21 +323,21 @@ Scene readScene(const Table& top, const TowerOptions& given, const std::string& 
 
 std::string textOf(const std::string& path, const std::string& file) {
   std::error_code error;
-  if (std::filesystem::is_directory(path, error)) throw InputError(file + ": found a folder, allowed a scene file");
+  if (std::filesystem::is_directory(path, error)) throw InputError(file + ": expected a scene file, got a folder");
   if (!std::filesystem::exists(path, error)) {
-    throw InputError(file + ": found no such file, allowed a scene file, tower:R with R rows, or a bit code such as (010)-(111)");
+    throw InputError(file + ": expected a scene file, tower:R with R rows, or a bit code such as (010)-(111), got no such file");
   }
   std::ifstream stream(path, std::ios::binary);
   std::string text;
   constexpr std::size_t kChunk = std::size_t{1} << 16U;
   for (std::streamsize got = 1; stream && got > 0;) {
     const std::size_t size = text.size();
-    if (size > kMaxBytes) throw InputError(fmt::format("{}: found more than {} bytes, allowed fewer", file, kMaxBytes));
+    if (size > kMaxBytes) throw InputError(fmt::format("{}: expected at most {} bytes, got more", file, kMaxBytes));
     text.resize(size + kChunk);
     got = stream.read(text.data() + size, static_cast<std::streamsize>(kChunk)).gcount();
     text.resize(size + static_cast<std::size_t>(got));
   }
-  if (!stream.eof()) throw InputError(file + ": found a file that cannot be read, allowed a scene file");
+  if (!stream.eof()) throw InputError(file + ": expected a scene file that can be read, got one that cannot");
   return text;
 }
 

@@ -36,25 +36,23 @@ std::size_t endOfString(std::string_view text, std::size_t start) {
   return text.size();
 }
 
-// `what` begins at `at`, and is shown up to the end of its line.
-[[noreturn]] void fail(std::string_view text, std::size_t at, const std::string& file, std::string_view what,
-                       std::string_view allowed) {
+// What is too long begins at `at`, and is shown up to the end of its line.
+[[noreturn]] void fail(std::string_view text, std::size_t at, const std::string& file, std::string_view allowed) {
   const std::string_view before = text.substr(0, at);
   const auto line = 1 + std::count(before.begin(), before.end(), '\n');
   const std::string_view onLine = before.substr(before.rfind('\n') + 1);
   // As toml++ counts them: characters, not bytes.
   const auto isFirstByte = [](char byte) { return (static_cast<unsigned char>(byte) & 0xC0U) != 0x80U; };
   const auto column = 1 + std::count_if(onLine.begin(), onLine.end(), isFirstByte);
-  throw InputError(fmt::format("{}:{}:{}: found {}, {}, allowed are at most {}", file, line, column, what,
-                               inQuotes(text.substr(at, text.find('\n', at) - at)), allowed));
+  throw InputError(fmt::format("{}:{}:{}: expected {}, got {}", file, line, column, allowed,
+                               inQuotes(text.substr(at, text.find('\n', at) - at))));
 }
 
 // toml++ reads some 10 MB a second, also of what is no scene.
 void refuseLongLines(std::string_view text, const std::string& file) {
   for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t end = std::min(text.find('\n', begin), text.size());
-    if (end - begin > kMaxLine)
-      fail(text, begin, file, fmt::format("a line of more than {} MB", kMaxLine >> 20U), fmt::format("{} MB", kMaxLine >> 20U));
+    if (end - begin > kMaxLine) fail(text, begin, file, fmt::format("a line of at most {} MB", kMaxLine >> 20U));
     begin = end + 1;
   }
 }
@@ -71,8 +69,7 @@ void refuseLongKeys(std::string_view text, const std::string& file) {
     const char character = text[at];
     if (character == '"' || character == '\'') {
       const std::size_t end = endOfString(text, at);
-      if (end - at > kMaxText)
-        fail(text, at, file, fmt::format("a text of more than {} MB", kMaxText >> 20U), fmt::format("{} MB", kMaxText >> 20U));
+      if (end - at > kMaxText) fail(text, at, file, fmt::format("a text of at most {} MB", kMaxText >> 20U));
       word = at = end;
       continue;
     }
@@ -82,13 +79,12 @@ void refuseLongKeys(std::string_view text, const std::string& file) {
     }
     ++at;
     if (std::string_view("\n\r\t =,[]{}.").find(character) != std::string_view::npos) word = at;
-    if (at - word > kMaxWord)
-      fail(text, word, file, fmt::format("a word of more than {} characters", kMaxWord), fmt::format("{}", kMaxWord));
+    if (at - word > kMaxWord) fail(text, word, file, fmt::format("a word of at most {} characters", kMaxWord));
     if (std::string_view("\n=,[]{}").find(character) != std::string_view::npos) {
       key = text.find_first_not_of(" \t", at);
       dots = 0;
     } else if (character == '.' && ++dots == kMaxKeyParts) {
-      fail(text, key, file, fmt::format("a key of more than {} parts", kMaxKeyParts), fmt::format("{}", kMaxKeyParts));
+      fail(text, key, file, fmt::format("a key of at most {} parts", kMaxKeyParts));
     }
   }
 }

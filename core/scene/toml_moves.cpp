@@ -26,7 +26,7 @@ const NamedKind& blockClassOf(const Table& table) {
   for (const NamedKind& kind : kinds()) {
     if (kind.name == name) return kind;
   }
-  throw InputError(fmt::format("{}: found {}, allowed take, put, put-aside", table.where("do"), inQuotes(name)));
+  throw InputError(fmt::format("{}: expected take, put or put-aside, got {}", table.where("do"), inQuotes(name)));
 }
 
 Vec3 directionOf(const Table& table) {
@@ -37,7 +37,7 @@ Vec3 directionOf(const Table& table) {
   if (name == "-x") return -Vec3::UnitX();
   if (name == "+y") return Vec3::UnitY();
   if (name == "-y") return -Vec3::UnitY();
-  throw InputError(fmt::format("{}: found {}, allowed +x, -x, +y, -y", table.where("towards"), inQuotes(name)));
+  throw InputError(fmt::format("{}: expected +x, -x, +y or -y, got {}", table.where("towards"), inQuotes(name)));
 }
 
 }  // namespace
@@ -50,8 +50,7 @@ Move readMove(const Table& table) {
   for (const std::string_view key : kMoveKeys) {
     const bool used = key == "do" || std::find(kind.keys.begin(), kind.keys.end(), key) != kind.keys.end();
     if (used || !table.has(key)) continue;
-    throw InputError(
-        fmt::format("{}: found {} for {}, allowed {}", table.where(key), key, kind.name, fmt::join(kind.keys, ", ")));
+    throw InputError(fmt::format("{}: expected {} for {}, got {}", table.where(key), fmt::join(kind.keys, ", "), kind.name, key));
   }
   Move move;
   move.kind = kind.kind;

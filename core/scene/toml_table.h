@@ -39,8 +39,8 @@ class Table {
     for (const auto& [key, value] : table) {
       if (std::find(allowed.begin(), allowed.end(), key.str()) != allowed.end()) continue;
       if (std::find(former.begin(), former.end(), key.str()) != former.end()) continue;
-      throw InputError(fmt::format("{}: unknown key {}{}, allowed {}", placed(key.source().begin, ""), inQuotes(key.str()),
-                                   path_.empty() ? "" : " in " + path_, fmt::join(allowed, ", ")));
+      throw InputError(fmt::format("{}: expected {}{}, got the unknown key {}", placed(key.source().begin, ""),
+                                   fmt::join(allowed, ", "), path_.empty() ? "" : " in " + path_, inQuotes(key.str())));
     }
   }
 
@@ -101,7 +101,7 @@ class Table {
 
   void require(std::string_view key) const {
     if (has(key)) return;
-    throw InputError(fmt::format("{}: found no {}, which is required", placed(table_.source().begin, path_), key));
+    throw InputError(fmt::format("{}: expected the key {}, got none", placed(table_.source().begin, path_), key));
   }
   // Where the value of a key stands, for messages. Precondition: the key is present.
   [[nodiscard]] std::string where(std::string_view key) const { return placed(table_.get(key)->source().begin, named(key)); }
@@ -139,7 +139,7 @@ class Table {
     return fmt::format("{}:{}:{}{}{}", file_, place.line, place.column, name.empty() ? "" : ": ", name);
   }
   [[noreturn]] void fail(const toml::node& node, std::string_view name, std::string_view allowed) const {
-    throw InputError(fmt::format("{}: found {}, allowed {}", placed(node.source().begin, name), found(node), allowed));
+    throw InputError(fmt::format("{}: expected {}, got {}", placed(node.source().begin, name), allowed, found(node)));
   }
   [[noreturn]] void failVectors(const toml::node& node, const std::string& name, std::size_t count, const Range& range) const {
     fail(node, name, fmt::format("{} arrays of three numbers, or {} numbers, from {}", count, 3 * count, describe(range)));

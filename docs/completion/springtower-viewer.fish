@@ -9,7 +9,7 @@ complete -c springtower-viewer -l mass-sigma -x -d 'standard deviation of the ma
 complete -c springtower-viewer -l start-gap -x -d 'rows start this far apart and drop; 0 to 1 m'
 complete -c springtower-viewer -l seed -x -d 'of the heights and masses; 0 to 9000000000000000'
 complete -c springtower-viewer -l method -x -a 'implicit bdf2 implicit-euler implicit-eigen bdf2-eigen semi-implicit-euler midpoint runge-kutta-4 report legacy-2003 rigid-pgs rigid-lcp xpbd auto' -d 'how a frame is stepped, as `springtower run --method`'
-complete -c springtower-viewer -l tolerance -x -d 'no resting penetration above this; 1e-07 to 0.01 m'
+complete -c springtower-viewer -l tolerance -x -d 'target penetration: no resting overlap exceeds it; 1e-07 to 0.01 m'
 complete -c springtower-viewer -l friction -x -d 'coefficient of friction; 0 to 10'
 complete -c springtower-viewer -l no-sleep -d 'simulate blocks at rest like all others'
 complete -c springtower-viewer -l threads -x -d 'threads of the simulation; 1 to 1024'

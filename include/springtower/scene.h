@@ -103,7 +103,7 @@ struct Gravity {
   double magnitude_m_s2 = 9.81;  ///< 0 to 1000
   double tilt_deg = 0.0;         ///< from straight down, within 180
   double direction_deg = 0.0;    ///< towards which side it leans, from +x over +y, within 360
-  double sway_deg = 0.0;         ///< amplitude of a sinus of time that is added to the tilt, within 180
+  double sway_deg = 0.0;         ///< amplitude of a sine of time that is added to the tilt, within 180
   double sway_hz = 0.0;          ///< its frequency, 0 to 1000
   bool operator==(const Gravity&) const = default;
 };
@@ -161,7 +161,7 @@ Scene towerScene(int rows, const TowerOptions& options = {});
 Scene bitCodeScene(std::string_view code, const TowerOptions& options = {});
 
 /// A scene from a TOML file; scenes/annotated.toml of the repository shows every key. Options that are given replace those of the
-/// file's tower. Throws InputError naming the file, the place in it, the key, what was found and what is allowed; for a file with
+/// file's tower. Throws InputError naming the file, the place in it, the key, what is expected and what it got; for a file with
 /// moves of a scripted hand too, as worlds play none (inputs.h has a hand that you lead).
 Scene sceneFromToml(const std::string& path, const TowerOptions& options = {});
 
@@ -181,7 +181,7 @@ struct ScenarioInfo {
 std::vector<ScenarioInfo> scenarioList();
 
 /// Checks all that is said above, which a world requires of its scene. Throws InputError naming the block (or both blocks and how
-/// deep they overlap) or the number, what was found and what is allowed. Costs a sort of all blocks.
+/// deep they overlap) or the number, what is expected and what it got. Costs a sort of all blocks.
 void checkScene(const Scene& scene);
 
 }  // namespace springtower::api

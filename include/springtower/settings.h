@@ -11,8 +11,8 @@
 /// z axis points up; the floor is the plane z = 0. Blocks are numbered by `int` from 0 in the order of their scene.
 namespace springtower::api {
 
-/// Bad input: a number, a name, a file, or a call that is not allowed now. `what()` is one line that names it and says what was
-/// found and what is allowed. A call that throws it has changed nothing.
+/// Bad input: a number, a name, a file, or a call that is not allowed now. `what()` is one line that names it and says what is
+/// expected and what it got. A call that throws it has changed nothing.
 struct InputError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -72,7 +72,7 @@ struct Settings {
   bool operator==(const Settings&) const = default;
 };
 
-/// Checks every number against its range. Throws InputError naming the setting, what was found and what is allowed. Worlds check
+/// Checks every number against its range. Throws InputError naming the setting, what is expected and what it got. Worlds check
 /// their scenes; this is to check beforehand. Thread-safe.
 void checkSettings(const Settings& settings);
 

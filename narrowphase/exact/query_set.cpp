@@ -43,7 +43,7 @@ Row splitRow(const Place& place, std::string_view line) {
     if (count < kColumns) row[count] = line.substr(from, to - from);
     from = to + 1;
   }
-  if (count != kColumns) fail(place, fmt::format("found {} columns, allowed are {}", count, kColumns));
+  if (count != kColumns) fail(place, fmt::format("expected {} columns, got {}", kColumns, count));
   return row;
 }
 
@@ -51,7 +51,7 @@ double readNumber(const Place& place, const std::string& column, std::string_vie
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc{} || end != text.data() + text.size() || !(value >= lowest && value <= highest))
-    fail(place, fmt::format("found {} in column {}, allowed are numbers from {} to {}", inQuotes(text), column, lowest, highest));
+    fail(place, fmt::format("expected a number from {} to {} in column {}, got {}", lowest, highest, column, inQuotes(text)));
   return value;
 }
 
@@ -61,11 +61,11 @@ CollisionQuery readQuery(const Place& place, const Row& row, const std::array<st
   query.id = row[kIdColumn];
   query.scene = row[kSetColumn];
   if (row[kHitColumn] != "0" && row[kHitColumn] != "1")
-    fail(place, fmt::format("found {} in column {}, allowed are 0 and 1", inQuotes(row[kHitColumn]), names[kHitColumn]));
+    fail(place, fmt::format("expected 0 or 1 in column {}, got {}", names[kHitColumn], inQuotes(row[kHitColumn])));
   const bool hit = row[kHitColumn] == "1";
   if (!hit && !row[kTimeColumn].empty())
     fail(place,
-         fmt::format("found {} in column {}, allowed is nothing where gt is 0", inQuotes(row[kTimeColumn]), names[kTimeColumn]));
+         fmt::format("expected nothing in column {} where gt is 0, got {}", names[kTimeColumn], inQuotes(row[kTimeColumn])));
   query.exact = {hit, hit ? readNumber(place, names[kTimeColumn], row[kTimeColumn], 0.0, 1.0) : 1.0};
   query.smallestDistance = readNumber(place, names[kDistanceColumn], row[kDistanceColumn], 0.0, kLargest);
   std::size_t column = kFirstCoordinate;
@@ -91,10 +91,10 @@ std::vector<CollisionQuery> readCollisionQueries(const std::string& path) {
     }
     for (std::size_t i = 0; i < kColumns; ++i)
       if (row[i] != names[i])
-        fail(file, fmt::format("found {} as name of column {}, allowed is '{}'", inQuotes(row[i]), i + 1, names[i]));
+        fail(file, fmt::format("expected '{}' as name of column {}, got {}", names[i], i + 1, inQuotes(row[i])));
   }
   if (queries.empty())
-    throw InputError(fmt::format("{}: found no queries, allowed are a header line and at least one query", onOneLine(path)));
+    throw InputError(fmt::format("{}: expected a header line and at least one query, got no queries", onOneLine(path)));
   return queries;
 }
 

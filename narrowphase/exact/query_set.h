@@ -22,7 +22,7 @@ struct CollisionQuery {
 
 /// Reads a set of queries: comma-separated, one header line with the 32 columns id, set, src, family, gt, toi, min_dist, gt_f32,
 /// a0x a0y a0z b0x ... d0z (at t = 0), a1x ... d1z (at t = 1), then one query a line. Throws InputError with the file, the line,
-/// what was found and what is allowed.
+/// what is expected and what it got.
 std::vector<CollisionQuery> readCollisionQueries(const std::string& path);
 
 /// The result of time_of_impact.h for a query.

@@ -46,14 +46,14 @@ std::string shown(const Json& value) {
 
 // The value of a key. Every number is checked here: a cast of one that is out of its type's range is undefined.
 const Json& valueOf(const Json& json, const char* key, const std::string& where) {
-  if (!json.is_object()) throw InputError(fmt::format("{}: found {}, allowed is an object", where, shown(json)));
-  if (!json.contains(key)) throw InputError(fmt::format("{}: found no {}, which is required", where, key));
+  if (!json.is_object()) throw InputError(fmt::format("{}: expected an object, got {}", where, shown(json)));
+  if (!json.contains(key)) throw InputError(fmt::format("{}: expected the key {}, got none", where, key));
   return json.at(key);
 }
 
 double numberOf(const Json& value, const Range& range, const std::string& where) {
   if (!value.is_number() || !isInside(value.get<double>(), range))
-    throw InputError(fmt::format("{}: found {}, allowed is a number, {}", where, shown(value), describe(range)));
+    throw InputError(fmt::format("{}: expected a number from {}, got {}", where, describe(range), shown(value)));
   return value.get<double>();
 }
 
@@ -64,7 +64,7 @@ double number(const Json& json, const char* key, const Range& range, const std::
 std::int64_t wholeNumberOf(const Json& value, std::int64_t most, const std::string& where) {
   const bool isWhole = value.is_number_unsigned() || (value.is_number_integer() && value.get<std::int64_t>() >= 0);
   if (!isWhole || value.get<std::uint64_t>() > static_cast<std::uint64_t>(most))
-    throw InputError(fmt::format("{}: found {}, allowed 0 to {}, a whole number", where, shown(value), most));
+    throw InputError(fmt::format("{}: expected a whole number from 0 to {}, got {}", where, most, shown(value)));
   return value.get<std::int64_t>();
 }
 
@@ -74,7 +74,7 @@ std::int64_t wholeNumber(const Json& json, const char* key, std::int64_t most, c
 
 std::string text(const Json& json, const char* key, const std::string& where) {
   const Json& value = valueOf(json, key, where);
-  if (!value.is_string()) throw InputError(fmt::format("{}: {}: found {}, allowed is a text", where, key, shown(value)));
+  if (!value.is_string()) throw InputError(fmt::format("{}: {}: expected a text, got {}", where, key, shown(value)));
   return value.get<std::string>();
 }
 
@@ -82,7 +82,7 @@ template <std::size_t kCount>
 std::array<double, kCount> numbers(const Json& json, const char* key, const Range& range, const std::string& where) {
   const Json& values = valueOf(json, key, where);
   if (!values.is_array() || values.size() != kCount)
-    throw InputError(fmt::format("{}: {}: found {}, allowed are {} numbers", where, key, shown(values), kCount));
+    throw InputError(fmt::format("{}: {}: expected {} numbers, got {}", where, key, kCount, shown(values)));
   std::array<double, kCount> read{};
   for (std::size_t i = 0; i < kCount; ++i) read[i] = numberOf(values[i], range, fmt::format("{}: {}[{}]", where, key, i));
   return read;
@@ -183,8 +183,7 @@ SceneChoice choiceFrom(const Json& json, const std::string& where) {
   if (json.contains("scene_bytes")) {
     const Json& bytes = json.at("scene_bytes");
     if (!bytes.is_array() || bytes.size() > static_cast<std::size_t>(kMostBytes))
-      throw InputError(
-          fmt::format("{}: scene_bytes: found {}, allowed are up to {} whole numbers", where, shown(bytes), kMostBytes));
+      throw InputError(fmt::format("{}: scene_bytes: expected up to {} whole numbers, got {}", where, kMostBytes, shown(bytes)));
     choice.name.clear();
     for (const Json& byte : bytes)
       choice.name += static_cast<char>(static_cast<unsigned char>(wholeNumberOf(byte, 255, where + ": scene_bytes")));
@@ -201,7 +200,7 @@ std::uint64_t hashFrom(const std::string& text, const std::string& where) {
   std::uint64_t hash = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), hash, 16);
   if (error != std::errc{} || end != text.data() + text.size()) {
-    throw InputError(fmt::format("{}: hash: found {}, allowed is a hexadecimal number", where, inQuotes(text)));
+    throw InputError(fmt::format("{}: hash: expected a hexadecimal number, got {}", where, inQuotes(text)));
   }
   return hash;
 }
@@ -217,7 +216,7 @@ Scene sceneOf(const SceneChoice& choice, const std::string& where) {
 
 LoggedFrame frameFrom(const Json& line, const Scene& scene, const Tuning& before, const std::string& where) {
   LoggedFrame frame;
-  if (!line.is_object()) throw InputError(fmt::format("{}: found {}, allowed is an object", where, shown(line)));
+  if (!line.is_object()) throw InputError(fmt::format("{}: expected an object, got {}", where, shown(line)));
   if (line.contains("hash")) frame.hash = hashFrom(text(line, "hash", where), where);
   frame.input.tuning = line.contains("tuning") ? tuningFrom(line.at("tuning"), where) : before;
   if (line.contains("hand")) frame.input.hand = handFrom(line.at("hand"), scene, where);
@@ -257,7 +256,7 @@ class RecordingReader {
 
 Scene sceneOf(const SceneChoice& choice) {
   Scene scene = sceneNamed(choice.name, choice.options);
-  if (scene.blocks.empty()) throw InputError(choice.name + ": the scene has no blocks, allowed is at least one");
+  if (scene.blocks.empty()) throw InputError(choice.name + ": expected a scene with at least one block, got none");
   return scene;
 }
 
@@ -313,7 +312,7 @@ Recording readRecording(const std::string& path) {
                                              reader.recording.frames.size());
     }
   }
-  if (!reader.begun()) throw InputError(fmt::format("{}: found an empty file, allowed is a recording", onOneLine(path)));
+  if (!reader.begun()) throw InputError(fmt::format("{}: expected a recording, got an empty file", onOneLine(path)));
   return std::move(reader.recording);
 }
 
@@ -327,7 +326,7 @@ Recording recordingOf(std::span<const std::string_view> lines, const std::string
       throw InputError(fmt::format("{}: {}", where, onOneLine(error.what())));
     }
   }
-  if (!reader.begun()) throw InputError(fmt::format("{}: found no line, allowed is a recording", name));
+  if (!reader.begun()) throw InputError(fmt::format("{}: expected a recording, got no line", name));
   return std::move(reader.recording);
 }
 

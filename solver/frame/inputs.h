@@ -8,7 +8,7 @@ namespace springtower {
 
 // What the outside may change between two frames of a running scene, beside `kick` (solver/world/simulation.h) and the hand
 // (solver/hand/grip.h). All of it is part of snapshots. Every function checks what it is given as checkScene does, and throws
-// InputError, with nothing changed, naming what was found and what is allowed.
+// InputError, with nothing changed, naming what is expected and what it got.
 
 /// A force at a block's centre through the coming frame. Who pushes again in the next frame replaces it (setOnlyForce).
 /// Throws InputError for a number that is no block's.

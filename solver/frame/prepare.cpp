@@ -84,7 +84,7 @@ bool isPrepared(const Simulation& simulation) {
 
 PrepareResult prepare(Simulation& simulation, const PrepareOptions& options) {
   if (!(options.budget_s >= 0.0))
-    throw InputError(fmt::format("prepare: found a budget of {} s, allowed 0 or more", options.budget_s));
+    throw InputError(fmt::format("prepare: expected a budget of 0 s or more, got {} s", options.budget_s));
   PrepareResult result;
   Engine& engine = *simulation.engine;
   if (engine.memo.prepared) return result;

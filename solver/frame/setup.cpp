@@ -87,11 +87,10 @@ void chooseStiffness(Simulation& simulation) {
       stiffness = stiffnessForTolerance(loads, simulation.tolerance_m);
     } else if (needed > allowed && !settings.allowUnstable) {
       throw InputError(fmt::format(
-          "settings: found tolerance_m = {:g} with substeps = {}, allowed: at least {} substeps for this tolerance, or "
-          "allow_unstable",
-          *settings.tolerance_m, settings.substeps,
+          "settings: expected at least {} substeps for tolerance_m = {:g}, or allow_unstable, got substeps = {}",
           static_cast<int>(std::ceil(settings.frame_s /
-                                     stableStep(settings.method, needed, simulation.dampingTime_s, settings.stabilitySafety)))));
+                                     stableStep(settings.method, needed, simulation.dampingTime_s, settings.stabilitySafety))),
+          *settings.tolerance_m, settings.substeps));
     }
   }
   for (double& edge_n_m : stiffness.edge_n_m) edge_n_m *= settings.springRatio;

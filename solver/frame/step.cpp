@@ -36,8 +36,7 @@ void checkShapes(const Simulation& simulation, std::span<const std::int32_t> blo
 
 void stepFrame(Simulation& simulation) {
   Engine& engine = *simulation.engine;
-  if (!isPrepared(simulation))
-    throw InputError("stepFrame: found a simulation that is not prepared, allowed is one after prepare");
+  if (!isPrepared(simulation)) throw InputError("stepFrame: expected a simulation after prepare, got one that is not prepared");
 #ifndef NDEBUG
   poisonScratch(engine);
 #endif

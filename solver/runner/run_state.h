@@ -41,7 +41,7 @@ struct LoadedRun {
   std::string commit;
 };
 
-/// Reads one again. Throws InputError naming `source`, what was found and what is allowed for a file that cannot be read, is none
+/// Reads one again. Throws InputError naming `source`, what is expected and what it got for a file that cannot be read, is none
 /// of these, or is damaged.
 LoadedRun readRun(const std::string& path, const std::string& source);
 

@@ -38,8 +38,8 @@ Eigen::VectorXd StaticsModel::gravityLoad(const Vec3& gravity) const {
 }
 
 StaticsModel staticsModel(const Scene& scene, std::span<const FacePair> facings) {
-  if (scene.blocks.empty()) throw InputError("statics: found no blocks, allowed is at least one");
-  if (scene.gravity.magnitude <= 0.0) throw InputError("statics: found no gravity, allowed is a magnitude above 0");
+  if (scene.blocks.empty()) throw InputError("statics: expected at least one block, got none");
+  if (scene.gravity.magnitude <= 0.0) throw InputError("statics: expected gravity above 0, got none");
   StaticsModel model;
   double mass = 0.0;
   double height = 0.0;
@@ -50,7 +50,7 @@ StaticsModel staticsModel(const Scene& scene, std::span<const FacePair> facings)
     height += block.dimensions.minCoeff();
     count += 1.0;
   }
-  if (count == 0.0) throw InputError("statics: found fixed blocks only, allowed is at least one that is not");
+  if (count == 0.0) throw InputError("statics: expected at least one block that is not fixed, got fixed blocks only");
   model.forceUnit_n = mass / count * scene.gravity.magnitude;
   model.lengthUnit_m = height / count;
   for (const BlockSpec& block : scene.blocks) {

@@ -187,7 +187,7 @@ void checkFits(const Snapshot& snapshot, const Simulation& simulation, std::stri
                                   snapshot.asleep.size(), snapshot.restTime_s.size(), snapshot.sleepState.windows.size(),
                                   memo.blockHistory.size(), memo.islandHistory.size(), memo.frames.size()}) {
     if (found != blocks)
-      throw InputError(fmt::format("{}: found the state of {} blocks, allowed is that of {}", source, found, blocks));
+      throw InputError(fmt::format("{}: expected the state of {} blocks, got that of {}", source, blocks, found));
   }
 }
 

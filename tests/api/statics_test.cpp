@@ -1,4 +1,6 @@
 // Statics through the public interface, against closed forms.
+#include "tests/support/says.h"
+
 #include <cmath>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -73,21 +75,24 @@ TEST(ApiStatics, FrictionHoldsAPullUpToItsBound) {
 TEST(ApiStatics, RefusesWhatIsNotAllowed) {
   Scene weightless = stackOf(1);
   weightless.gravity.magnitude_m_s2 = 0.0;
-  EXPECT_THAT([&] { static_cast<void>(verdict(weightless)); }, ThrowsMessage<InputError>(HasSubstr("stack: found no gravity")));
-  EXPECT_THAT([] { static_cast<void>(verdict(Scene{})); }, ThrowsMessage<InputError>(HasSubstr("number of blocks: found 0")));
+  EXPECT_THAT([&] { static_cast<void>(verdict(weightless)); },
+              ThrowsMessage<InputError>(HasSubstr("stack: expected gravity above 0 for statics, got none")));
+  EXPECT_THAT([] { static_cast<void>(verdict(Scene{})); },
+              ThrowsMessage<InputError>(says("number of blocks: expected ..., got 0")));
   EXPECT_THAT([] { static_cast<void>(loads(towerScene(334))); },
-              ThrowsMessage<InputError>(HasSubstr("found 1002 blocks, allowed for statics 1 to 1000")));
-  EXPECT_THAT([] { static_cast<void>(verdictWithout(stackOf(1), 0)); }, ThrowsMessage<InputError>(HasSubstr("found one block")));
+              ThrowsMessage<InputError>(HasSubstr("expected 1 to 1000 blocks for statics, got 1002")));
+  EXPECT_THAT([] { static_cast<void>(verdictWithout(stackOf(1), 0)); },
+              ThrowsMessage<InputError>(HasSubstr("expected at least two blocks to leave one out, got one")));
   EXPECT_THAT([] { static_cast<void>(verdictWithout(stackOf(2), 2)); },
-              ThrowsMessage<InputError>(HasSubstr("found 2, allowed 0 to 1")));
+              ThrowsMessage<InputError>(HasSubstr("expected 0 to 1, got 2")));
   EXPECT_THAT(
       [] {
         static_cast<void>(pullLimit(stackOf(2), -1, {1.0, 0.0, 0.0}));
       },
-      ThrowsMessage<InputError>(HasSubstr("found -1, allowed 0 to 1")));
+      ThrowsMessage<InputError>(HasSubstr("expected 0 to 1, got -1")));
   for (const Vec3& direction : {Vec3{}, Vec3{std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0}}) {
     EXPECT_THAT([&] { static_cast<void>(pullLimit(stackOf(2), 1, direction)); },
-                ThrowsMessage<InputError>(HasSubstr("direction: found a length of")));
+                ThrowsMessage<InputError>(HasSubstr("direction: expected a finite length above 0, got ")));
   }
 }
 

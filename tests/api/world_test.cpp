@@ -3,6 +3,7 @@
 #include "solver/world/simulation.h"
 #include "tests/support/allocations.h"
 #include "tests/support/prepare_and_step.h"
+#include "tests/support/says.h"
 
 #include <cmath>
 #include <gmock/gmock.h>
@@ -119,7 +120,7 @@ TEST(World, AllPosesAtOnceAreThoseOfEachBlock) {
     EXPECT_EQ(poses[static_cast<std::size_t>(block)].orientation, world.pose(block).orientation);
   }
   EXPECT_THAT([&] { world.poses(std::span(poses).first(5)); },
-              ThrowsMessage<InputError>(HasSubstr("found room for 5, allowed for 6")));
+              ThrowsMessage<InputError>(HasSubstr("expected room for 6, got room for 5")));
 }
 
 // What acts between frames is part of a snapshot: a hand under way, a force that is to come, one for the next frame, gravity.
@@ -196,7 +197,7 @@ TEST(Snapshots, OfBytesThatAreCutOrChangedAreRefused) {
     EXPECT_THROW(static_cast<void>(Snapshot::fromBytes(changed)), InputError) << at;
   }
   EXPECT_THAT([&] { static_cast<void>(Snapshot::fromBytes({})); },
-              ThrowsMessage<InputError>(HasSubstr("snapshot: found nothing")));
+              ThrowsMessage<InputError>(says("snapshot: expected ..., got nothing")));
   EXPECT_THAT([&] { static_cast<void>(Snapshot().bytes()); }, ThrowsMessage<InputError>(HasSubstr("empty")));
   World larger(towerScene(2));
   EXPECT_THAT([&] { larger.restore(Snapshot::fromBytes(bytes)); }, ThrowsMessage<InputError>(HasSubstr("another scene")));
@@ -211,7 +212,8 @@ TEST(Snapshots, OfAnotherSceneAndEmptyOnesAreRefused) {
   for (const Scene& scene : {heavier, softer, towerScene(3)}) {
     EXPECT_THAT([&] { world.restore(World(scene).snapshot()); }, ThrowsMessage<InputError>(HasSubstr("another scene")));
   }
-  EXPECT_THAT([&] { world.restore(Snapshot()); }, ThrowsMessage<InputError>(HasSubstr("found an empty snapshot")));
+  EXPECT_THAT([&] { world.restore(Snapshot()); },
+              ThrowsMessage<InputError>(HasSubstr("expected a snapshot that a world has taken, got an empty one")));
   EXPECT_THAT([&] { static_cast<void>(Snapshot().time_s()); }, ThrowsMessage<InputError>(HasSubstr("empty")));
   EXPECT_EQ(world.stateHash(), World(towerScene(2)).stateHash());
 }
@@ -246,9 +248,10 @@ TEST(World, ASimulationThatFailsIsAValue) {
 
 TEST(World, IsPreparedOnceBeforeItsFirstStep) {
   World world(towerScene(6));
-  EXPECT_THAT([&] { static_cast<void>(world.step()); }, ThrowsMessage<InputError>(HasSubstr("step: found a world that is not")));
+  EXPECT_THAT([&] { static_cast<void>(world.step()); },
+              ThrowsMessage<InputError>(says("step: expected a world after prepare(), got one that is not")));
   EXPECT_THAT([&] { static_cast<void>(world.prepare({.budget_s = -1.0})); },
-              ThrowsMessage<InputError>(HasSubstr("found a budget of -1")));
+              ThrowsMessage<InputError>(HasSubstr("expected a budget of 0 s or more, got -1")));
   int calls = 0;
   const Preparation done = world.prepare({.goesOn = [&](const PrepareProgress& now) {
     ++calls;
@@ -259,7 +262,7 @@ TEST(World, IsPreparedOnceBeforeItsFirstStep) {
   EXPECT_EQ(done.end, Preparation::End::complete);
   EXPECT_EQ(done.blocksInBalance, 18);
   EXPECT_THAT([&] { static_cast<void>(world.prepare()); },
-              ThrowsMessage<InputError>(HasSubstr("found a world that is prepared")));
+              ThrowsMessage<InputError>(HasSubstr("expected a world that is not prepared, got one that is")));
   EXPECT_EQ(world.step(60), std::nullopt);
 }
 
@@ -276,7 +279,7 @@ TEST(World, RefusesBlocksThatAreNotThere) {
   World world(towerScene(1));
   world.prepare();
   for (const int block : {-1, 3, std::numeric_limits<int>::max(), std::numeric_limits<int>::min()}) {
-    const auto message = ThrowsMessage<InputError>(HasSubstr("found " + std::to_string(block) + ", allowed 0 to 2"));
+    const auto message = ThrowsMessage<InputError>(HasSubstr("expected 0 to 2, got " + std::to_string(block)));
     EXPECT_THAT([&] { static_cast<void>(world.pose(block)); }, message);
     EXPECT_THAT([&] { static_cast<void>(world.velocity(block)); }, message);
     EXPECT_THAT([&] { static_cast<void>(world.corners(block)); }, message);
@@ -289,23 +292,25 @@ TEST(World, RefusesBlocksThatAreNotThere) {
     EXPECT_THAT([&] { pushThroughFrame(world, block, {}); }, message);
     EXPECT_THAT([&] { grab(world, block); }, message);
     EXPECT_THAT([&] { pull(world, block, {1.0, 0.0, 0.0}); }, message);
-    EXPECT_THAT([&] { applyForce(world, {block, -1, {}, 0.0, 1.0}); }, ThrowsMessage<InputError>(HasSubstr("allowed 0 to 2")));
+    EXPECT_THAT([&] { applyForce(world, {block, -1, {}, 0.0, 1.0}); }, ThrowsMessage<InputError>(HasSubstr("expected 0 to 2")));
   }
-  EXPECT_THAT([&] { static_cast<void>(world.step(-1)); }, ThrowsMessage<InputError>(HasSubstr("found -1 frames")));
+  EXPECT_THAT([&] { static_cast<void>(world.step(-1)); },
+              ThrowsMessage<InputError>(HasSubstr("expected 0 or more frames, got -1")));
 }
 
 TEST(World, RefusesScenesThatAreNotAllowed) {
-  EXPECT_THAT([] { World world{Scene{}}; }, ThrowsMessage<InputError>(HasSubstr("scene: number of blocks: found 0")));
+  EXPECT_THAT([] { World world{Scene{}}; }, ThrowsMessage<InputError>(says("scene: number of blocks: expected ..., got 0")));
   Scene scene = towerScene(1);
   scene.blocks[1].centre.y += 0.001;
   scene.name = "two\nlines";
   EXPECT_THAT([&] { World world(scene); }, ThrowsMessage<InputError>(HasSubstr("two\\x0alines: block 1")));
   scene = towerScene(1);
   scene.settings.method = static_cast<Method>(99);
-  EXPECT_THAT([&] { World world(scene); }, ThrowsMessage<InputError>(HasSubstr("method: found number 99, allowed 0 to 10")));
+  EXPECT_THAT([&] { World world(scene); },
+              ThrowsMessage<InputError>(HasSubstr("method: expected a number from 0 to 10, got 99")));
   scene = towerScene(1);
   scene.blocks[2].orientation = {std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0, 0.0};
-  EXPECT_THAT([&] { World world(scene); }, ThrowsMessage<InputError>(HasSubstr("found nan")));
+  EXPECT_THAT([&] { World world(scene); }, ThrowsMessage<InputError>(HasSubstr("got nan")));
 }
 
 TEST(World, MayBeMovedAndIsEmptyThen) {
@@ -366,7 +371,7 @@ TEST(ThreadLimit, CountsWhileItLives) {
 }
 
 TEST(ThreadLimit, RefusesNumbersThatAreNone) {
-  EXPECT_THAT([] { const ThreadLimit none(0); }, ThrowsMessage<InputError>(HasSubstr("threads: found 0, allowed 1 to 4096")));
+  EXPECT_THAT([] { const ThreadLimit none(0); }, ThrowsMessage<InputError>(HasSubstr("threads: expected 1 to 4096, got 0")));
 }
 
 // Frames that have run once run again without a call to the allocator, and poses are read without one.

@@ -151,7 +151,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadCall{"NoFile", {}, "FILE"}, BadCall{"NoKind", {kSmallSet}, "--kind"},
         BadCall{"UnknownKind", {kSmallSet, "--kind", "ve"}, "--kind"},
         BadCall{"UnknownOption", {kSmallSet, "--kind", "vf", "--colour"}, "--colour"},
-        BadCall{"MissingFile", {"no-such-file.csv", "--kind", "vf"}, "no-such-file.csv: cannot be opened"},
+        BadCall{
+            "MissingFile", {"no-such-file.csv", "--kind", "vf"}, "no-such-file.csv: expected a file that can be read, got none"},
         BadCall{"Folder", {kSets, "--kind", "vf"}, kSets},
         BadCall{"OutWithoutName", {kSmallSet, "--kind", "vf", "--out", ""}, "--out: cannot write '': an empty name"},
         BadCall{"OutIsAFolder", {kSmallSet, "--kind", "vf", "--out", "/"}, "--out: cannot write '/'"},
@@ -168,8 +169,7 @@ TEST(CcdQueries, NameTheLineThatIsBrokenAndLeaveAnOlderFileAlone) {
   const ProgramResult result = ccdQueries({set, "--kind", "vf", "--out", out});
   EXPECT_EQ(result.exitCode, 2);
   EXPECT_EQ(result.output, "");
-  EXPECT_EQ(result.error,
-            fmt::format("ccd_queries: {}, line 3: found 'half' in column toi, allowed are numbers from 0 to 1\n", set));
+  EXPECT_EQ(result.error, fmt::format("ccd_queries: {}, line 3: expected a number from 0 to 1 in column toi, got 'half'\n", set));
   EXPECT_EQ(contentOf(out), "older\n");
 }
 

@@ -3,6 +3,7 @@
 #include "core/error.h"
 #include "core/version.h"
 #include "tests/support/program.h"
+#include "tests/support/says.h"
 
 #include <cmath>
 #include <fstream>
@@ -78,12 +79,12 @@ TEST(ByteStream, RefusesWhatEndsEarlyOrLate) {
   for (std::size_t size = 0; size < bytes.size(); ++size) {
     ByteReader reader(std::string_view(bytes).substr(0, size), "the source");
     ByteSample sample;
-    EXPECT_THAT([&] { reader(sample); }, ThrowsMessage<InputError>(HasSubstr("the source: found "))) << size;
+    EXPECT_THAT([&] { reader(sample); }, ThrowsMessage<InputError>(says("the source: expected ..., got "))) << size;
   }
   ByteReader reader("12", "the source");
   std::int8_t first = 0;
   reader(first);
-  EXPECT_THAT([&] { reader.end(); }, ThrowsMessage<InputError>(HasSubstr("found 1 bytes behind the end, allowed is none")));
+  EXPECT_THAT([&] { reader.end(); }, ThrowsMessage<InputError>(HasSubstr("expected nothing behind the end, got 1 bytes")));
 }
 
 // A length that no bytes follow is refused before memory is taken for it.
@@ -91,7 +92,8 @@ TEST(ByteStream, RefusesListsLongerThanTheBytes) {
   const std::string bytes = bytesOf(std::uint64_t{1} << 60U);
   ByteReader reader(bytes, "the source");
   std::vector<double> list;
-  EXPECT_THAT([&] { reader(list); }, ThrowsMessage<InputError>(HasSubstr("found a list of 1152921504606846976")));
+  EXPECT_THAT([&] { reader(list); },
+              ThrowsMessage<InputError>(says("expected a list that fits in ..., got one of 1152921504606846976")));
 }
 
 TEST(Seal, OpensToWhatItHolds) {
@@ -106,10 +108,11 @@ TEST(Seal, RefusesWhatIsCutOrGoesOn) {
   const std::string bytes = sealed(SealKind::run, "payload");
   for (std::size_t size = 0; size < bytes.size(); ++size)
     EXPECT_THROW(unsealed(SealKind::run, bytes.substr(0, size), "source"), InputError) << size;
-  EXPECT_THAT([&] { unsealed(SealKind::run, bytes.substr(0, bytes.size() - 1), "the source"); },
-              ThrowsMessage<InputError>(HasSubstr("the source: found " + std::to_string(bytes.size() - 1) + " bytes, cut off")));
+  EXPECT_THAT(
+      [&] { unsealed(SealKind::run, bytes.substr(0, bytes.size() - 1), "the source"); },
+      ThrowsMessage<InputError>(says("the source: expected ..., got " + std::to_string(bytes.size() - 1) + " bytes, cut off")));
   EXPECT_THAT([&] { unsealed(SealKind::run, bytes + "more", "source"); },
-              ThrowsMessage<InputError>(HasSubstr("4 bytes behind the end")));
+              ThrowsMessage<InputError>(HasSubstr("expected nothing behind the end, got 4 bytes")));
 }
 
 TEST(Seal, RefusesEveryChangedBit) {
@@ -125,26 +128,27 @@ TEST(Seal, RefusesEveryChangedBit) {
 
 TEST(Seal, RefusesOtherFilesByWhatTheyAre) {
   EXPECT_THAT([&] { unsealed(SealKind::run, sealed(SealKind::world, ""), "the source"); },
-              ThrowsMessage<InputError>(HasSubstr("the source: found a world's snapshot, allowed is a saved run")));
+              ThrowsMessage<InputError>(says("the source: expected a saved run, ..., got a world's snapshot")));
   EXPECT_THAT([&] { unsealed(SealKind::run, "name = \"a scene\"\n", "the source"); },
-              ThrowsMessage<InputError>(HasSubstr("found another kind of file")));
+              ThrowsMessage<InputError>(HasSubstr("got another kind of file")));
   EXPECT_THAT([&] { unsealed(SealKind::run, "springtower-r", "the source"); },
-              ThrowsMessage<InputError>(HasSubstr("found a beginning that is cut off")));
+              ThrowsMessage<InputError>(HasSubstr("got a beginning that is cut off")));
   std::string newer = sealed(SealKind::run, "");
   newer[16] = 9;
   EXPECT_THAT([&] { unsealed(SealKind::run, newer, "the source"); },
-              ThrowsMessage<InputError>(HasSubstr("found format 9, allowed is 1")));
+              ThrowsMessage<InputError>(HasSubstr("expected format 1, got 9")));
 }
 
 // Of an endless file nothing is read but the beginning.
 TEST(Seal, RefusesFilesThatAreNone) {
   const ScratchFolder scratch;
   EXPECT_THAT([&] { unsealedFile(SealKind::run, scratch.file("none"), "the source"); },
-              ThrowsMessage<InputError>(HasSubstr("the source: found no file that can be read")));
+              ThrowsMessage<InputError>(
+                  HasSubstr("the source: expected a file that springtower has written, got none that can be read")));
   EXPECT_THROW(unsealedFile(SealKind::run, scratch.path().string(), "source"), InputError);
   EXPECT_THROW(unsealedFile(SealKind::run, "/dev/zero", "source"), InputError);
   EXPECT_THAT([&] { unsealedFile(SealKind::run, "/dev/null", "the source"); },
-              ThrowsMessage<InputError>(HasSubstr("found nothing")));
+              ThrowsMessage<InputError>(HasSubstr("got nothing")));
   std::ofstream(scratch.file("whole"), std::ios::binary) << sealed(SealKind::run, "payload");
   EXPECT_EQ(unsealedFile(SealKind::run, scratch.file("whole"), "source").payload, "payload");
 }

@@ -34,14 +34,14 @@ TEST(LineInput, ReadsWhatGetlineReads) {
 TEST(LineInput, RefusesLinesThatAreTooLong) {
   const std::string longest(kMaxLineBytes, 'a');
   EXPECT_THAT(linesIn(longest + "\nb"), ElementsAre(longest, "b"));
-  EXPECT_THAT([&] { linesIn(longest + "a"); },
-              ThrowsMessage<InputError>("text: found more than 1 MB in a line, allowed is less"));
+  EXPECT_THAT([&] { linesIn(longest + "a"); }, ThrowsMessage<InputError>("text: expected at most 1 MB in a line, got more"));
 }
 
 TEST(LineInput, EndsAtOnceForADeviceWithoutLines) {
   LineInput input("/dev/zero");
   std::string line;
-  EXPECT_THAT([&] { input.next(line); }, ThrowsMessage<InputError>(HasSubstr("/dev/zero, line 1: found more than 1 MB")));
+  EXPECT_THAT([&] { input.next(line); },
+              ThrowsMessage<InputError>(HasSubstr("/dev/zero, line 1: expected at most 1 MB in a line, got more")));
 }
 
 TEST(LineInput, CountsLinesAndSeesTheirEnd) {
@@ -61,10 +61,11 @@ TEST(LineInput, CountsLinesAndSeesTheirEnd) {
 
 TEST(LineInput, RefusesFoldersAndWhatIsNotThere) {
   const ScratchFolder scratch;
-  EXPECT_THAT([&] { LineInput input(scratch.path().string()); }, ThrowsMessage<InputError>(HasSubstr("found a folder")));
+  EXPECT_THAT([&] { LineInput input(scratch.path().string()); },
+              ThrowsMessage<InputError>(HasSubstr("expected a file, got a folder")));
   EXPECT_THAT([&] { LineInput input(scratch.file("none"), "--peers"); },
               ThrowsMessage<InputError>("--peers: " + scratch.file("none") +
-                                        ": cannot be opened for reading, allowed is a readable file: No such file or directory"));
+                                        ": expected a file that can be read, got none: No such file or directory"));
 }
 
 }  // namespace

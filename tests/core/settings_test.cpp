@@ -57,15 +57,15 @@ TEST(Settings, ComplaintNamesSourceKeyFoundAndAllowed) {
   Settings settings;
   settings.stabilitySafety = 1.5;
   EXPECT_THAT([&] { checkSettings(settings, "command line"); },
-              ThrowsMessage<InputError>("command line: stability_safety: found 1.5, allowed 0.05 to 1"));
+              ThrowsMessage<InputError>("command line: stability_safety: expected 0.05 to 1, got 1.5"));
   settings = {};
   settings.tolerance_m = -1e-5;
   EXPECT_THAT([&] { checkSettings(settings, "command line"); },
-              ThrowsMessage<InputError>("command line: tolerance_m: found -1e-05, allowed 1e-07 to 0.01 m"));
+              ThrowsMessage<InputError>("command line: tolerance_m: expected 1e-07 to 0.01 m, got -1e-05"));
   settings = {};
   settings.substeps = -1;
   EXPECT_THAT([&] { checkSettings(settings, "command line"); },
-              ThrowsMessage<InputError>("command line: substeps: found -1, allowed 0 to 100000"));
+              ThrowsMessage<InputError>("command line: substeps: expected 0 to 100000, got -1"));
 }
 
 TEST(Settings, EachFormerKeyStandsForOneKeyOfTheTable) {
@@ -116,15 +116,14 @@ TEST(Settings, NamesReadBackAsTheyAreWritten) {
 }
 
 TEST(Settings, UnknownNamesListWhatIsAllowed) {
-  EXPECT_THAT(
-      [] { methodFromName("euler", "--method"); },
-      ThrowsMessage<InputError>("--method: found 'euler', allowed implicit (also: bdf2), implicit-euler, implicit-eigen (also: "
-                                "bdf2-eigen), semi-implicit-euler, midpoint, runge-kutta-4, report (also: legacy-2003), "
-                                "rigid-pgs, rigid-lcp, xpbd or auto"));
+  EXPECT_THAT([] { methodFromName("euler", "--method"); },
+              ThrowsMessage<InputError>("--method: expected implicit (also: bdf2), implicit-euler, implicit-eigen (also: "
+                                        "bdf2-eigen), semi-implicit-euler, midpoint, runge-kutta-4, report (also: legacy-2003), "
+                                        "rigid-pgs, rigid-lcp, xpbd or auto, got 'euler'"));
   EXPECT_THAT([] { inertiaFromName("", "--inertia"); },
-              ThrowsMessage<InputError>("--inertia: found '', allowed cuboid or lumped"));
+              ThrowsMessage<InputError>("--inertia: expected cuboid or lumped, got ''"));
   EXPECT_THAT([] { sleepFromName("o\nn", "s.toml"); },
-              ThrowsMessage<InputError>("s.toml: found 'o\\x0an', allowed off, on or report"));
+              ThrowsMessage<InputError>("s.toml: expected off, on or report, got 'o\\x0an'"));
 }
 
 }  // namespace

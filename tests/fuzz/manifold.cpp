@@ -128,7 +128,7 @@ void testSeparation(const ParticleArray& position, const Pair& pair, long double
   const Separation found = findSeparation(cornersOf(position, 1), cornersOf(position, 0));
   const double rounding = roundingOf(pair);
   const double size = pair.lower.half.norm() + pair.upper.half.norm();
-  const std::string figures = fmt::format("found {}, true {}, size {}", found.best(), static_cast<double>(gap), size);
+  const std::string figures = fmt::format("got {}, true {}, size {}", found.best(), static_cast<double>(gap), size);
   if (found.best() > rounding) requireThat(gap > 0.0L, "blocks that are said to be apart are: " + figures);
   // Edges that are all but parallel are left out, which may hide so much.
   if (gap > 4.0 * tuning::kMinEdgeCross * size + rounding)

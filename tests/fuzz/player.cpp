@@ -43,7 +43,7 @@ int playAll(int argc, char** argv) {
   }
   std::printf("%zu inputs played\n", played);
   if (played > 0) return 0;
-  std::fprintf(stderr, "found no input, allowed are files, and folders that have some\n");
+  std::fprintf(stderr, "expected files, and folders that have some, got none\n");
   return 2;
 }
 

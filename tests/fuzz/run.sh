@@ -10,7 +10,7 @@ programs=$1 corpora=$2 out=$3
 shift 3
 seconds=${SPRINGTOWER_FUZZ_SECONDS:-3600}
 [[ $seconds =~ ^[1-9][0-9]{0,6}$ ]] || {
-  echo "SPRINGTOWER_FUZZ_SECONDS: found '$seconds', allowed is a whole number, 1 to 9999999" >&2
+  echo "SPRINGTOWER_FUZZ_SECONDS: expected a whole number from 1 to 9999999, got '$seconds'" >&2
   exit 2
 }
 share=$((seconds / $#))

@@ -38,7 +38,6 @@ int main(int argc, char** argv) {
   }
   ::testing::InitGoogleTest(&argc, argv);
   if (argc == 1) return RUN_ALL_TESTS();
-  std::fprintf(stderr, "springtower_pinned_tests: found '%s', allowed are --update FILE and the options of GoogleTest\n",
-               argv[1]);
+  std::fprintf(stderr, "springtower_pinned_tests: expected --update FILE or the options of GoogleTest, got '%s'\n", argv[1]);
   return 2;
 }

@@ -34,14 +34,14 @@ Pin pinFromJson(const nlohmann::json& json) {
 
 Pins readPins(const std::string& path) {
   std::ifstream file(path);
-  if (!file) throw InputError(fmt::format("{}: found no file of pins", path));
+  if (!file) throw InputError(fmt::format("{}: expected a file of pins, got none", path));
   try {
     Pins pins;
     const nlohmann::json json = nlohmann::json::parse(file);
     for (const auto& [name, scene] : json.at("scenes").items()) pins[name] = pinFromJson(scene);
     return pins;
   } catch (const std::exception& error) {
-    throw InputError(fmt::format("{}: found no pins: {}", path, error.what()));
+    throw InputError(fmt::format("{}: expected pins, got none: {}", path, error.what()));
   }
 }
 

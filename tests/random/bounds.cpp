@@ -138,7 +138,7 @@ std::string faultLines(std::span<const Record> records) {
     for (const Record& record : records) {
       if (has(record, bound.fault)) found.push_back(&record);
     }
-    text += fmt::format("{:11}{:>6} of {}, allowed {}: {}\n", nameOf(bound.fault), found.size(), records.size(),
+    text += fmt::format("{:11}{:>6} of {}, at most {}: {}\n", nameOf(bound.fault), found.size(), records.size(),
                         mostAllowed(bound.rate, static_cast<int>(records.size())), bound.reason);
     std::stable_sort(found.begin(), found.end(),
                      [&](const Record* a, const Record* b) { return weightOf(*a, bound.fault) > weightOf(*b, bound.fault); });

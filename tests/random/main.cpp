@@ -158,8 +158,8 @@ void writeRecords(OutputFile& file, const std::vector<Record>& records, const Op
 int executeWrite(const Options& options) {
   const std::optional<double> seed = parseNumber(options.write[0]);
   if (!seed || !isInside(*seed, kSeedRange) || *seed != static_cast<double>(static_cast<std::uint64_t>(*seed))) {
-    throw InputError(
-        fmt::format("--write: found the seed {}, allowed a whole number, {}", inQuotes(options.write[0]), describe(kSeedRange)));
+    throw InputError(fmt::format("--write: expected a seed, a whole number from {}, got {}", describe(kSeedRange),
+                                 inQuotes(options.write[0])));
   }
   const RandomScene random = randomScene(static_cast<std::uint64_t>(*seed));
   OutputFile file(options.write[1], "--write");
@@ -175,7 +175,7 @@ RandomScene fromFile(const std::string& path, bool shrink) {
   if (!shrink) return random;
   for (BlockSpec& block : random.scene.blocks) {
     if (block.row >= 0 && !random.scene.moves.empty()) {
-      throw InputError(fmt::format("--shrink: {}: found moves of a tower, allowed is a scene without", onOneLine(path)));
+      throw InputError(fmt::format("--shrink: {}: expected a scene without moves of a tower, got one with", onOneLine(path)));
     }
     block.row = -1;
     block.position = 0;
@@ -247,7 +247,7 @@ int runProgram(int argc, char** argv) {
   }
   if (options.fault) faultFromName(*options.fault, "--fault");
   if (options.shrink && !std::filesystem::is_directory(*options.shrink)) {
-    throw InputError(fmt::format("--shrink: found no folder {}, allowed is one that is there", inQuotes(*options.shrink)));
+    throw InputError(fmt::format("--shrink: expected a folder that is there, got {}", inQuotes(*options.shrink)));
   }
   if (!options.write.empty()) return executeWrite(options);
   return options.file ? executeFile(options) : executeSeeds(options);

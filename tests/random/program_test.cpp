@@ -2,6 +2,7 @@
 #include "tests/support/program.h"
 
 #include "tests/support/running_program.h"
+#include "tests/support/says.h"
 
 #include <chrono>
 #include <csignal>
@@ -25,13 +26,13 @@ TEST(RandomScenesProgram, RefusesWhatItDoesNotKnow) {
   for (const auto& [arguments, message] : std::vector<std::pair<std::vector<std::string>, std::string>>{
            {{"--count", "0"}, "--count"},
            {{"--limit", "nan"}, "--limit"},
-           {{"--fault", "beauty"}, "--fault: found 'beauty', allowed crash"},
-           {{"--shrink", "/no/such"}, "--shrink: found no folder"},
-           {{"--write", "1.5", "a.toml"}, "--write: found the seed '1.5'"},
-           {{"--file", "no.toml"}, "no.toml: found no such file"}}) {
+           {{"--fault", "beauty"}, "--fault: expected crash, ..., got 'beauty'"},
+           {{"--shrink", "/no/such"}, "--shrink: expected a folder that is there, got '/no/such'"},
+           {{"--write", "1.5", "a.toml"}, "--write: expected a seed, ..., got '1.5'"},
+           {{"--file", "no.toml"}, "no.toml: expected ..., got no such file"}}) {
     const ProgramResult result = runProgram("random_scenes", arguments);
     EXPECT_EQ(result.exitCode, 2) << message;
-    EXPECT_THAT(result.error, HasSubstr(message));
+    EXPECT_THAT(result.error, says(message));
   }
 }
 

@@ -97,7 +97,7 @@ Fault faultFromName(std::string_view name, std::string_view source) {
   for (const Fault fault : kFaults) {
     if (nameOf(fault) == name) return fault;
   }
-  throw InputError(fmt::format("{}: found {}, allowed {}", source, inQuotes(name), fmt::join(kFaultNames, ", ")));
+  throw InputError(fmt::format("{}: expected {}, got {}", source, fmt::join(kFaultNames, ", "), inQuotes(name)));
 }
 
 bool has(const Record& record, Fault fault) {

@@ -96,26 +96,27 @@ TEST(ScenarioName, MayBeABitCodeOrAFile) {
   EXPECT_EQ(sceneNamed("(010)-(101)").blocks.size(), 3U);
   EXPECT_EQ(sceneNamed(SPRINGTOWER_SOURCE_DIR "/scenes/report_t1.toml").blocks.size(), 6U);
   EXPECT_THAT([] { sceneNamed("no-such-scene.toml"); },
-              ThrowsMessage<InputError>(StartsWith("no-such-scene.toml: found no such file")));
+              ThrowsMessage<InputError>(AllOf(StartsWith("no-such-scene.toml: expected "), EndsWith(", got no such file"))));
 }
 
 TEST(ScenarioName, ThatIsUnknownSaysAllThatIsAllowed) {
   for (const std::string name : {"castle", "castle:3", ""}) {
     EXPECT_THAT([&] { sceneNamed(name); },
-                ThrowsMessage<InputError>(AllOf(StartsWith("'" + name + "': found no such scene, allowed are tower:ROWS, "),
+                ThrowsMessage<InputError>(AllOf(StartsWith("'" + name + "': expected tower:ROWS, "),
                                                 HasSubstr("wall:COLUMNSxCOURSES"), HasSubstr("thin-wall"),
-                                                EndsWith("a bit code such as (010)-(111), or a .toml file"))));
+                                                EndsWith("a bit code such as (010)-(111), or a .toml file, got none of them"))));
   }
 }
 
 TEST(ScenarioName, OfAWrongSizeSaysWhichAreAllowed) {
   for (const std::string size : {"", "20", "20x", "x12", "20x12x2", "20 x 12", "a", "0x12", "20x101", "99999999999x1", "-1x2"}) {
-    EXPECT_THAT([&] { sceneNamed("wall:" + size); }, ThrowsMessage<InputError>("wall:COLUMNSxCOURSES: found the size '" + size +
-                                                                               "', allowed 1 to 4000 columns, 1 to 100 courses"));
+    EXPECT_THAT([&] { sceneNamed("wall:" + size); },
+                ThrowsMessage<InputError>("wall:COLUMNSxCOURSES: expected 1 to 4000 columns, 1 to 100 courses, got the size '" +
+                                          size + "'"));
   }
-  EXPECT_THAT([] { sceneNamed("thrown:2"); }, ThrowsMessage<InputError>("thrown: found the size '2', allowed is the name alone"));
+  EXPECT_THAT([] { sceneNamed("thrown:2"); }, ThrowsMessage<InputError>("thrown: expected the name alone, got the size '2'"));
   EXPECT_THAT([] { sceneNamed("tower:ten"); },
-              ThrowsMessage<InputError>("tower:R: found 'ten' rows, allowed a whole number from 1 to 2000"));
+              ThrowsMessage<InputError>("tower:R: expected a whole number of rows from 1 to 2000, got 'ten'"));
 }
 
 TEST(ScenarioName, TakesOptionsOfTowersForTowersOnly) {
@@ -124,7 +125,7 @@ TEST(ScenarioName, TakesOptionsOfTowersForTowersOnly) {
   EXPECT_GT(sceneNamed("tower:2", options).blocks.back().centre.z(), 0.037);
   EXPECT_GT(sceneNamed("towers:2", options).blocks.back().centre.z(), 0.45);
   EXPECT_THAT([&] { sceneNamed("wall:3x2", options); },
-              ThrowsMessage<InputError>("wall:3x2: found a start gap, allowed for towers only"));
+              ThrowsMessage<InputError>("wall:3x2: expected a tower for a start gap, got another scene"));
 }
 
 // The files show how such a scene is written; a change of one requires a change of the other.

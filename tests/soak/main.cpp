@@ -209,7 +209,7 @@ bool runPart(const Part& part, double seconds, std::uint64_t seed) {
   for (const Figure& figure : found.figures) {
     const bool within = figure.found <= figure.most;
     good = good && within;
-    fmt::print("  {:<6} {}: {:.3g} {}, allowed {:g}\n", within ? "" : "BEYOND", figure.name, figure.found, figure.unit,
+    fmt::print("  {:<6} {}: {:.3g} {}, at most {:g}\n", within ? "" : "BEYOND", figure.name, figure.found, figure.unit,
                figure.most);
   }
   if (found.figures.empty()) {
@@ -244,7 +244,7 @@ int runSoak(int argc, char** argv) {
   }
   for (const std::string& name : names) {
     const bool known = std::any_of(kParts.begin(), kParts.end(), [&](const Part& part) { return part.name == name; });
-    if (!known) throw InputError(fmt::format("found the part {}, allowed are tower, falls, viewer", inQuotes(name)));
+    if (!known) throw InputError(fmt::format("expected the part tower, falls or viewer, got {}", inQuotes(name)));
   }
   bool good = true;
   const double seconds = 60.0 * minutes.value_or(60.0) / static_cast<double>(parts.size());

@@ -261,8 +261,8 @@ std::vector<std::string> brokenRules(std::string_view path, std::string_view tex
     }
     const std::string_view inexact = decidesStates(path) ? machineDependent(line) : std::string_view{};
     if (!inexact.empty()) {
-      broken.push_back(std::string(path) + ":" + std::to_string(lineNumber) + ": found " + std::string(inexact) +
-                       ", whose last bits depend on the machine; core/elementary.h and core/rotation_vector.h have others");
+      broken.push_back(std::string(path) + ":" + std::to_string(lineNumber) + ": expected functions of core/elementary.h and " +
+                       "core/rotation_vector.h, got " + std::string(inexact) + ", whose last bits depend on the machine");
     }
     const Include include = parseInclude(line);
     if (include.target.empty()) continue;

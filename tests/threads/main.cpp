@@ -104,7 +104,7 @@ int play(const std::vector<std::string>& names) {
     ++played;
   }
   if (played > 0) return 0;
-  std::fprintf(stderr, "thread_scenes: found no scene of that name\n");
+  std::fprintf(stderr, "thread_scenes: expected names of scenes as it prints them without arguments, got others\n");
   return 2;
 }
 

@@ -42,7 +42,7 @@ Falls (collapse, shot, heap-200, rain-200, pile-3) are drawn with their largest 
 the median of their frames and once with the worst but the first; else the mean of all frames counts. --quick leaves the last
 three out unless they are named.
 
-Each method is swept over its own parameter: a tolerance, or steps of a frame. Accuracy is measured first, cases side by side;
+Each method is swept over its own parameter: a tolerance, or substeps of a frame. Accuracy is measured first, cases side by side;
 then the speed, each case alone and by turns. A method that falls, diverges or times out is a result and is named on the chart.
 A run that was broken off resumes where it was.
 
@@ -66,7 +66,7 @@ std::vector<ChartScene> scenesOf(const ChartCommand& command) {
   for (const std::string& name : command.scenes) {
     const auto* const found = std::find(kChartSceneNames.begin(), kChartSceneNames.end(), name);
     if (found == kChartSceneNames.end()) {
-      throw InputError(fmt::format("--scenes: found {}, allowed are {}", inQuotes(name), fmt::join(kChartSceneNames, ", ")));
+      throw InputError(fmt::format("--scenes: expected {}, got {}", fmt::join(kChartSceneNames, ", "), inQuotes(name)));
     }
     const auto scene = static_cast<ChartScene>(found - kChartSceneNames.begin());
     if (std::find(scenes.begin(), scenes.end(), scene) == scenes.end()) scenes.push_back(scene);
@@ -99,7 +99,7 @@ std::vector<Peer> peersOf(const ChartCommand& command) {
     const bool isHere = std::find(here.begin(), here.end(), peer) != here.end();
     const bool named = std::find(command.methods.begin(), command.methods.end(), nameOf(peer)) != command.methods.end();
     if (named && !isHere)
-      throw InputError(fmt::format("--methods: found {0}, allowed where the program peers_{0} is beside this one", nameOf(peer)));
+      throw InputError(fmt::format("--methods: expected the program peers_{0} beside this one for {0}, got none", nameOf(peer)));
     if (isHere && (named || (command.methods.empty() && !command.automatic))) peers.push_back(peer);
   }
   return peers;
@@ -178,7 +178,7 @@ Method mappedMethod(const std::string& name) {
   std::vector<std::string_view> names;
   names.reserve(mapped.size());
   for (const Method method : mapped) names.push_back(nameOf(method));
-  throw InputError(fmt::format("--methods: found {}, with --maps allowed are {}", inQuotes(name), fmt::join(names, ", ")));
+  throw InputError(fmt::format("--methods: expected {} with --maps, got {}", fmt::join(names, ", "), inQuotes(name)));
 }
 
 int executeMaps(const ChartCommand& command) {
@@ -231,10 +231,13 @@ CLI::App* defineChart(CLI::App& program, ChartCommand& command) {
   addNumber(*chart, "--seconds", command.seconds, kSimulatedRange, "S",
             "simulated; the second half counts for rest (default 10)");
   addNumber(*chart, "--case-limit", command.case_s, kCaseRange, "S",
-            "processor time after which a case has timed out, twice that where blocks move, four times that for hundreds of "
+            "CPU time after which a case has timed out, twice that where blocks move, four times that for hundreds of "
             "blocks (default 3)");
-  addWholeNumber(*chart, "--samples", command.samples, kChartSamplesRange, "of each case's speed, taken by turns (default 5)");
-  chart->add_option("--peers", command.peers, "figures of other engines, drawn hollow beside ours; see bench/data/peers")
+  addWholeNumber(*chart, "--samples", command.samples, kChartSamplesRange,
+                 "of each case's speed, interleaved with the others (default 5)");
+  chart
+      ->add_option("--peers", command.peers,
+                   "figures of other engines, drawn with open symbols beside ours; see bench/data/peers")
       ->delimiter(',')
       ->type_name("FILE.csv,...");
   chart->add_option("--out", command.out, "writes into this folder (default chart)")->type_name("DIR");

@@ -347,12 +347,11 @@ std::vector<std::pair<std::string, Plot>> chartPlots(const Chart& chart) {
 }
 
 void writeChartIndex(std::ostream& stream, const Chart& chart, const std::vector<std::string>& names) {
-  stream
-      << "# Speed against accuracy\n\nEvery method on the same scenes, each with its own parameter. All figures are in "
-         "[chart.csv](chart.csv).\n\n"
-      << footnote(chart.provenance) << "\n\n## The fastest method within a tolerance\n\n"
-      << "No penetration, no compression of a row and no creep above it, and the right verdict; ms of processor time a frame.\n\n"
-      << "| scene |";
+  stream << "# Speed against accuracy\n\nEvery method on the same scenes, each with its own parameter. All figures are in "
+            "[chart.csv](chart.csv).\n\n"
+         << footnote(chart.provenance) << "\n\n## The fastest method within a tolerance\n\n"
+         << "No penetration, no compression of a row and no creep above it, and the right verdict; ms of CPU time a frame.\n\n"
+         << "| scene |";
   for (const double tolerance : kTolerances_mm) stream << fmt::format(" {:g} mm |", tolerance);
   stream << "\n|---|---|---|---|\n";
   for (const ChartScene scene : scenesIn(chart)) {

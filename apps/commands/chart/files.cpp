@@ -64,7 +64,7 @@ Json resultJson(const ChartResult& result) {
 template <class Value, std::size_t N>
 Value valueNamed(const std::array<std::string_view, N>& names, const std::string& name) {
   const auto* const found = std::find(names.begin(), names.end(), name);
-  if (found == names.end()) throw InputError("found " + inQuotes(name));
+  if (found == names.end()) throw InputError(fmt::format("expected {}, got {}", fmt::join(names, ", "), inQuotes(name)));
   return static_cast<Value>(found - names.begin());
 }
 
@@ -117,8 +117,7 @@ std::vector<ChartResult> readChartJson(const std::string& path, const Chart& now
     const Provenance then = provenanceFromJson(json);
     checkCommitted(then, now.provenance, "chart.json");
     const bool same = sameOrigin(then, now.provenance) && json.at("limits") == limitsJson(now.limits);
-    if (!same)
-      throw InputError("found figures of another build, machine or limits, allowed are those of this run, or --no-resume");
+    if (!same) throw InputError("expected figures of this run, or --no-resume, got those of another build, machine or limits");
     std::vector<ChartResult> results;
     for (const Json& result : json.at("cases")) results.push_back(chartResultFromJson(result));
     return results;

@@ -55,7 +55,7 @@ std::vector<std::string> fieldsOf(const std::string& line) {
 }
 
 InputError withoutColumn(const std::string& path, const char* name) {
-  return InputError(fmt::format("{}: found no column {}", onOneLine(path), inQuotes(name)));
+  return InputError(fmt::format("{}: expected a column {}, got none", onOneLine(path), inQuotes(name)));
 }
 
 // A line of a table, by the names of its columns.
@@ -142,7 +142,7 @@ std::vector<PeerResult> readPeers(const std::string& path, const ChartLimits& li
     const std::vector<std::string> fields = fieldsOf(text);
     if (fields.size() != names.size()) {
       throw InputError(
-          fmt::format("{}:{}: found {} fields, allowed are {}", onOneLine(path), input.number(), fields.size(), names.size()));
+          fmt::format("{}:{}: expected {} fields, got {}", onOneLine(path), input.number(), names.size(), fields.size()));
     }
     const TableLine line(path, column, fields);
     if (line.value("threads") != 1.0) continue;

@@ -32,8 +32,8 @@ std::string offered(const auto& names) {
 double numberFrom(const std::string& text, const Range& range, std::string_view option, bool whole) {
   const std::optional<double> value = parseNumber(text);
   if (value && isInside(*value, range) && (!whole || *value == std::floor(*value))) return *value;
-  throw InputError(fmt::format("{}: found {}, allowed are {}numbers with commas between, {}", option, inQuotes(text),
-                               whole ? "whole " : "", describe(range)));
+  throw InputError(fmt::format("{}: expected {}numbers with commas between, {}, got {}", option, whole ? "whole " : "",
+                               describe(range), inQuotes(text)));
 }
 
 // A list as given, or its default; no value twice.
@@ -85,7 +85,7 @@ std::vector<ProfileScene> scenesOf(const ProfileCommand& command) {
   for (const std::string& name : command.scenes) {
     const auto* const found = std::find(kProfileSceneNames.begin(), kProfileSceneNames.end(), name);
     if (found == kProfileSceneNames.end()) {
-      throw InputError(fmt::format("--scenes: found {}, allowed are {}", inQuotes(name), offered(kProfileSceneNames)));
+      throw InputError(fmt::format("--scenes: expected {}, got {}", offered(kProfileSceneNames), inQuotes(name)));
     }
     const auto scene = static_cast<ProfileScene>(found - kProfileSceneNames.begin());
     if (std::find(scenes.begin(), scenes.end(), scene) == scenes.end()) scenes.push_back(scene);

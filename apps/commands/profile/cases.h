@@ -11,7 +11,7 @@ namespace springtower {
 ProfileLimits limitsOf(const ProfileCommand& command);
 
 /// All combinations of the options, scene by scene; threads vary fastest, so that they share their preparation. Throws InputError
-/// naming the option, what was found and what is allowed.
+/// naming the option, what is expected and what it got.
 std::vector<ProfileCase> casesOf(const ProfileCommand& command);
 
 }  // namespace springtower

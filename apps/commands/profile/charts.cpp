@@ -102,7 +102,7 @@ std::string commonOf(const std::vector<Series>& all) {
 
 std::string costNote(const Profile& profile) {
   return fmt::format(
-      "Frame cost: processor time on one thread, wall time on more; of each of up to {} frames the least of {} samples, then the "
+      "Frame cost: CPU time on one thread, wall time on more; of each of up to {} frames the least of {} samples, then the "
       "median. ",
       profile.limits.frames, profile.limits.samples);
 }
@@ -246,8 +246,7 @@ class Charts {
     if (!powers.empty()) chart.footnote = powers + ". " + chart.footnote;
     chart.references = {{1e3 / kScreenRate_hz, "16.7 ms: a frame at 60 Hz"}};
     const bool peers = std::any_of(chart.lines.begin(), chart.lines.end(), [](const PlotLine& line) { return !line.joined; });
-    if (peers)
-      chart.footnote = "Hollow: Bullet with the steps nearest in depth, so many a frame, processor time. " + chart.footnote;
+    if (peers) chart.footnote = "Hollow: Bullet with the steps nearest in depth, so many a frame, CPU time. " + chart.footnote;
     charts_.emplace_back("stacks_growth", std::move(chart));
   }
 

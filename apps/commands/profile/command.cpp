@@ -36,10 +36,10 @@ constexpr const char* kUnfinished = "profile.unfinished.json";
 
 constexpr std::string_view kProfileExamples =
     R"help(what is timed: the state is kept once the scene has settled; each sample restores it, leaves out one frame and times the
-next ones; samples of all cases of a scene take turns. The frames of every sample are the same, so the least time of each
-frame counts, then their median, 99th percentile and largest. On one thread that is processor time, else wall time.
+next ones; samples of all cases of a scene are interleaved. The frames of every sample are the same, so each frame counts with its minimum
+over the samples, then their median, 99th percentile and largest. On one thread that is CPU time, else wall time.
 
-A run with --out that was broken off goes on where it was.
+An interrupted run with --out resumes where it was.
 
 scenes: rest (settled, awake), sway (gravity sways by 0.1 degree), heights (varying by 0.2 mm), pull (a block at 4 cm/s, all
 awake), pull-sleep (the same with sleep), game (a recorded game on 18 rows, whole, as the viewer plays it, with sleep: a hand
@@ -146,7 +146,7 @@ std::vector<ProfileResult> keptResults(const ProfileCommand& command, const Prof
   checkCommitted(then.provenance, now.provenance, onOneLine(path.string()));
   if (!sameOrigin(then.provenance, now.provenance) || !(then.limits == now.limits)) {
     throw InputError(
-        fmt::format("{}: found figures of another build, machine or limits, allowed are those of this run, or --no-resume",
+        fmt::format("{}: expected figures of this run, or --no-resume, got those of another build, machine or limits",
                     onOneLine(path.string())));
   }
   return std::move(then.results);
@@ -209,16 +209,16 @@ CLI::App* defineProfile(CLI::App& program, ProfileCommand& command) {
        "what to time in scenes `topple`, `hit`, `heaps`, `piles` and `rain`, which it implies: topple:ROWS, towers:TOWERS, "
        "shot:ROWS, heap:BLOCKS, pile:ROWS, rain:BLOCKS (default those that have something to meet, 54 to 3456 blocks)");
   profile->add_option("--inertia", command.inertia, "cuboid (default) or lumped")->type_name("NAME");
-  addWholeNumber(*profile, "--samples", command.samples, kProfileSamplesRange, "of each case, taken by turns (default 5)");
+  addWholeNumber(*profile, "--samples", command.samples, kProfileSamplesRange,
+                 "of each case, interleaved with the others (default 5)");
   addWholeNumber(*profile, "--frames", command.frames, kFramesRange, "timed in a sample (default 120)");
   addNumber(*profile, "--settle", command.settle_s, kLimitRange, "S", "simulated before timing (default 5)");
   addNumber(*profile, "--prepare-limit", command.prepare_s, kLimitRange, "S",
             "wall time after which a scene has settled enough, and as much again for a pull to begin (default 10)");
   addNumber(*profile, "--sample-limit", command.sample_s, kLimitRange, "S",
             "wall time after which a sample ends, with fewer frames (default 1)");
-  addNumber(
-      *profile, "--peer-limit", command.peer_s, kLimitRange, "S",
-      "processor time that Bullet may take for a wall, a pyramid or a fall, where its program is (default 4; 0: it is left out)");
+  addNumber(*profile, "--peer-limit", command.peer_s, kLimitRange, "S",
+            "CPU time that Bullet may take for a wall, a pyramid or a fall, where its program is (default 4; 0: it is left out)");
   CLI::Option* full = profile->add_flag(
       "--full", command.full, "with the largest walls, pyramids and piles (100,012 blocks), and more time for Bullet; minutes");
   profile->add_flag("--quick", command.quick, "fewer cases, shorter samples: seconds instead of minutes")->excludes(full);

@@ -101,7 +101,7 @@ std::string fallFrom(const std::string& text) {
   const auto found = std::find_if(kFallFamilies.begin(), kFallFamilies.end(),
                                   [&](const FallFamily& family) { return family.name == familyNameIn(text); });
   if (found == kFallFamilies.end() || !fallSizeOf(*found, text))
-    throw InputError(fmt::format("--falls: found {}, allowed are {}", inQuotes(text), offeredFalls()));
+    throw InputError(fmt::format("--falls: expected {}, got {}", offeredFalls(), inQuotes(text)));
   return text;
 }
 

@@ -52,7 +52,7 @@ inline constexpr std::size_t kTwoThreadsBlocks = 300;
 /// The falls that are timed when none are named: in a few seconds, in some two minutes, or with the largest as well.
 std::vector<std::string> fallsOf(ProfileScene scene, ProfileExtent extent);
 
-/// A fall as given on the command line, checked. Throws InputError naming `--falls`, what was found and what is allowed.
+/// A fall as given on the command line, checked. Throws InputError naming `--falls`, what is expected and what it got.
 std::string fallFrom(const std::string& text);
 
 /// The blocks of a fall. Precondition: fallFrom has taken it.

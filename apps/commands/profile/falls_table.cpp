@@ -90,10 +90,10 @@ void printFalls(const Profile& profile) {
   const std::vector<NamedRow> falls = rowsOf(profile, isFall);
   if (falls.empty()) return;
   fmt::print(
-      "\nfalls, all blocks awake: ms a frame in the median and in the worst frame but the first (processor time on one thread,\n"
+      "\nfalls, all blocks awake: ms a frame in the median and in the worst frame but the first (CPU time on one thread,\n"
       "else wall time), how many times as fast two threads are (at least {:g} from {} blocks on), required and goal, depth mm\n"
       "(at most 1, goal 0.5), largest rise of energy in a frame of what there was (at most {:g}), memory kB a block (at most "
-      "{:g});\nBullet: steps a frame nearest in depth, processor time of the median and the worst frame, depth, and for how long "
+      "{:g});\nBullet: steps a frame nearest in depth, CPU time of the median and the worst frame, depth, and for how long "
       "it was looked at\n",
       kLeastTwoThreads, kTwoThreadsBlocks, kMaxFallEnergyRise, kMaxFallBytes / kBytesPerKb);
   fmt::print("{:<14}{:>7}{:>10}{:>9}{:>8}  {:>12}  {:>10}{:>9}{:>10}{:>7}  {:<34}  {}\n", "fall", "blocks", "ms median", "worst",

@@ -115,7 +115,8 @@ ProfileResult profileResultFromJson(const Json& json) {
   ProfileResult result;
   const auto scene = json.at("scene").get<std::string>();
   const auto* const found = std::find(kProfileSceneNames.begin(), kProfileSceneNames.end(), scene);
-  if (found == kProfileSceneNames.end()) throw InputError("scene: found " + inQuotes(scene));
+  if (found == kProfileSceneNames.end())
+    throw InputError(fmt::format("scene: expected {}, got {}", fmt::join(kProfileSceneNames, ", "), inQuotes(scene)));
   result.what.scene = static_cast<ProfileScene>(found - kProfileSceneNames.begin());
   json.at("rows").get_to(result.what.rows);
   json.at("towers").get_to(result.what.towers);
@@ -169,7 +170,8 @@ void writeProfileJson(std::ostream& stream, const Profile& profile) {
 Profile readProfileJson(const std::string& path) {
   std::ifstream stream(path, std::ios::binary);
   if (!stream)
-    throw InputError(fmt::format("--from: cannot read {}, allowed is the profile.json of an earlier profile", inQuotes(path)));
+    throw InputError(
+        fmt::format("--from: expected the profile.json of an earlier profile, got {}, which cannot be read", inQuotes(path)));
   try {
     const Json json = Json::parse(stream);
     Profile profile;

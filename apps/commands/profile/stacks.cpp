@@ -99,7 +99,7 @@ std::string stackFrom(const std::string& text) {
   const auto* const family =
       std::find_if(kFamilies.begin(), kFamilies.end(), [&](const StackFamily& one) { return one.name == nameIn(text); });
   if (family == kFamilies.end() || !sizeOf(*family, text))
-    throw InputError(fmt::format("--stacks: found {}, allowed are {}", inQuotes(text), offered()));
+    throw InputError(fmt::format("--stacks: expected {}, got {}", offered(), inQuotes(text)));
   return text;
 }
 

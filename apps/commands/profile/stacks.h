@@ -49,7 +49,7 @@ inline constexpr std::size_t kGrowthLeastBlocks = 240;  ///< smaller stacks are 
 std::vector<std::string> stacksOf(ProfileScene scene, ProfileExtent choice);
 
 /// A stack as given on the command line, checked: the name of a family, a colon and its size. Throws InputError naming
-/// `--stacks`, what was found and what is allowed.
+/// `--stacks`, what is expected and what it got.
 std::string stackFrom(const std::string& text);
 
 /// The blocks of a stack. Precondition: stackFrom has taken it.

@@ -127,10 +127,10 @@ void printStacks(const Profile& profile) {
   if (rows.empty()) return;
   const std::vector<int> threads = threadsOf(rows);
   fmt::print(
-      "\nwalls and pyramids, at rest and awake: ms a frame (wall time, its 99th percentile, processor time of all threads; of "
-      "each frame\nthe least of the samples), required and in brackets the goal, judged by processor time on one thread and by "
-      "wall time on more;\ndepth mm (at most the tolerance), creep mm a minute (at most {:g}), equilibrium: s of processor time "
-      "(what is allowed);\nBullet: steps a frame nearest in depth, processor time, depth, and for how long it was looked at\n",
+      "\nwalls and pyramids, at rest and awake: ms a frame (wall time, its 99th percentile, CPU time of all threads; of "
+      "each frame\nthe minimum over the samples), required and in brackets the goal, judged by CPU time on one thread and by "
+      "wall time on more;\ndepth mm (at most the tolerance), creep mm a minute (at most {:g}), equilibrium: s of CPU time "
+      "(what is allowed);\nBullet: steps a frame nearest in depth, CPU time, depth, and for how long it was simulated\n",
       kMaxStackCreepPerMinute_mm);
   fmt::print("{:<14}{:>7}", "stack", "blocks");
   for (const int count : threads) fmt::print("  {:>8}{:>8}{:>8}", fmt::format("{} thr.", count), "p99", "cpu");

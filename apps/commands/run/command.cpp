@@ -50,8 +50,8 @@ Gravity withOptions(Gravity gravity, const RunCommand& command) {
   const std::optional<double> degrees = parseNumber(sway.substr(0, colon));
   const std::optional<double> hertz = colon == std::string::npos ? std::nullopt : parseNumber(sway.substr(colon + 1));
   if (!degrees || !hertz || !isInside(*degrees, kTiltRange) || !isInside(*hertz, kFrequencyRange)) {
-    throw InputError(fmt::format("--gravity-sway: found {}, allowed is DEG:HZ, {} and {}, such as 0.1:1", inQuotes(sway),
-                                 describe(kTiltRange), describe(kFrequencyRange)));
+    throw InputError(fmt::format("--gravity-sway: expected DEG:HZ, {} and {}, such as 0.1:1, got {}", describe(kTiltRange),
+                                 describe(kFrequencyRange), inQuotes(sway)));
   }
   gravity.sway_deg = *degrees;
   gravity.sway_hz = *hertz;
@@ -71,13 +71,12 @@ void checkNames(std::initializer_list<std::pair<std::string_view, const std::opt
       const std::string& nameOfA = **a->second;
       const std::string& nameOfB = **b->second;
       if (nameOfA == nameOfB) {
-        throw InputError(
-            fmt::format("{} and {}: found {} for both, allowed are two names", b->first, a->first, inQuotes(nameOfA)));
+        throw InputError(fmt::format("{} and {}: expected two names, got {} for both", b->first, a->first, inQuotes(nameOfA)));
       }
       if (nameOfA != nameOfB + ".partial" && nameOfB != nameOfA + ".partial") continue;
       throw InputError(
-          fmt::format("{} and {}: found {} and {}, allowed are two names of which none is the other with .partial, "
-                      "where that file is written until it is whole",
+          fmt::format("{} and {}: expected two names of which none is the other with .partial, where that file is "
+                      "written until it is whole, got {} and {}",
                       b->first, a->first, inQuotes(nameOfB), inQuotes(nameOfA)));
     }
   }
@@ -118,7 +117,7 @@ void addResume(CLI::App& run, std::optional<std::string>& file) {
 // A run to go on with, if one is named. Throws InputError for a command line without any scene.
 std::optional<SavedRun> savedRunOf(const RunCommand& command) {
   if (!command.resume) {
-    if (command.scene.empty()) throw InputError("run: found no SCENE and no --resume, allowed is one of them");
+    if (command.scene.empty()) throw InputError("run: expected SCENE or --resume, got neither");
     return std::nullopt;
   }
   LoadedRun loaded = readRun(*command.resume, fmt::format("--resume {}", inQuotes(*command.resume)));
@@ -183,7 +182,7 @@ Scene sceneOf(const RunCommand& command) {
 
 int executeRun(const RunCommand& command) {
   if (command.picture && !command.picture->ends_with(".png")) {
-    throw InputError(fmt::format("--picture: found {}, allowed is a name that ends with .png", inQuotes(*command.picture)));
+    throw InputError(fmt::format("--picture: expected a name that ends with .png, got {}", inQuotes(*command.picture)));
   }
   checkNames(
       {{"--report", &command.report}, {"--poses", &command.poses}, {"--picture", &command.picture}, {"--save", &command.save}});

@@ -199,7 +199,7 @@ void printResult(const Simulation& simulation, const RunResult& result, int thre
   row("simulated",
       fmt::format("{:.4g} s in {:.3g} s, {} thread{}", result.simulated_s, result.wall_s, threads, threads == 1 ? "" : "s"));
   if (result.interrupted) row("interrupted", "yes, by a signal: all figures are of the time until then");
-  row("frame, processor time", fmt::format("{:.3g} ms median", times.cpuMedian));
+  row("frame, CPU time", fmt::format("{:.3g} ms median", times.cpuMedian));
   row("frame, wall time",
       fmt::format("{:.3g} ms median, {:.3g} ms 99th percentile, {:.3g} ms longest", times.median, times.p99, times.max));
   row("state", fmt::format("{:016x}", result.stateHash));

@@ -14,8 +14,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::string_view kSettingsHelp =
-    R"help(A scene file sets these in its [settings]; README says what a scene file looks like. A key that was called otherwise formerly
-may be given by that name. With --all follow the numbers that no scene sets: thresholds, caps and safety factors of the engine,
+    R"help(A scene file sets these in its [settings]; docs/scenes.md says what a scene file looks like. A renamed key may be
+given by its former name. With --all follow the numbers that no scene sets: thresholds, caps and safety factors of the engine,
 each with what it is for and what it rests on. Lengths are in h, the height of the scene's lowest block, speeds in sqrt(g h),
 times in sqrt(h / g).
 

@@ -52,7 +52,7 @@ examples:
 std::pair<std::string, std::string> splitPull(const std::string& text) {
   const std::size_t comma = text.find(',');
   if (comma == std::string::npos) {
-    throw InputError(fmt::format("--pull: found {}, allowed is BLOCK,AXIS, such as 4:2,+x", inQuotes(text)));
+    throw InputError(fmt::format("--pull: expected BLOCK,AXIS, such as 4:2,+x, got {}", inQuotes(text)));
   }
   return {text.substr(0, comma), text.substr(comma + 1)};
 }
@@ -62,7 +62,7 @@ Vec3 axisNamed(const std::string& text) {
   const bool isSigned = text.size() == 2 && (text[0] == '+' || text[0] == '-');
   const std::size_t axis = text.empty() || (text.size() > 1 && !isSigned) ? std::string_view::npos : kNames.find(text.back());
   if (axis == std::string_view::npos) {
-    throw InputError(fmt::format("--pull: found the axis {}, allowed is +x, -x, +y, -y, +z or -z", inQuotes(text)));
+    throw InputError(fmt::format("--pull: expected the axis +x, -x, +y, -y, +z or -z, got {}", inQuotes(text)));
   }
   Vec3 direction = Vec3::Zero();
   direction[static_cast<Eigen::Index>(axis)] = text[0] == '-' ? -1.0 : 1.0;
@@ -82,15 +82,15 @@ Scene sceneOf(const StaticsCommand& command) {
   for (const std::string& name : command.remove) {
     const std::size_t block = index(blockNamed(scene, name, "--remove"));
     if (std::find(gone.begin(), gone.end(), block) != gone.end()) {
-      throw InputError(fmt::format("--remove: found {} twice, allowed is once", inQuotes(name)));
+      throw InputError(fmt::format("--remove: expected each block once, got {} twice", inQuotes(name)));
     }
     gone.push_back(block);
   }
   std::sort(gone.rbegin(), gone.rend());
   for (const std::size_t block : gone) removeBlock(scene, block);
   if (scene.blocks.empty() || scene.blocks.size() > kMaxStaticBlocks) {
-    throw InputError(fmt::format("{}: found {} blocks, allowed for statics are 1 to {}", onOneLine(command.scene),
-                                 scene.blocks.size(), kMaxStaticBlocks));
+    throw InputError(fmt::format("{}: expected 1 to {} blocks for statics, got {}", onOneLine(command.scene), kMaxStaticBlocks,
+                                 scene.blocks.size()));
   }
   return scene;
 }
@@ -147,7 +147,7 @@ void checkListOptions(const StaticsCommand& command) {
                                                      {command.contacts, "--contacts"},
                                                      {command.report.has_value(), "--report"}};
   for (const auto& [isGiven, name] : given) {
-    if (isGiven) throw InputError(fmt::format("{}: found it with a list of towers, allowed for one scene only", name));
+    if (isGiven) throw InputError(fmt::format("{}: expected with one scene only, got it with a list of towers", name));
   }
 }
 
@@ -210,9 +210,9 @@ BlockId blockNamed(const Scene& scene, const std::string& text, const std::strin
     }
   }
   throw InputError(
-      fmt::format("{}: found {}, allowed is ROW:POSITION of a block that is there (rows from 0, positions from 1), or "
-                  "a block's number, 0 to {}",
-                  option, inQuotes(text), scene.blocks.size() - 1));
+      fmt::format("{}: expected ROW:POSITION of a block that is there (rows from 0, positions from 1), or a block's "
+                  "number, 0 to {}, got {}",
+                  option, scene.blocks.size() - 1, inQuotes(text)));
 }
 
 int executeStatics(const StaticsCommand& command) {
@@ -222,11 +222,10 @@ int executeStatics(const StaticsCommand& command) {
     return executeStaticsList(command.scene, command.check, command.keepGoing, threads);
   }
   if (command.check) {
-    throw InputError(fmt::format("--check: found the scene {}, allowed is a list, FILE.jsonl or -", inQuotes(command.scene)));
+    throw InputError(fmt::format("--check: expected a list, FILE.jsonl or -, got the scene {}", inQuotes(command.scene)));
   }
   if (command.keepGoing) {
-    throw InputError(
-        fmt::format("--keep-going: found the scene {}, allowed is a list, FILE.jsonl or -", inQuotes(command.scene)));
+    throw InputError(fmt::format("--keep-going: expected a list, FILE.jsonl or -, got the scene {}", inQuotes(command.scene)));
   }
   const Scene scene = sceneOf(command);
   const auto report = command.report ? std::make_unique<OutputFile>(*command.report, "--report") : nullptr;

@@ -37,7 +37,7 @@ struct StaticsCommand {
 CLI::App* defineStatics(CLI::App& program, StaticsCommand& command);
 
 /// The block that a text names: ROW:POSITION of a tower (rows from 0, positions from 1), or its number, counted from 0. Throws
-/// InputError naming `option`, what was found and what is allowed.
+/// InputError naming `option`, what is expected and what it got.
 BlockId blockNamed(const Scene& scene, const std::string& text, const std::string& option);
 
 /// Solves the equilibrium of a scene and prints a table, or that of all towers of a list, in parallel, and prints one JSON object

@@ -49,8 +49,8 @@ struct StaticsLine {
 };
 
 [[noreturn]] void fail(const std::string& where, const Json& found, std::string_view allowed) {
-  throw InputError(fmt::format("{}: found {}, allowed is {}", where,
-                               inQuotes(found.dump(-1, ' ', true, Json::error_handler_t::replace)), allowed));
+  throw InputError(fmt::format("{}: expected {}, got {}", where, allowed,
+                               inQuotes(found.dump(-1, ' ', true, Json::error_handler_t::replace))));
 }
 
 Sequence readSequence(const Json& remove, const Json& expected, const Scene& scene, const std::string& where) {
@@ -82,7 +82,8 @@ std::pair<VerdictLine, std::optional<Sequence>> readLine(std::string text, std::
   if (!json.is_object() || (!json.contains("remove") && !json.contains("stands_after"))) {
     return {readVerdictLine(text, number, where, ids), std::nullopt};
   }
-  if (!json.contains("remove")) throw InputError(where + ": found stands_after without remove, allowed is both");
+  if (!json.contains("remove"))
+    throw InputError(where + ": expected both remove and stands_after, got stands_after without remove");
   const Json remove = json.at("remove");
   const Json after = json.contains("stands_after") ? json.at("stands_after") : Json(nullptr);
   json.erase("remove");
@@ -212,7 +213,7 @@ int executeStaticsList(const std::string& file, bool check, bool keepGoing, int 
   const bool judged = std::any_of(lines.begin(), lines.end(),
                                   [](const StaticsLine& line) { return line.clear.has_value() || !line.sequence.empty(); });
   if (check && !judged && !counts.interrupted) {
-    throw InputError("--check: found no line with a clear expectation or stands_after, allowed is at least one");
+    throw InputError("--check: expected at least one line with a clear expectation or stands_after, got none");
   }
   return exitCodeOf(counts, check && !printAgreement(lines) ? 1 : 0);
 }

@@ -36,7 +36,7 @@ std::vector<ValidationPart> partsOf(const ValidateCommand& command) {
   for (const std::string& name : command.only) {
     const bool known = std::any_of(validationParts().begin(), validationParts().end(),
                                    [&](const ValidationPart& part) { return part.name == name; });
-    if (!known) throw InputError(fmt::format("--only: found {}, allowed are {}", inQuotes(name), names));
+    if (!known) throw InputError(fmt::format("--only: expected {}, got {}", names, inQuotes(name)));
   }
   std::vector<ValidationPart> parts;
   for (const ValidationPart& part : validationParts()) {
@@ -58,10 +58,10 @@ void print(const ValidationSection& section, bool isKept) {
 
 void checkFolders(const ValidationPlan& plan) {
   if (!std::filesystem::is_regular_file(std::filesystem::path(plan.oracle) / "shift.jsonl")) {
-    throw InputError(fmt::format("--oracle: found {}, allowed is the folder that holds shift.jsonl", inQuotes(plan.oracle)));
+    throw InputError(fmt::format("--oracle: expected the folder that holds shift.jsonl, got {}", inQuotes(plan.oracle)));
   }
   if (!std::filesystem::is_regular_file(std::filesystem::path(plan.scenes) / "moves.toml")) {
-    throw InputError(fmt::format("--scenes: found {}, allowed is the folder that holds moves.toml", inQuotes(plan.scenes)));
+    throw InputError(fmt::format("--scenes: expected the folder that holds moves.toml, got {}", inQuotes(plan.scenes)));
   }
 }
 
@@ -101,7 +101,7 @@ const std::vector<ValidationPart>& validationParts() {
 
 CLI::App* defineValidate(CLI::App& program, ValidateCommand& command) {
   CLI::App* validate =
-      program.add_subcommand("validate", "holds the simulation against statics and closed forms, claim by claim");
+      program.add_subcommand("validate", "compares the simulation with statics and closed forms, claim by claim");
   validate->add_option("--out", command.out, "writes validation.md, validation.json and the figures into this folder")
       ->type_name("DIR")
       ->required();

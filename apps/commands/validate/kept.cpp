@@ -89,8 +89,8 @@ std::vector<KeptPart> readKeptParts(const std::string& path, const ValidationPla
     checkCommitted(then, provenance, onOneLine(path));
     if (!sameOrigin(then, provenance) || json.at("long_form") != plan.longForm || json.at("inputs") != hashOfInputs(plan)) {
       throw InputError(
-          fmt::format("{}: found results of another build, machine, form or other reference sets, allowed are those of this run, "
-                      "or --no-resume",
+          fmt::format("{}: expected results of this run, or --no-resume, got those of another build, machine, form or other "
+                      "reference sets",
                       onOneLine(path)));
     }
     std::vector<KeptPart> parts;
@@ -98,7 +98,7 @@ std::vector<KeptPart> readKeptParts(const std::string& path, const ValidationPla
     return parts;
   } catch (const Json::exception& error) {
     throw InputError(
-        fmt::format("{}: not what a broken-off validation of this version leaves, allowed is that, or --no-resume: {}",
+        fmt::format("{}: expected what a broken-off validation of this version leaves, or --no-resume, got other content: {}",
                     onOneLine(path), onOneLine(error.what())));
   }
 }

@@ -23,8 +23,8 @@ void checkPlaces(const Removals& removals, const std::string& where) {
       return block.row == place.row && block.position == place.position;
     });
     if (taken == left.end()) {
-      throw InputError(fmt::format("{}: remove: found row {}, position {}, allowed are places where a block is left", where,
-                                   place.row, place.position));
+      throw InputError(fmt::format("{}: remove: expected places where a block is left, got row {}, position {}", where, place.row,
+                                   place.position));
     }
     left.erase(taken);
   }
@@ -43,8 +43,8 @@ Removals removalsOf(const std::string& text, const std::string& where) {
     removals.removed.push_back({place.wholeNumber("row", 0, kMaxRows - 1), place.wholeNumber("position", 1, 3)});
   }
   if (removals.standsAfter.size() != removals.removed.size() + 1) {
-    throw InputError(fmt::format("{}: stands_after: found {} verdicts, allowed are {}: one, and one more for each removal", where,
-                                 removals.standsAfter.size(), removals.removed.size() + 1));
+    throw InputError(fmt::format("{}: stands_after: expected {} verdicts, one and one more for each removal, got {}", where,
+                                 removals.removed.size() + 1, removals.standsAfter.size()));
   }
   checkPlaces(removals, where);
   return removals;

@@ -7,7 +7,7 @@ const std::vector<Requirement>& reportRequirements() {
   static const std::vector<Requirement> requirements = {
       {"1.1", "A player should be able to remove a block from the tower.",
        "`ViewerWindow.APlayerDrawsTheLooseBlockAndLaysItOnTop` (mouse and wheel in a real window), "
-       "`ViewerGame.DrawingPlacingAndUndoing`; Sleep above (a block drawn out at 4 cm/s)"},
+       "`ViewerGame.DrawingPlacingAndUndoing`; Sleep above (a block pulled out at 4 cm/s)"},
       {"1.2", "A player should be able to place a block back on top of the tower.",
        "Moves above; `ViewerWindow.APlayerDrawsTheLooseBlockAndLaysItOnTop`, `ViewerGame.DrawingPlacingAndUndoing`"},
       {"1.3", "Input should be analogue to simulate a player's movement in the real game.",

@@ -154,7 +154,7 @@ void claimDrawnOut(const SleepPull& what, ValidationSection& section) {
   };
   const auto expected = [&](const DrawnOut& of) { return what.stands ? of.freed && of.stands : !of.stands; };
   section.claims.push_back(
-      {what.name + ": drawn out", what.stands ? "free within 8 s, the tower stands, both ways" : "falls, both ways",
+      {what.name + ": pulled out", what.stands ? "free within 8 s, the tower stands, both ways" : "falls, both ways",
        fmt::format("{}; with nothing asleep {}", words(drawn), words(what.awake)), expected(drawn) && expected(what.awake)});
 }
 
@@ -163,7 +163,7 @@ void claimDrawnOut(const SleepPull& what, ValidationSection& section) {
 ValidationSection validateSleep(const ValidationPlan& plan) {
   ValidationSection section{
       "Sleep",
-      "A block is drawn out of a sleeping tower at 4 cm/s; awake blocks are counted in every frame from "
+      "A block is pulled out of a sleeping tower at 4 cm/s; awake blocks are counted in every frame from "
       "the first millimetre until nothing touches it any more. Then out of the same tower with nothing "
       "asleep. Where the friction force is about the tipping force of the tower or above (`statics --pull`: 1.46 and "
       "1.54 N in row 45 of 54, 2.54 and 1.82 N in row 38) a slow pull tips it over, and it has to tip over asleep "
@@ -176,7 +176,7 @@ ValidationSection validateSleep(const ValidationPlan& plan) {
     });
   });
   Plot plot;
-  plot.title = "Awake blocks while one is drawn out of a sleeping tower";
+  plot.title = "Awake blocks while one is pulled out of a sleeping tower";
   plot.subtitle = "4 cm/s, from the first millimetre until nothing touches it";
   plot.x.title = "frame";
   plot.y.title = "awake blocks";

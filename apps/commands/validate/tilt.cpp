@@ -69,7 +69,7 @@ int rowsOf(const Scene& scene) {
 std::vector<Tilted> tiltedScenes(const ValidationPlan& plan, std::size_t count) {
   const std::string path = plan.oracle + "/shift.jsonl";
   std::ifstream file(path);
-  if (!file) throw InputError(fmt::format("--oracle: found no file {}, allowed is the folder of the reference sets", path));
+  if (!file) throw InputError(fmt::format("--oracle: expected the folder of the reference sets, got no file {}", path));
   std::vector<VerdictLine> fit;
   for (VerdictLine& line : readVerdictLines(file, path)) {
     if (rowsOf(line.scene) > kMaxTiltedRows || !isClear(line)) continue;

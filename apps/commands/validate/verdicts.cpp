@@ -129,7 +129,7 @@ void count(const std::string& id, const std::optional<bool>& expected, const std
 std::vector<VerdictLine> linesOf(const ValidationPlan& plan, const OracleSet& set) {
   const std::string path = fmt::format("{}/{}.jsonl", plan.oracle, set.name);
   std::ifstream file(path);
-  if (!file) throw InputError(fmt::format("--oracle: found no file {}, allowed is the folder of the reference sets", path));
+  if (!file) throw InputError(fmt::format("--oracle: expected the folder of the reference sets, got no file {}", path));
   std::vector<VerdictLine> all = readVerdictLines(file, path);
   if (plan.longForm) return all;
   std::vector<VerdictLine> part;

@@ -24,16 +24,15 @@ class ParseCheck {
   void see(int depth, Json::parse_event_t event, const Json& parsed) {
     const bool opens = event == Json::parse_event_t::object_start || event == Json::parse_event_t::array_start;
     if (opens && depth == kMaxNesting) {
-      throw InputError(
-          fmt::format("{}: found nesting deeper than {} levels, allowed are at most {}", place(), kMaxNesting, kMaxNesting));
+      throw InputError(fmt::format("{}: expected at most {} levels of nesting, got more", place(), kMaxNesting));
     }
     if (event == Json::parse_event_t::object_start) keys_.emplace_back();
     if (event == Json::parse_event_t::object_end) keys_.pop_back();
     if (event != Json::parse_event_t::key) return;
     const auto& key = parsed.get_ref<const std::string&>();
     if (!keys_.back().insert(key).second) {
-      throw InputError(fmt::format("{}: found the key {} for the second time, allowed is once",
-                                   keys_.size() == 1 ? where_ : place(), inQuotes(key)));
+      throw InputError(fmt::format("{}: expected each key once, got {} for the second time", keys_.size() == 1 ? where_ : place(),
+                                   inQuotes(key)));
     }
     if (keys_.size() == 1) outermost_ = key;
   }
@@ -62,7 +61,7 @@ Json parseVerdictLine(const std::string& text, const std::string& where) {
       return true;
     });
   } catch (const Json::exception&) {
-    throw InputError(fmt::format("{}: found {}, allowed is a JSON object", where, inQuotes(text)));
+    throw InputError(fmt::format("{}: expected a JSON object, got {}", where, inQuotes(text)));
   }
 }
 

@@ -24,7 +24,7 @@ JsonObject::JsonObject(const Json& json, std::string where, std::initializer_lis
     if (std::find(keys.begin(), keys.end(), key) != keys.end()) continue;
     std::string allowed;
     for (const std::string_view name : keys) allowed += fmt::format("{}{}", allowed.empty() ? "" : ", ", name);
-    throw InputError(fmt::format("{}: found the unknown key {}, allowed are {}", where_, inQuotes(key), allowed));
+    throw InputError(fmt::format("{}: expected {}, got the unknown key {}", where_, allowed, inQuotes(key)));
   }
 }
 
@@ -37,14 +37,15 @@ std::string JsonObject::text(const char* key) const {
 double JsonObject::number(const char* key, const Range& range, std::optional<double> otherwise) const {
   if (otherwise && !has(key)) return *otherwise;
   const Json& value = required(key);
-  if (!value.is_number() || !isInside(value.get<double>(), range)) fail(key, shownValue(value), "a number, " + describe(range));
+  if (!value.is_number() || !isInside(value.get<double>(), range))
+    fail(key, shownValue(value), "a number from " + describe(range));
   return value.get<double>();
 }
 
 int JsonObject::wholeNumber(const char* key, int least, int most) const {
   const Json& value = required(key);
   if (!value.is_number_integer() || value.get<double>() < least || value.get<double>() > most) {
-    fail(key, shownValue(value), fmt::format("a whole number, {} to {}", least, most));
+    fail(key, shownValue(value), fmt::format("a whole number from {} to {}", least, most));
   }
   return value.get<int>();
 }
@@ -73,7 +74,7 @@ const Json& JsonObject::required(const char* key) const {
 }
 
 void JsonObject::fail(std::string_view key, std::string_view found, std::string_view allowed) const {
-  throw InputError(fmt::format("{}{}{}: found {}, allowed is {}", where_, key.empty() ? "" : ": ", key, found, allowed));
+  throw InputError(fmt::format("{}{}{}: expected {}, got {}", where_, key.empty() ? "" : ": ", key, allowed, found));
 }
 
 }  // namespace springtower

@@ -12,7 +12,7 @@
 namespace springtower {
 
 /// A JSON object of a line, read key by key. What is wrong with a value is thrown as an InputError of the line and the key, with
-/// what was found and what is allowed. Refers to the JSON, which must outlive it.
+/// what is expected and what it got. Refers to the JSON, which must outlive it.
 class JsonObject {
  public:
   /// Throws InputError where `json` is no object or has a key that is not among `keys`. `where` begins all messages.

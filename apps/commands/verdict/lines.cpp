@@ -65,7 +65,7 @@ VerdictLine readVerdictLine(const std::string& text, std::size_t number, const s
   VerdictLine line = readLine(parseVerdictLine(text, where), where);
   line.number = number;
   if (!ids.insert(line.id).second) {
-    throw InputError(fmt::format("{}: id: found {} for the second time, allowed is once", where, inQuotes(line.id)));
+    throw InputError(fmt::format("{}: id: expected each one once, got {} for the second time", where, inQuotes(line.id)));
   }
   return line;
 }

@@ -180,7 +180,7 @@ int executeVerdict(const VerdictCommand& command) {
   const bool anyClear =
       std::any_of(judged.begin(), judged.end(), [](const JudgedLine& line) { return line.expected.has_value(); });
   if (command.check && !anyClear && !counts.interrupted) {
-    throw InputError("--check: found no line with a clear expectation, allowed is at least one");
+    throw InputError("--check: expected at least one line with a clear expectation, got none");
   }
   if (command.check && !printVerdictAgreement(judged)) exitCode = 1;
   for (const JudgedLine& line : judged) {

@@ -34,7 +34,7 @@ struct VerdictLine {
 };
 
 /// Reads one line, a JSON object. `ids` are those of the lines before, to which its own is added. `where` begins messages. Throws
-/// InputError saying what was found and what is allowed: broken JSON, unknown or missing keys, keys that appear twice in an
+/// InputError saying what is expected and what it got: broken JSON, unknown or missing keys, keys that appear twice in an
 /// object, values of a wrong type or outside their range, bit codes with a typo, ids that appear twice.
 VerdictLine readVerdictLine(const std::string& text, std::size_t number, const std::string& where, std::set<std::string>& ids);
 

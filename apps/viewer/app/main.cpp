@@ -81,7 +81,7 @@ void define(CLI::App& app, Command& c) {
   addNumber(app, "--start-gap", c.startGap_m, kStartGapRange, "METRES", "rows start this far apart and drop");
   addWholeNumber(app, "--seed", c.seed, {0, 9e15, ""}, "of the heights and masses");
   app.add_option("--method", c.method, "how a frame is stepped, as `springtower run --method`")->type_name("NAME");
-  addNumber(app, "--tolerance", c.tolerance_m, {1e-7, 1e-2, "m"}, "METRES", "no resting penetration above this");
+  addNumber(app, "--tolerance", c.tolerance_m, {1e-7, 1e-2, "m"}, "METRES", "target penetration: no resting overlap exceeds it");
   addNumber(app, "--friction", c.friction, kFrictionRange, "MU", "coefficient of friction");
   app.add_flag("--no-sleep", c.noSleep, "simulate blocks at rest like all others");
   addWholeNumber(app, "--threads", c.threads, {1, 1024, ""}, "threads of the simulation");
@@ -128,7 +128,7 @@ Viewport sizeOf(const Command& command) {
   const std::vector<double> numbers = numbersOf(command.size, 'x');
   const auto good = [](double n) { return n >= 16 && n <= 8192 && n == std::floor(n); };
   if (numbers.size() != 2 || !good(numbers[0]) || !good(numbers[1])) {
-    throw InputError(fmt::format("--size: found {}, allowed is WIDTHxHEIGHT, 16 to 8192 each", inQuotes(command.size)));
+    throw InputError(fmt::format("--size: expected WIDTHxHEIGHT, 16 to 8192 each, got {}", inQuotes(command.size)));
   }
   return {static_cast<int>(numbers[0]), static_cast<int>(numbers[1])};
 }
@@ -138,7 +138,7 @@ void placeCamera(const Command& command, Camera& camera) {
   const std::vector<double> numbers = numbersOf(*command.camera, ':');
   if (numbers.size() != 3 || numbers[2] < 0.05 || numbers[2] > 20.0) {
     throw InputError(
-        fmt::format("--camera: found {}, allowed is AZIMUTH:ELEVATION:DISTANCE, 0.05 to 20 m", inQuotes(*command.camera)));
+        fmt::format("--camera: expected AZIMUTH:ELEVATION:DISTANCE, 0.05 to 20 m, got {}", inQuotes(*command.camera)));
   }
   constexpr double kRadians = std::numbers::pi / 180.0;
   camera.azimuth = camera.elevation = 0.0;
@@ -171,7 +171,7 @@ Mode modeOf(const Command& command) {
   if (!command.mode) return command.noPanels || command.headless ? Mode::bare : command.replay ? Mode::replay : Mode::play;
   const auto* found = std::find(kModeNames.begin(), kModeNames.end(), *command.mode);
   if (found == kModeNames.end())
-    throw InputError(fmt::format("--mode: found {}, allowed play, lab, replay or bare", inQuotes(*command.mode)));
+    throw InputError(fmt::format("--mode: expected play, lab, replay or bare, got {}", inQuotes(*command.mode)));
   return static_cast<Mode>(found - kModeNames.begin());
 }
 
@@ -261,7 +261,7 @@ void play(const Command& command, Viewer& viewer, const ViewerFiles& files, cons
 int runViewer(const Command& command, std::chrono::steady_clock::time_point started) {
   const Viewport size = sizeOf(command);
   if (!command.headless && (command.frames || command.png || command.every || command.mouse)) {
-    throw InputError("--frames, --png, --png-every and --mouse: allowed only with --headless");
+    throw InputError("--frames, --png, --png-every and --mouse: expected only with --headless, got one without");
   }
   const auto threads = static_cast<std::size_t>(command.threads.value_or(threadCount({})));
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
@@ -296,7 +296,7 @@ int runViewer(const Command& command, std::chrono::steady_clock::time_point star
 }
 
 int run(int argc, char** argv, std::chrono::steady_clock::time_point started) {
-  CLI::App app("Shows towers of spring blocks, and lets a hand play with them.", "springtower-viewer");
+  CLI::App app("Shows stacks of wooden blocks, and the game: pull a block out, lay it on top.", "springtower-viewer");
   app.set_help_flag("-h,--help", "prints this help");
   app.set_version_flag("--version", fmt::format("springtower-viewer {} ({}, {})", kVersion, kGitCommit, kBuildType),
                        "prints the version");

@@ -35,14 +35,14 @@ std::vector<MouseStep> readMouseScript(const std::string& path) {
     const bool ascends = script.empty() || script.back().picture <= step.picture;
     if (!good || name == kActNames.end() || !rest.empty() || !ascends) {
       throw InputError(
-          fmt::format("{}, line {}: found {}, allowed is PICTURE X Y and press, release, hints, skip or nothing, the "
-                      "pictures ascending",
+          fmt::format("{}, line {}: expected PICTURE X Y and press, release, hints, skip or nothing, the pictures "
+                      "ascending, got {}",
                       path, number, inQuotes(line)));
     }
     step.act = static_cast<MouseAct>(name - kActNames.begin());
     script.push_back(step);
   }
-  if (script.empty()) throw InputError(fmt::format("{}: found no step, allowed is at least one", path));
+  if (script.empty()) throw InputError(fmt::format("{}: expected at least one step, got none", path));
   return script;
 }
 

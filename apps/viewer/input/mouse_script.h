@@ -23,7 +23,7 @@ struct MouseStep {
 
 /// Reads one: a step a line, PICTURE X Y and perhaps press, release (of the left button), hints (shown or not) or skip (the rest
 /// of a fall); the pictures ascend. Empty lines and those that begin with # do not count. Throws InputError naming the file, the
-/// line, what was found and what is allowed.
+/// line, what is expected and what it got.
 std::vector<MouseStep> readMouseScript(const std::string& path);
 
 /// Where the mouse is in a picture: on a straight line between two steps. Precondition: at least one step.

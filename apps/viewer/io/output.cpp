@@ -40,7 +40,7 @@ std::string findProgram(const std::string& name) {
 // The name of a film, where one can be made. Throws InputError.
 const std::string& checkedFilm(const std::string& path) {
   if (!path.ends_with(".mp4") && !path.ends_with(".gif")) {
-    throw InputError(fmt::format("--video: found {}, allowed is a name that ends with .mp4 or .gif", inQuotes(path)));
+    throw InputError(fmt::format("--video: expected a name that ends with .mp4 or .gif, got {}", inQuotes(path)));
   }
   if (findProgram("ffmpeg").empty()) throw InputError("--video: ffmpeg is not installed; apt-get install ffmpeg");
   return path;

@@ -94,7 +94,7 @@ Overlay overlayFromName(std::string_view name) {
     if (kOverlayNames[i] == name) return static_cast<Overlay>(i);
     allowed += fmt::format("{}{}", i == 0 ? "" : i + 1 == kOverlays ? " or " : ", ", kOverlayNames[i]);
   }
-  throw InputError(fmt::format("--overlay: found {}, allowed {}", inQuotes(name), allowed));
+  throw InputError(fmt::format("--overlay: expected {}, got {}", allowed, inQuotes(name)));
 }
 
 Colour colourMap(Overlay overlay, double share) {

@@ -59,7 +59,7 @@ TEST(Chart, MapsTakeMethodsByEitherName) {
 TEST(Chart, RefusesPeersWithoutTheirColumns) {
   const ScratchFolder scratch;
   std::ofstream(scratch.file("peers.csv")) << "engine,rows\nBox,18\n";
-  expectRefusal({"--peers", scratch.file("peers.csv"), "--out", scratch.file("out")}, "no column 'version'");
+  expectRefusal({"--peers", scratch.file("peers.csv"), "--out", scratch.file("out")}, "expected a column 'version', got none");
 }
 
 // A small chart that all tests below read.
@@ -426,10 +426,10 @@ TEST(Chart, RefusesRecordsOfStacksWithoutTheirColumns) {
   const ScratchFolder scratch;
   std::ofstream(scratch.file("peers.csv"))
       << "engine,version,settings,scene,threads,penetration_end_mm\nBox,1,a,cubes:40,1,0.1\n";
-  expectRefusal({"--peers", scratch.file("peers.csv"), "--out", scratch.file("out")}, "no column 'median_ms'");
+  expectRefusal({"--peers", scratch.file("peers.csv"), "--out", scratch.file("out")}, "expected a column 'median_ms', got none");
   std::ofstream(scratch.file("short.csv"))
       << "engine,version,settings,scene,threads,median_ms,penetration_end_mm,verdict\nBox,1,a,cubes:40,1\n";
-  expectRefusal({"--peers", scratch.file("short.csv"), "--out", scratch.file("out")}, "found 5 fields, allowed are 8");
+  expectRefusal({"--peers", scratch.file("short.csv"), "--out", scratch.file("out")}, "expected 8 fields, got 5");
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 // springtower profile of falls, run as a user would.
 #include "tests/support/program.h"
+#include "tests/support/says.h"
 
 #include <filesystem>
 #include <fstream>
@@ -15,7 +16,6 @@ namespace {
 
 using ::testing::Contains;
 using ::testing::ContainsRegex;
-using ::testing::HasSubstr;
 using ::testing::StartsWith;
 using Json = nlohmann::ordered_json;
 
@@ -28,17 +28,17 @@ TEST(ProfileFalls, RefusesWhatItDoesNotKnowAndWritesNothing) {
   const ScratchFolder scratch;
   const std::vector<std::pair<std::string, std::string>> refused = {
       {"castle:3",
-       "--falls: found 'castle:3', allowed are topple:ROWS of 1 to 2000, towers:TOWERS of 1 to 1000, shot:ROWS of 1 to 2000, "
-       "heap:BLOCKS of 1 to 20000, pile:ROWS of 1 to 100, rain:BLOCKS of 1 to 20000"},
-      {"heap", "--falls: found 'heap'"},
-      {"heap:0", "--falls: found 'heap:0'"},
-      {"heap:3x4", "--falls: found 'heap:3x4'"},
-      {"pile:101", "--falls: found 'pile:101'"}};
+       "--falls: expected topple:ROWS of 1 to 2000, towers:TOWERS of 1 to 1000, shot:ROWS of 1 to 2000, "
+       "heap:BLOCKS of 1 to 20000, pile:ROWS of 1 to 100, rain:BLOCKS of 1 to 20000, got 'castle:3'"},
+      {"heap", "--falls: expected ..., got 'heap'"},
+      {"heap:0", "--falls: expected ..., got 'heap:0'"},
+      {"heap:3x4", "--falls: expected ..., got 'heap:3x4'"},
+      {"pile:101", "--falls: expected ..., got 'pile:101'"}};
   for (const auto& [fall, message] : refused) {
     const ProgramResult result = profileFalls({"--falls", fall, "--out", scratch.file("out")});
     EXPECT_EQ(result.exitCode, 2);
     EXPECT_EQ(result.output, "");
-    EXPECT_THAT(result.error, HasSubstr(message));
+    EXPECT_THAT(result.error, says(message));
     EXPECT_FALSE(std::filesystem::exists(scratch.file("out")));
   }
 }

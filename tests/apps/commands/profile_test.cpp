@@ -75,7 +75,7 @@ TEST(Profile, RefusesAnotherFileThanAProfile) {
 TEST(Profile, HelpTeaches) {
   const ProgramResult result = profile({"--help"});
   EXPECT_EQ(result.exitCode, 0);
-  for (const char* word : {"--trace", "pull-sleep", "game (a recorded game", "examples", "ui.perfetto.dev", "processor time"}) {
+  for (const char* word : {"--trace", "pull-sleep", "game (a recorded game", "examples", "ui.perfetto.dev", "CPU time"}) {
     EXPECT_THAT(result.output, HasSubstr(word));
   }
 }

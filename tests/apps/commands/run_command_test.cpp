@@ -1,4 +1,5 @@
 #include "tests/support/program.h"
+#include "tests/support/says.h"
 
 #include <array>
 #include <cmath>
@@ -46,7 +47,7 @@ TEST_P(RefusesTest, InOneLineWithExitCodeTwo) {
   EXPECT_EQ(result.exitCode, 2);
   EXPECT_EQ(result.output, "");
   EXPECT_THAT(result.error, StartsWith("springtower: "));
-  EXPECT_THAT(result.error, HasSubstr(GetParam().message));
+  EXPECT_THAT(result.error, says(GetParam().message));
   // The second line says where to find help.
   EXPECT_THAT(linesOf(result.error), AnyOf(SizeIs(1), SizeIs(2)));
   if (linesOf(result.error).size() == 2) {
@@ -60,19 +61,21 @@ INSTANTIATE_TEST_SUITE_P(
         BadArguments{"NoScene", {}, "SCENE"}, BadArguments{"MissingFile", {"no-such-scene.toml"}, "no-such-scene.toml"},
         BadArguments{"Folder", {"/"}, "folder"}, BadArguments{"TypoInCode", {"(010)-(0120)"}, "character 10"},
         BadArguments{"NoRows", {"tower:0"}, "tower:0"}, BadArguments{"AbsurdRows", {"tower:1000000000"}, "1 to 2000"},
-        BadArguments{"UnknownName", {"castle:3"}, "'castle:3': found no such scene, allowed are tower:ROWS, "},
-        BadArguments{"WrongSize", {"wall:20"}, "wall:COLUMNSxCOURSES: found the size '20'"},
-        BadArguments{"SizeOfNone", {"thrown:2"}, "allowed is the name alone"},
-        BadArguments{"HeightsOfNoTower", {"wall:3x2", "--heights-sigma", "0.0002"}, "for towers only"},
+        BadArguments{"UnknownName", {"castle:3"}, "'castle:3': expected tower:ROWS, ..., got none of them"},
+        BadArguments{"WrongSize", {"wall:20"}, "wall:COLUMNSxCOURSES: expected ..., got the size '20'"},
+        BadArguments{"SizeOfNone", {"thrown:2"}, "thrown: expected the name alone, got the size '2'"},
+        BadArguments{"HeightsOfNoTower",
+                     {"wall:3x2", "--heights-sigma", "0.0002"},
+                     "expected a tower for a variation of heights, got another scene"},
         BadArguments{"RowsNoNumber", {"tower:ten"}, "ten"}, BadArguments{"TwoScenes", {"tower:1", "tower:2"}, "tower:2"},
         BadArguments{"UnknownOption", {"tower:3", "--colour"}, "--colour"},
-        BadArguments{"NoNumber", {"tower:3", "--seconds", "ten"}, "found 'ten'"},
-        BadArguments{"NumberWithMore", {"tower:3", "--seconds", "1s"}, "found '1s'"},
-        BadArguments{"EmptyNumber", {"tower:3", "--seconds", ""}, "found ''"},
-        BadArguments{"NegativeTime", {"tower:3", "--seconds", "-1"}, "found '-1'"},
+        BadArguments{"NoNumber", {"tower:3", "--seconds", "ten"}, "got 'ten'"},
+        BadArguments{"NumberWithMore", {"tower:3", "--seconds", "1s"}, "got '1s'"},
+        BadArguments{"EmptyNumber", {"tower:3", "--seconds", ""}, "got ''"},
+        BadArguments{"NegativeTime", {"tower:3", "--seconds", "-1"}, "got '-1'"},
         BadArguments{"NoTime", {"tower:3", "--seconds", "0"}, "0.001 to"},
-        BadArguments{"EndlessTime", {"tower:3", "--seconds", "inf"}, "found 'inf'"},
-        BadArguments{"OverflowingTime", {"tower:3", "--seconds", "1e999"}, "found '1e999'"},
+        BadArguments{"EndlessTime", {"tower:3", "--seconds", "inf"}, "got 'inf'"},
+        BadArguments{"OverflowingTime", {"tower:3", "--seconds", "1e999"}, "got '1e999'"},
         BadArguments{"MissingTime", {"tower:3", "--seconds"}, "--seconds"},
         BadArguments{"NotANumberSigma", {"tower:3", "--heights-sigma", "nan"}, "0 to 0.003 m"},
         BadArguments{"NegativeSigma", {"tower:3", "--mass-sigma", "-1e-3"}, "--mass-sigma"},

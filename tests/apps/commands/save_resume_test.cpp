@@ -171,14 +171,15 @@ TEST(SaveResumeRun, BadFilesAreNamedAndRefused) {
     expectRefused(result, message);
     EXPECT_THAT(result.error, HasSubstr(bad));
   };
-  expectBad("", "found nothing, allowed is a saved run, as springtower run --save writes it");
-  expectBad("[tower]\nrows = 3\n", "found another kind of file");
+  expectBad("", "expected a saved run, as springtower run --save writes it, got nothing");
+  expectBad("[tower]\nrows = 3\n", "got another kind of file");
   expectBad(bytes.substr(0, bytes.size() / 2), "cut off");
-  expectBad(bytes + "x", "1 bytes behind the end");
+  expectBad(bytes + "x", "expected nothing behind the end, got 1 bytes");
   std::string changed = bytes;
   changed[bytes.size() / 2] = static_cast<char>(changed[bytes.size() / 2] ^ 1);
-  expectBad(changed, "found other bytes than were written");
-  expectRefused(runWith({}, {"--resume", scratch.file("none")}), "found no file that can be read");
+  expectBad(changed, "got other bytes than were written");
+  expectRefused(runWith({}, {"--resume", scratch.file("none")}),
+                "expected a file that springtower has written, got none that can be read");
   expectRefused(runWith({}, {"--resume", scratch.path().string()}), "--resume");
 }
 
@@ -194,8 +195,8 @@ TEST(SaveResumeRun, WhatWouldChangeTheRunIsRefused) {
                                  {"--gravity-tilt", "3"},
                                  {"--prepare-budget", "1"}})
     expectRefused(runWith({"--resume", file}, other), "excludes");
-  expectRefused(runWith({}, {"--seconds", "1"}), "found no SCENE and no --resume");
-  expectRefused(runWith({"(010)"}, {"--save", file, "--report", file}), "found '" + file + "' for both");
+  expectRefused(runWith({}, {"--seconds", "1"}), "expected SCENE or --resume, got neither");
+  expectRefused(runWith({"(010)"}, {"--save", file, "--report", file}), "got '" + file + "' for both");
   expectRefused(runWith({"(010)"}, {"--save", scratch.file("no/such/folder")}), "--save");
 }
 

@@ -1,5 +1,6 @@
 #include "scenarios/registry.h"
 #include "tests/support/program.h"
+#include "tests/support/says.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -40,7 +41,7 @@ TEST(ScenesCommand, ItsNamesAreTakenByTheOtherCommands) {
   EXPECT_EQ(run.exitCode, 0) << run.error;
   const ProgramResult unknown = runProgram("springtower", {"statics", "castle"});
   EXPECT_EQ(unknown.exitCode, 2);
-  EXPECT_THAT(unknown.error, HasSubstr("'castle': found no such scene, allowed are tower:ROWS, "));
+  EXPECT_THAT(unknown.error, says("'castle': expected tower:ROWS, ..., got none of them"));
   EXPECT_THAT(linesOf(unknown.error), SizeIs(1));
 }
 

@@ -1,4 +1,5 @@
 #include "tests/support/program.h"
+#include "tests/support/says.h"
 
 #include <cmath>
 #include <fstream>
@@ -107,7 +108,7 @@ TEST_P(StaticsBadArgumentsTest, AreNamed) {
   const ProgramResult result = statics(GetParam().arguments);
   EXPECT_EQ(result.exitCode, 2);
   EXPECT_EQ(result.output, "");
-  EXPECT_THAT(result.error, HasSubstr(GetParam().message));
+  EXPECT_THAT(result.error, says(GetParam().message));
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -115,16 +116,16 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(BadStaticsArguments{"NoScene", {}, "SCENE is required"},
                       BadStaticsArguments{"Typo", {"(012)"}, "character 4"},
                       BadStaticsArguments{"Friction", {"(010)", "--mu", "-1"}, "--mu"},
-                      BadStaticsArguments{"RemoveAbsent", {"(010)", "--remove", "0:1"}, "--remove: found '0:1'"},
-                      BadStaticsArguments{"RemoveTwice", {"(111)", "--remove", "0:1", "--remove", "0"}, "found '0' twice"},
-                      BadStaticsArguments{"RemoveAll", {"(010)", "--remove", "0"}, "found 0 blocks"},
+                      BadStaticsArguments{"RemoveAbsent", {"(010)", "--remove", "0:1"}, "--remove: expected ..., got '0:1'"},
+                      BadStaticsArguments{"RemoveTwice", {"(111)", "--remove", "0:1", "--remove", "0"}, "got '0' twice"},
                       BadStaticsArguments{
-                          "PullWithoutAxis", {"(010)", "--pull", "0"}, "--pull: found '0', allowed is BLOCK,AXIS"},
-                      BadStaticsArguments{"PullAxis", {"(010)", "--pull", "0,up"}, "found the axis 'up'"},
-                      BadStaticsArguments{"PullBlock", {"(010)", "--pull", "7,x"}, "--pull: found '7'"},
-                      BadStaticsArguments{"TooMany", {"tower:400"}, "found 1200 blocks"},
-                      BadStaticsArguments{"CheckOfAScene", {"(010)", "--check"}, "--check: found the scene"},
-                      BadStaticsArguments{"OptionOfAList", {"-", "--mu", "0.3"}, "--mu: found it with a list"},
+                          "RemoveAll", {"(010)", "--remove", "0"}, "expected 1 to 1000 blocks for statics, got 0"},
+                      BadStaticsArguments{"PullWithoutAxis", {"(010)", "--pull", "0"}, "--pull: expected BLOCK,AXIS..., got '0'"},
+                      BadStaticsArguments{"PullAxis", {"(010)", "--pull", "0,up"}, "expected the axis ..., got 'up'"},
+                      BadStaticsArguments{"PullBlock", {"(010)", "--pull", "7,x"}, "--pull: expected ..., got '7'"},
+                      BadStaticsArguments{"TooMany", {"tower:400"}, "expected 1 to 1000 blocks for statics, got 1200"},
+                      BadStaticsArguments{"CheckOfAScene", {"(010)", "--check"}, "--check: expected ..., got the scene"},
+                      BadStaticsArguments{"OptionOfAList", {"-", "--mu", "0.3"}, "--mu: expected ..., got it with a list"},
                       BadStaticsArguments{"NoFile", {"/does/not/exist.jsonl"}, "cannot be read"},
                       BadStaticsArguments{"Report", {"(010)", "--report", "/does/not/exist.json"}, "--report"}),
     [](const auto& test) { return test.param.name; });
@@ -168,16 +169,17 @@ TEST(StaticsList, CheckComparesVerdictsStatesAndTilts) {
 
 TEST(StaticsList, NamesTheLineThatIsBroken) {
   const auto broken = [](const std::string& line) { return statics({"-"}, "\n" + line + "\n").error; };
-  EXPECT_THAT(broken("not json"), HasSubstr("line 2: found 'not json'"));
-  EXPECT_THAT(broken("{\"id\":\"a\",\"config\":\"(010)\",\"remove\":7}"), HasSubstr("line 2: remove: found '7'"));
+  EXPECT_THAT(broken("not json"), says("line 2: expected ..., got 'not json'"));
+  EXPECT_THAT(broken("{\"id\":\"a\",\"config\":\"(010)\",\"remove\":7}"), says("line 2: remove: expected ..., got '7'"));
   EXPECT_THAT(broken("{\"id\":\"a\",\"config\":\"(010)\",\"remove\":[{\"row\":0,\"position\":1}]}"), HasSubstr("still there"));
-  EXPECT_THAT(broken("{\"id\":\"a\",\"config\":\"(010)\",\"remove\":[],\"stands_after\":[]}"), HasSubstr("stands_after: found"));
+  EXPECT_THAT(broken("{\"id\":\"a\",\"config\":\"(010)\",\"remove\":[],\"stands_after\":[]}"),
+              says("stands_after: expected ..., got "));
   EXPECT_THAT(broken("{\"id\":\"a\",\"config\":\"(010)\",\"stands_after\":[true]}"), HasSubstr("without remove"));
   EXPECT_THAT(broken("{\"id\":\"a\",\"config\":\"(010)\",\"remove\":[],\"remove\":[]}"),
-              HasSubstr("line 2: found the key 'remove' for the second time"));
+              says("line 2: expected each key once, got 'remove' for the second time"));
   EXPECT_THAT(
       broken("{\"id\":\"a\",\"config\":\"(010)\",\"remove\":" + std::string(200000, '[') + std::string(200000, ']') + "}"),
-      HasSubstr("line 2: in 'remove': found nesting deeper than 32 levels"));
+      HasSubstr("line 2: in 'remove': expected at most 32 levels of nesting, got more"));
 }
 
 TEST(StaticsList, ABadLineLeavesItsIdToOthers) {

@@ -146,13 +146,13 @@ TEST(Validate, NamesTheFileAndLineOfABrokenReferenceSet) {
     std::vector<const char*> named;
   };
   const Broken all[] = {
-      {"removal.jsonl", R"j({"id":)j", {"removal.jsonl, line 1", "allowed is a JSON object"}},
+      {"removal.jsonl", R"j({"id":)j", {"removal.jsonl, line 1", "expected a JSON object"}},
       {"removal.jsonl", "\n[]", {"removal.jsonl, line 2", "'[]'"}},
       {"removal.jsonl", R"j({"config":"(111)","remove":[],"stands_after":[true]})j", {"line 1", "id is missing"}},
       {"removal.jsonl", R"j({"id":5,"config":"(111)","remove":[],"stands_after":[true]})j", {"id", "'5'", "a text"}},
       {"removal.jsonl", R"j({"id":"r","config":"(121)","remove":[],"stands_after":[true]})j", {"config", "(121)"}},
       {"removal.jsonl", R"j({"id":"r","config":"(111)","remove":[],"stands_after":["yes"]})j", {"stands_after", "yes"}},
-      {"removal.jsonl", R"j({"id":"r","config":"(111)","remove":[],"stands_after":[]})j", {"stands_after", "found 0", "1"}},
+      {"removal.jsonl", R"j({"id":"r","config":"(111)","remove":[],"stands_after":[]})j", {"stands_after", "got 0", "1"}},
       {"removal.jsonl",
        R"j({"id":"r","config":"(111)","remove":[{"row":0}],"stands_after":[true,true]})j",
        {"remove[0]", "position is missing"}},
@@ -160,8 +160,8 @@ TEST(Validate, NamesTheFileAndLineOfABrokenReferenceSet) {
        R"j({"id":"r","config":"(111)","remove":[{"row":1,"position":1}],"stands_after":[true,true]})j",
        {"remove", "row 1, position 1"}},
       {"removal.jsonl", R"j({"id":"r","config":"(111)","remove":"all","stands_after":[true]})j", {"remove", "a list of objects"}},
-      {"small.jsonl", R"j({"id":)j", {"small.jsonl: line 1", "allowed is a JSON object"}},
-      {"r18.jsonl", "nothing", {"r18.jsonl: line 1", "allowed is a JSON object"}},
+      {"small.jsonl", R"j({"id":)j", {"small.jsonl: line 1", "expected a JSON object"}},
+      {"r18.jsonl", "nothing", {"r18.jsonl: line 1", "expected a JSON object"}},
   };
   for (const Broken& broken : all) {
     const ScratchFolder scratch;

@@ -1,4 +1,5 @@
 #include "tests/support/program.h"
+#include "tests/support/says.h"
 
 #include <fmt/format.h>
 #include <fstream>
@@ -169,54 +170,53 @@ TEST_P(BrokenLineTest, IsNamedByItsNumber) {
   EXPECT_EQ(result.exitCode, 2);
   EXPECT_THAT(objectsOf(result), SizeIs(1)) << "the line before it, and none after";
   EXPECT_THAT(result.error, HasSubstr("standard input: line 3: "));
-  EXPECT_THAT(result.error, HasSubstr(GetParam().message));
+  EXPECT_THAT(result.error, says(GetParam().message));
   EXPECT_THAT(linesOf(result.error), SizeIs(1));
 }
 
 INSTANTIATE_TEST_SUITE_P(
     Verdict, BrokenLineTest,
-    ::testing::Values(BadLine{"NoJson", "not json", "found 'not json'"}, BadLine{"HalfJson", "{\"id\":\"a\"", "JSON object"},
-                      BadLine{"TwoObjects", "{\"id\":\"a\",\"config\":\"(010)\"} {}", "JSON object"},
-                      BadLine{"NoObject", "[1, 2]", "an object"}, BadLine{"NoId", "{\"config\":\"(010)\"}", "id is missing"},
-                      BadLine{"NoConfig", "{\"id\":\"a\"}", "config is missing"},
-                      BadLine{"IdNoText", "{\"id\":7,\"config\":\"(010)\"}", "id: found '7'"},
-                      BadLine{"IdTwice", "{\"id\":\"first\",\"config\":\"(010)\"}", "second time"},
-                      BadLine{"Typo", "{\"id\":\"a\",\"config\":\"(010)-(0120)\"}", "character 10"},
-                      BadLine{"UnknownKey", "{\"id\":\"a\",\"config\":\"(010)\",\"colour\":1}", "unknown key 'colour'"},
-                      BadLine{"Removal", "{\"id\":\"a\",\"config\":\"(010)\",\"remove\":[]}", "unknown key 'remove'"},
-                      BadLine{"NegativeFriction", "{\"id\":\"a\",\"config\":\"(010)\",\"mu\":-0.1}", "mu: found '-0.1'"},
-                      BadLine{"FrictionNoNumber", "{\"id\":\"a\",\"config\":\"(010)\",\"mu\":\"rough\"}", "0 to 10"},
-                      BadLine{"OverflowingFriction", "{\"id\":\"a\",\"config\":\"(010)\",\"mu\":1e999}", "JSON object"},
-                      BadLine{"TiltTooFar", "{\"id\":\"a\",\"config\":\"(010)\",\"gravity_tilt_deg\":999}", "gravity_tilt_deg"},
-                      BadLine{"OffsetsNoList", "{\"id\":\"a\",\"config\":\"(010)\",\"offsets_m\":{}}", "a list"},
-                      BadLine{"OffsetWithoutRow", "{\"id\":\"a\",\"config\":\"(010)\",\"offsets_m\":[{\"position\":2}]}",
-                              "offsets_m[0]: the key row is missing"},
-                      BadLine{"OffsetOfAbsentBlock",
-                              "{\"id\":\"a\",\"config\":\"(010)\",\"offsets_m\":[{\"row\":0,\"position\":1,\"dx\":0.001}]}",
-                              "row 0, position 1"},
-                      BadLine{"PositionNoWholeNumber",
-                              "{\"id\":\"a\",\"config\":\"(010)\",\"offsets_m\":[{\"row\":0,\"position\":1.5}]}", "1 to 3"},
-                      BadLine{"AbsurdlyLow",
-                              "{\"id\":\"a\",\"config\":\"(010)\",\"lower_m\":[{\"row\":0,\"position\":2,\"by\":1}]}",
-                              "lower_m[0]: by"},
-                      BadLine{"LoweredAbsentBlock",
-                              "{\"id\":\"a\",\"config\":\"(010)\",\"lower_m\":[{\"row\":0,\"position\":1}]}",
-                              "line 3: lower_m: (010): loose block at row 0, position 1"},
-                      BadLine{"OffsetIntoItsNeighbour",
-                              "{\"id\":\"a\",\"config\":\"(111)\",\"offsets_m\":[{\"row\":0,\"position\":1,\"dy\":0.01}],"
-                              "\"lower_m\":[{\"row\":0,\"position\":1}]}",
-                              "line 3: offsets_m: (111): block 0 (row 0, position 1) and block 1 (row 0, position 2) start"},
-                      BadLine{"NestedLine", nested("[", "]"), "line 3: found nesting deeper than 32 levels"},
-                      BadLine{"NestedExpectation", "{\"id\":\"a\",\"config\":\"(010)\",\"expect\":" + nested("[", "]") + "}",
-                              "line 3: in 'expect': found nesting deeper than 32 levels, allowed are at most 32"},
-                      BadLine{"NestedObjects", "{\"id\":\"a\",\"config\":\"(010)\",\"expect\":" + nested("{\"a\":", "}") + "}",
-                              "line 3: in 'expect': found nesting"},
-                      BadLine{"KeyTwice", "{\"id\":\"a\",\"config\":\"(010)\",\"mu\":0.1,\"mu\":0.2}",
-                              "line 3: found the key 'mu' for the second time, allowed is once"},
-                      BadLine{"KeyTwiceInAList",
-                              "{\"id\":\"a\",\"config\":\"(010)\",\"offsets_m\":[{\"row\":0,\"position\":2},"
-                              "{\"row\":0,\"position\":2,\"row\":0}]}",
-                              "line 3: in 'offsets_m': found the key 'row' for the second time"}),
+    ::testing::Values(
+        BadLine{"NoJson", "not json", "got 'not json'"}, BadLine{"HalfJson", "{\"id\":\"a\"", "JSON object"},
+        BadLine{"TwoObjects", "{\"id\":\"a\",\"config\":\"(010)\"} {}", "JSON object"},
+        BadLine{"NoObject", "[1, 2]", "an object"}, BadLine{"NoId", "{\"config\":\"(010)\"}", "id is missing"},
+        BadLine{"NoConfig", "{\"id\":\"a\"}", "config is missing"},
+        BadLine{"IdNoText", "{\"id\":7,\"config\":\"(010)\"}", "id: expected ..., got '7'"},
+        BadLine{"IdTwice", "{\"id\":\"first\",\"config\":\"(010)\"}", "second time"},
+        BadLine{"Typo", "{\"id\":\"a\",\"config\":\"(010)-(0120)\"}", "character 10"},
+        BadLine{"UnknownKey", "{\"id\":\"a\",\"config\":\"(010)\",\"colour\":1}", "unknown key 'colour'"},
+        BadLine{"Removal", "{\"id\":\"a\",\"config\":\"(010)\",\"remove\":[]}", "unknown key 'remove'"},
+        BadLine{"NegativeFriction", "{\"id\":\"a\",\"config\":\"(010)\",\"mu\":-0.1}", "mu: expected ..., got '-0.1'"},
+        BadLine{"FrictionNoNumber", "{\"id\":\"a\",\"config\":\"(010)\",\"mu\":\"rough\"}", "0 to 10"},
+        BadLine{"OverflowingFriction", "{\"id\":\"a\",\"config\":\"(010)\",\"mu\":1e999}", "JSON object"},
+        BadLine{"TiltTooFar", "{\"id\":\"a\",\"config\":\"(010)\",\"gravity_tilt_deg\":999}", "gravity_tilt_deg"},
+        BadLine{"OffsetsNoList", "{\"id\":\"a\",\"config\":\"(010)\",\"offsets_m\":{}}", "a list"},
+        BadLine{"OffsetWithoutRow", "{\"id\":\"a\",\"config\":\"(010)\",\"offsets_m\":[{\"position\":2}]}",
+                "offsets_m[0]: the key row is missing"},
+        BadLine{"OffsetOfAbsentBlock",
+                "{\"id\":\"a\",\"config\":\"(010)\",\"offsets_m\":[{\"row\":0,\"position\":1,\"dx\":0.001}]}",
+                "row 0, position 1"},
+        BadLine{"PositionNoWholeNumber", "{\"id\":\"a\",\"config\":\"(010)\",\"offsets_m\":[{\"row\":0,\"position\":1.5}]}",
+                "1 to 3"},
+        BadLine{"AbsurdlyLow", "{\"id\":\"a\",\"config\":\"(010)\",\"lower_m\":[{\"row\":0,\"position\":2,\"by\":1}]}",
+                "lower_m[0]: by"},
+        BadLine{"LoweredAbsentBlock", "{\"id\":\"a\",\"config\":\"(010)\",\"lower_m\":[{\"row\":0,\"position\":1}]}",
+                "line 3: lower_m: (010): loose block at row 0, position 1"},
+        BadLine{"OffsetIntoItsNeighbour",
+                "{\"id\":\"a\",\"config\":\"(111)\",\"offsets_m\":[{\"row\":0,\"position\":1,\"dy\":0.01}],"
+                "\"lower_m\":[{\"row\":0,\"position\":1}]}",
+                "line 3: offsets_m: (111): block 0 (row 0, position 1) and block 1 (row 0, position 2): expected a start"},
+        BadLine{"NestedLine", nested("[", "]"), "line 3: expected at most 32 levels of nesting, got more"},
+        BadLine{"NestedExpectation", "{\"id\":\"a\",\"config\":\"(010)\",\"expect\":" + nested("[", "]") + "}",
+                "line 3: in 'expect': expected at most 32 levels of nesting, got more"},
+        BadLine{"NestedObjects", "{\"id\":\"a\",\"config\":\"(010)\",\"expect\":" + nested("{\"a\":", "}") + "}",
+                "line 3: in 'expect': expected at most 32 levels of nesting, got more"},
+        BadLine{"KeyTwice", "{\"id\":\"a\",\"config\":\"(010)\",\"mu\":0.1,\"mu\":0.2}",
+                "line 3: expected each key once, got 'mu' for the second time"},
+        BadLine{"KeyTwiceInAList",
+                "{\"id\":\"a\",\"config\":\"(010)\",\"offsets_m\":[{\"row\":0,\"position\":2},"
+                "{\"row\":0,\"position\":2,\"row\":0}]}",
+                "line 3: in 'offsets_m': expected each key once, got 'row' for the second time"}),
     [](const auto& tested) { return tested.param.name; });
 
 TEST(Verdict, NeedsAFileThatCanBeRead) {

@@ -1,5 +1,6 @@
 // Signals in the middle of the programs' work: what is done is kept, whole, under its name, and nothing else is left.
 #include "tests/support/running_program.h"
+#include "tests/support/says.h"
 
 #include <algorithm>
 #include <chrono>
@@ -189,7 +190,7 @@ TEST_P(ListOf, TowersStopsAtABadLineWhenThoseBeforeItAreDone) {
     const ProgramResult result = runProgram("springtower", {GetParam(), "-", "--threads", threads}, lines);
     EXPECT_EQ(result.exitCode, 2);
     EXPECT_THAT(linesOf(result.output), SizeIs(2)) << result.output;
-    EXPECT_THAT(result.error, HasSubstr("standard input: line 3: found 'no json'"));
+    EXPECT_THAT(result.error, says("standard input: line 3: expected ..., got 'no json'"));
   }
 }
 
@@ -205,8 +206,8 @@ TEST_P(ListOf, TowersGoesOnAfterBadLinesWhenToldTo) {
     ASSERT_THAT(lines, SizeIs(2)) << result.output;
     EXPECT_EQ(Json::parse(lines[0]).at("id"), "a");
     EXPECT_EQ(Json::parse(lines[1]).at("id"), "d");
-    EXPECT_THAT(result.error, HasSubstr("list.jsonl: line 2: found 'no json'"));
-    EXPECT_THAT(result.error, HasSubstr("list.jsonl: line 4: id: found 'a' for the second time"));
+    EXPECT_THAT(result.error, says("list.jsonl: line 2: expected ..., got 'no json'"));
+    EXPECT_THAT(result.error, says("list.jsonl: line 4: id: expected ..., got 'a' for the second time"));
     EXPECT_THAT(result.error, HasSubstr("2 of 4 lines were bad"));
   }
 }

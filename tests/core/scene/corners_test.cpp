@@ -1,6 +1,7 @@
 #include "core/scene/corners.h"
 
 #include "core/error.h"
+#include "tests/support/says.h"
 
 #include <gmock/gmock.h>
 #include <numbers>
@@ -55,8 +56,8 @@ TEST(Corners, FarFromACuboidAreRefused) {
   EXPECT_NO_THROW(checking(corners)());
   corners[5].z() += 1e-3;
   EXPECT_THAT(checking(corners),
-              ThrowsMessage<InputError>(HasSubstr("mm from that of a cuboid of 0.081 x 0.0267 x 0.0182 m, allowed up "
-                                                  "to 0.2 mm (corners in the order of run --poses)")));
+              ThrowsMessage<InputError>(says("expected up to 0.2 mm from that of a cuboid of 0.081 x 0.0267 x 0.0182 m "
+                                             "(corners in the order of run --poses), got ... mm")));
   corners = cornersOf(turnedBlock());
   std::swap(corners[2], corners[3]);
   EXPECT_THAT(checking(corners), ThrowsMessage<InputError>(HasSubstr("mm from that of a cuboid")));

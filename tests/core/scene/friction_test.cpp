@@ -74,19 +74,20 @@ TEST(FrictionTable, MistakesAreNamed) {
     return std::string("no error");
   };
   const std::string block = "[[block]]\ncentre_m = [0.0, 0.0, 0.0091]\n";
-  EXPECT_THAT(messageOf(block + "friction = -0.1\n"), HasSubstr("block[0].friction: found -0.1, allowed 0 to 10"));
+  EXPECT_THAT(messageOf(block + "friction = -0.1\n"), HasSubstr("block[0].friction: expected 0 to 10, got -0.1"));
   EXPECT_THAT(messageOf(block + "friction = 0.1\nstatic_friction = 0.2\n"),
-              HasSubstr("found friction and static_friction or kinetic_friction, allowed either"));
+              HasSubstr("expected either friction or static_friction with kinetic_friction, got both"));
   EXPECT_THAT(messageOf(block + "static_friction = 0.2\nkinetic_friction = 0.3\n"),
-              HasSubstr("allowed 0 to 0.2 (the static one)"));
+              HasSubstr("expected 0 to 0.2 (the static one)"));
   EXPECT_THAT(messageOf(block + "[[friction_pair]]\na = 0\nb = 1\nfriction = 0.1\n"),
-              HasSubstr("friction_pair[0].b: found 1, allowed a whole number from -1 to 0"));
+              HasSubstr("friction_pair[0].b: expected a whole number from -1 to 0, got 1"));
   EXPECT_THAT(messageOf(block + "[[friction_pair]]\na = 0\nb = 0\nfriction = 0.1\n"),
-              HasSubstr("found block 0 twice, allowed two"));
+              HasSubstr("expected two blocks, got block 0 twice"));
   EXPECT_THAT(
       messageOf(block + "[[friction_pair]]\na = 0\nb = -1\nfriction = 0.1\n[[friction_pair]]\na = -1\nb = 0\nfriction = 0.1\n"),
-      HasSubstr("found two friction pairs of blocks -1 and 0, allowed is one"));
-  EXPECT_THAT(messageOf(block + "[[friction_pair]]\na = 0\nb = -1\n"), HasSubstr("found no friction"));
+      HasSubstr("expected one friction pair of blocks -1 and 0, got two"));
+  EXPECT_THAT(messageOf(block + "[[friction_pair]]\na = 0\nb = -1\n"),
+              HasSubstr("expected friction or static_friction with kinetic_friction, got neither"));
 }
 
 TEST(FrictionTable, PairsFollowTheirBlocksWhenOneIsTakenOut) {

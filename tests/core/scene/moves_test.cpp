@@ -1,6 +1,7 @@
 #include "core/error.h"
 #include "core/scene/scene.h"
 #include "tests/support/program.h"
+#include "tests/support/says.h"
 
 #include <fstream>
 #include <gmock/gmock.h>
@@ -9,7 +10,6 @@
 namespace springtower {
 namespace {
 
-using testing::HasSubstr;
 using testing::ThrowsMessage;
 
 Scene withMoves(const std::string& moves) {
@@ -50,30 +50,32 @@ struct BadMoves {
 class BadMovesTest : public ::testing::TestWithParam<BadMoves> {};
 
 TEST_P(BadMovesTest, AreRefusedInOneLineThatNamesThem) {
-  EXPECT_THAT([] { withMoves(GetParam().moves); }, ThrowsMessage<InputError>(HasSubstr(GetParam().message)));
+  EXPECT_THAT([] { withMoves(GetParam().moves); }, ThrowsMessage<InputError>(says(GetParam().message)));
 }
 
 INSTANTIATE_TEST_SUITE_P(
     Scene, BadMovesTest,
     ::testing::Values(
-        BadMoves{"NoKind", "[[moves]]\nrow = 1\n", "moves[0]: found no do, which is required"},
-        BadMoves{"UnknownKind", "[[moves]]\ndo = \"throw\"\n", "moves[0].do: found 'throw', allowed take, put, put-aside"},
-        BadMoves{"UnknownKey", kTake + "colour = 1\n", "unknown key 'colour' in moves[0], allowed do, row"},
-        BadMoves{"NoDirection", "[[moves]]\ndo = \"take\"\nrow = 1\nposition = 2\n", "found no towards"},
+        BadMoves{"NoKind", "[[moves]]\nrow = 1\n", "moves[0]: expected the key do, got none"},
+        BadMoves{"UnknownKind", "[[moves]]\ndo = \"throw\"\n", "moves[0].do: expected take, put or put-aside, got 'throw'"},
+        BadMoves{"UnknownKey", kTake + "colour = 1\n", "expected do, row, ... in moves[0], got the unknown key 'colour'"},
+        BadMoves{"NoDirection", "[[moves]]\ndo = \"take\"\nrow = 1\nposition = 2\n", "expected the key towards, got none"},
         BadMoves{"Upwards", "[[moves]]\ndo = \"take\"\nrow = 1\nposition = 2\ntowards = \"+z\"\n",
-                 "moves[0].towards: found '+z', allowed +x, -x, +y, -y"},
-        BadMoves{"SpeedOfAPut", kTake + kPut + "speed_m_s = 1\n", "moves[1].speed_m_s: found speed_m_s for put, allowed row"},
-        BadMoves{"TooFast", kTake + "speed_m_s = 3\n", "moves[0].speed_m_s: found 3, allowed 0.001 to 2 m/s"},
-        BadMoves{"TextForANumber", kTake + "force_n = \"much\"\n", "moves[0].force_n: found the text 'much'"},
+                 "moves[0].towards: expected +x, -x, +y or -y, got '+z'"},
+        BadMoves{"SpeedOfAPut", kTake + kPut + "speed_m_s = 1\n", "moves[1].speed_m_s: expected row, ... for put, got speed_m_s"},
+        BadMoves{"TooFast", kTake + "speed_m_s = 3\n", "moves[0].speed_m_s: expected 0.001 to 2 m/s, got 3"},
+        BadMoves{"TextForANumber", kTake + "force_n = \"much\"\n", "moves[0].force_n: expected ..., got the text 'much'"},
         BadMoves{"NobodyThere", "[[moves]]\ndo = \"take\"\nrow = 7\nposition = 2\ntowards = \"+x\"\n",
-                 "moves[0]: found row 7, position 2 without a block"},
-        BadMoves{"TwoInTheHand", kTake + kTake, "moves[1]: found a block to take with another in the hand"},
-        BadMoves{"NothingInTheHand", kPut, "moves[0]: found nothing in the hand to put"},
+                 "moves[0]: expected a place of the tower that has a block, got row 7, position 2 without one"},
+        BadMoves{"TwoInTheHand", kTake + kTake,
+                 "moves[1]: expected put or put-aside before the next take, got take with a block in the hand"},
+        BadMoves{"NothingInTheHand", kPut, "moves[0]: expected take before it, got nothing in the hand to put"},
         BadMoves{"OnABlock", kTake + "[[moves]]\ndo = \"put\"\nrow = 2\nposition = 1\n",
-                 "moves[1]: found row 2, position 1 with a block, allowed a free place on a row"},
+                 "moves[1]: expected a free place on a row, got row 2, position 1 with a block"},
         BadMoves{"InTheAir", kTake + "[[moves]]\ndo = \"put\"\nrow = 5\nposition = 1\n",
-                 "moves[1]: found row 5, position 1 on no row"},
-        BadMoves{"NoFloor", kTake + "[[moves]]\ndo = \"put-aside\"\n[floor]\npresent = false\n", "found no floor"}),
+                 "moves[1]: expected ..., got row 5, position 1 on no row"},
+        BadMoves{"NoFloor", kTake + "[[moves]]\ndo = \"put-aside\"\n[floor]\npresent = false\n",
+                 "expected a floor to put a block on, got none"}),
     [](const auto& bad) { return bad.param.name; });
 
 }  // namespace

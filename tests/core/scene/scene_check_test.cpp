@@ -65,8 +65,9 @@ TEST(StartingPlaces, MayOverlapAsAtRest) {
 }
 
 TEST(StartingPlaces, InsideTheFloorAreNamedWithTheirDepth) {
-  EXPECT_THAT(checking(sceneOf({blockAt({0, 0, kHalfHeight_m}), blockAt({0.2, 0, 0.0081})})),
-              ThrowsMessage<InputError>("test: block 1 starts 1 mm inside the floor z = 0, allowed up to 0.2 mm, as at rest"));
+  EXPECT_THAT(
+      checking(sceneOf({blockAt({0, 0, kHalfHeight_m}), blockAt({0.2, 0, 0.0081})})),
+      ThrowsMessage<InputError>("test: block 1: expected a start up to 0.2 mm inside the floor z = 0, as at rest, got 1 mm"));
   Scene withoutFloor = sceneOf({blockAt({0, 0, -0.5})});
   withoutFloor.floor = false;
   EXPECT_NO_THROW(checkScene(withoutFloor, "test"));
@@ -74,12 +75,12 @@ TEST(StartingPlaces, InsideTheFloorAreNamedWithTheirDepth) {
 
 TEST(StartingPlaces, InsideOneAnotherNameBothBlocksAndTheDepth) {
   const BlockSpec first = blockAt({0, 0, kHalfHeight_m});
-  EXPECT_THAT(
-      checking(sceneOf({blockAt({1, 0, kHalfHeight_m}), first, blockAt({0.0, 0.0, 0.0263}, 90.0)})),
-      ThrowsMessage<InputError>("test: block 1 and block 2 start 1 mm inside each other, allowed up to 0.2 mm, as at rest"));
-  EXPECT_THAT(
-      checking(sceneOf({first, first})),
-      ThrowsMessage<InputError>("test: block 0 and block 1 start 18.2 mm inside each other, allowed up to 0.2 mm, as at rest"));
+  EXPECT_THAT(checking(sceneOf({blockAt({1, 0, kHalfHeight_m}), first, blockAt({0.0, 0.0, 0.0263}, 90.0)})),
+              ThrowsMessage<InputError>(
+                  "test: block 1 and block 2: expected a start up to 0.2 mm inside each other, as at rest, got 1 mm"));
+  EXPECT_THAT(checking(sceneOf({first, first})),
+              ThrowsMessage<InputError>(
+                  "test: block 0 and block 1: expected a start up to 0.2 mm inside each other, as at rest, got 18.2 mm"));
 }
 
 // A cube of side 1 balanced on its corner, half a diagonal above the flat one below: only the flat one's face separates them,
@@ -94,9 +95,9 @@ TEST(StartingPlaces, OfTurnedBlocksAreJudgedByTheirBoxes) {
     onCorner.centre.z() = touching;
     EXPECT_NO_THROW(checkScene(flatFirst ? sceneOf({flat, onCorner}) : sceneOf({onCorner, flat}), "test"));
     onCorner.centre.z() = touching - 0.02;
-    EXPECT_THAT(
-        checking(flatFirst ? sceneOf({flat, onCorner}) : sceneOf({onCorner, flat})),
-        ThrowsMessage<InputError>("test: block 0 and block 1 start 20 mm inside each other, allowed up to 10.99 mm, as at rest"));
+    EXPECT_THAT(checking(flatFirst ? sceneOf({flat, onCorner}) : sceneOf({onCorner, flat})),
+                ThrowsMessage<InputError>(
+                    "test: block 0 and block 1: expected a start up to 10.99 mm inside each other, as at rest, got 20 mm"));
   }
 }
 
@@ -111,9 +112,9 @@ TEST(StartingPlaces, OfCrossedEdgesAreJudgedByTheProductOfTheEdges) {
     return sceneOf({lower, upper});
   };
   EXPECT_NO_THROW(checkScene(bars(std::numbers::sqrt2), "test"));
-  EXPECT_THAT(
-      checking(bars(std::numbers::sqrt2 - 0.02)),
-      ThrowsMessage<InputError>("test: block 0 and block 1 start 20 mm inside each other, allowed up to 10.99 mm, as at rest"));
+  EXPECT_THAT(checking(bars(std::numbers::sqrt2 - 0.02)),
+              ThrowsMessage<InputError>(
+                  "test: block 0 and block 1: expected a start up to 10.99 mm inside each other, as at rest, got 20 mm"));
 }
 
 // Whether two boxes share a point, so far inside both that they overlap by more than is allowed, found by sampling both: the
@@ -174,28 +175,28 @@ TEST(SceneLimits, NameTheBlockTheValueAndWhatIsAllowed) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double infinity = std::numeric_limits<double>::infinity();
   const std::pair<std::function<void(Scene&)>, const char*> mistakes[] = {
-      {[](Scene& s) { s.blocks[1].mass = -0.02; }, "test: block 1: mass: found -0.02, allowed 1e-09 to 1000000 kg"},
-      {[](Scene& s) { s.blocks[1].mass = 0.0; }, "test: block 1: mass: found 0, allowed 1e-09 to 1000000 kg"},
-      {[=](Scene& s) { s.blocks[0].centre.y() = nan; }, "test: block 0: centre y: found nan, allowed -10000 to 10000 m"},
-      {[](Scene& s) { s.blocks[0].dimensions.z() = 1e-6; }, "test: block 0: dimension z: found 1e-06, allowed 1e-05 to 100 m"},
-      {[](Scene& s) { s.blocks[0].dimensions.x() = 101.0; }, "test: block 0: dimension x: found 101, allowed 1e-05 to 100 m"},
+      {[](Scene& s) { s.blocks[1].mass = -0.02; }, "test: block 1: mass: expected 1e-09 to 1000000 kg, got -0.02"},
+      {[](Scene& s) { s.blocks[1].mass = 0.0; }, "test: block 1: mass: expected 1e-09 to 1000000 kg, got 0"},
+      {[=](Scene& s) { s.blocks[0].centre.y() = nan; }, "test: block 0: centre y: expected -10000 to 10000 m, got nan"},
+      {[](Scene& s) { s.blocks[0].dimensions.z() = 1e-6; }, "test: block 0: dimension z: expected 1e-05 to 100 m, got 1e-06"},
+      {[](Scene& s) { s.blocks[0].dimensions.x() = 101.0; }, "test: block 0: dimension x: expected 1e-05 to 100 m, got 101"},
       {[=](Scene& s) { s.blocks[0].velocity.x() = -infinity; },
-       "test: block 0: velocity x: found -inf, allowed -1000 to 1000 m/s"},
-      {[](Scene& s) { s.blocks[0].spin.z() = 1e9; }, "test: block 0: spin z: found 1000000000, allowed -1000 to 1000 rad/s"},
+       "test: block 0: velocity x: expected -1000 to 1000 m/s, got -inf"},
+      {[](Scene& s) { s.blocks[0].spin.z() = 1e9; }, "test: block 0: spin z: expected -1000 to 1000 rad/s, got 1000000000"},
       {[](Scene& s) { s.blocks[0].orientation.coeffs() *= 2.0; },
-       "test: block 0: length of the orientation's quaternion: found 2, allowed 0.999999999 to 1.000000001"},
-      {[](Scene& s) { s.blocks.clear(); }, "test: number of blocks: found 0, allowed 1 to 200000"},
-      {[](Scene& s) { s.seconds = -1.0; }, "test: seconds: found -1, allowed 0.001 to 10000000 s"},
-      {[](Scene& s) { s.staticFriction = -0.4; }, "test: static friction: found -0.4, allowed 0 to 10"},
-      {[](Scene& s) { s.kineticFriction = 0.5; }, "test: kinetic friction: found 0.5, allowed 0 to 0.4 (the static one)"},
-      {[](Scene& s) { s.gravity.magnitude = -9.81; }, "test: gravity: magnitude: found -9.81, allowed 0 to 1000 m/s2"},
-      {[=](Scene& s) { s.gravity.tilt_deg = nan; }, "test: gravity: tilt: found nan, allowed -180 to 180 deg"},
-      {[](Scene& s) { s.settings.frame_s = 0.0; }, "test: frame_s: found 0, allowed 0.0001 to 0.1 s"},
-      {[](Scene& s) { s.forces.push_back({.block = 2, .end_s = 1.0}); }, "test: force 0: block: found 2, allowed 0 to 1"},
+       "test: block 0: length of the orientation's quaternion: expected 0.999999999 to 1.000000001, got 2"},
+      {[](Scene& s) { s.blocks.clear(); }, "test: number of blocks: expected 1 to 200000, got 0"},
+      {[](Scene& s) { s.seconds = -1.0; }, "test: seconds: expected 0.001 to 10000000 s, got -1"},
+      {[](Scene& s) { s.staticFriction = -0.4; }, "test: static friction: expected 0 to 10, got -0.4"},
+      {[](Scene& s) { s.kineticFriction = 0.5; }, "test: kinetic friction: expected 0 to 0.4 (the static one), got 0.5"},
+      {[](Scene& s) { s.gravity.magnitude = -9.81; }, "test: gravity: magnitude: expected 0 to 1000 m/s2, got -9.81"},
+      {[=](Scene& s) { s.gravity.tilt_deg = nan; }, "test: gravity: tilt: expected -180 to 180 deg, got nan"},
+      {[](Scene& s) { s.settings.frame_s = 0.0; }, "test: frame_s: expected 0.0001 to 0.1 s, got 0"},
+      {[](Scene& s) { s.forces.push_back({.block = 2, .end_s = 1.0}); }, "test: force 0: block: expected 0 to 1, got 2"},
       {[](Scene& s) { s.forces.push_back({.block = 0, .corner = 8, .end_s = 1.0}); },
-       "test: force 0: corner: found 8, allowed -1 to 7 (-1 is the centre)"},
+       "test: force 0: corner: expected -1 to 7 (-1 is the centre), got 8"},
       {[](Scene& s) { s.forces.push_back({.start_s = 2.0, .end_s = 1.0}); },
-       "test: force 0: end: found 1, allowed 2 to 10000000 s"},
+       "test: force 0: end: expected 2 to 10000000 s, got 1"},
   };
   for (const auto& [makeMistake, message] : mistakes) {
     Scene scene = sceneOf({blockAt({0, 0, kHalfHeight_m}), blockAt({0.2, 0, kHalfHeight_m})});
@@ -212,7 +213,7 @@ TEST(SceneLimits, AllowTwoHundredThousandBlocksAndNoMore) {
   }
   EXPECT_NO_THROW(checkScene(scene, "test"));
   scene.blocks.push_back(blockAt({0, -1, kHalfHeight_m}));
-  EXPECT_THAT(checking(scene), ThrowsMessage<InputError>("test: number of blocks: found 200001, allowed 1 to 200000"));
+  EXPECT_THAT(checking(scene), ThrowsMessage<InputError>("test: number of blocks: expected 1 to 200000, got 200001"));
 }
 
 }  // namespace

@@ -79,8 +79,8 @@ TEST(Tower, ThreeBlocksSpanALengthSoThatTheCornersOfAllRowsAreFlush) {
 TEST(Tower, HasOneToTwoThousandRows) {
   EXPECT_EQ(towerScene(1).blocks.size(), 3U);
   EXPECT_EQ(towerScene(2000).blocks.size(), 6000U);
-  EXPECT_THAT([] { towerScene(0); }, ThrowsMessage<InputError>("tower:0: found 0 rows, allowed 1 to 2000"));
-  EXPECT_THAT([] { towerScene(2001); }, ThrowsMessage<InputError>("tower:2001: found 2001 rows, allowed 1 to 2000"));
+  EXPECT_THAT([] { towerScene(0); }, ThrowsMessage<InputError>("tower:0: expected 1 to 2000 rows, got 0"));
+  EXPECT_THAT([] { towerScene(2001); }, ThrowsMessage<InputError>("tower:2001: expected 1 to 2000 rows, got 2001"));
 }
 
 TEST(BitCode, NamesThePresentBlocksFromTheBottom) {
@@ -102,18 +102,18 @@ TEST(BitCode, FullCodeIsTheTower) {
 
 TEST(BitCode, TypoIsNamedWithItsPlace) {
   const std::pair<const char*, const char*> typos[] = {
-      {"(010)-(0120)", "bit code '(010)-(0120)': character 10: found '2', allowed 0, 1 or L"},
-      {"(010)-(0110)", "bit code '(010)-(0110)': character 11: found '0', allowed )"},
-      {"(010)-(01)", "bit code '(010)-(01)': character 10: found ')', allowed 0, 1 or L"},
-      {"(010)-(01", "bit code '(010)-(01': character 10: found the end, allowed 0, 1 or L"},
-      {"(010)(010)", "bit code '(010)(010)': character 6: found '(', allowed - or the end"},
-      {"(010)-", "bit code '(010)-': character 7: found the end, allowed ("},
-      {"(010) ", "bit code '(010) ': character 6: found ' ', allowed - or the end"},
-      {"(01l)", "bit code '(01l)': character 4: found 'l', allowed 0, 1 or L"},
-      {"(0\n0)", "bit code '(0\\x0a0)': character 3: found '\\x0a', allowed 0, 1 or L"},
-      {"", "bit code '': character 1: found the end, allowed ("},
+      {"(010)-(0120)", "bit code '(010)-(0120)': character 10: expected 0, 1 or L, got '2'"},
+      {"(010)-(0110)", "bit code '(010)-(0110)': character 11: expected ), got '0'"},
+      {"(010)-(01)", "bit code '(010)-(01)': character 10: expected 0, 1 or L, got ')'"},
+      {"(010)-(01", "bit code '(010)-(01': character 10: expected 0, 1 or L, got the end"},
+      {"(010)(010)", "bit code '(010)(010)': character 6: expected - or the end, got '('"},
+      {"(010)-", "bit code '(010)-': character 7: expected (, got the end"},
+      {"(010) ", "bit code '(010) ': character 6: expected - or the end, got ' '"},
+      {"(01l)", "bit code '(01l)': character 4: expected 0, 1 or L, got 'l'"},
+      {"(0\n0)", "bit code '(0\\x0a0)': character 3: expected 0, 1 or L, got '\\x0a'"},
+      {"", "bit code '': character 1: expected (, got the end"},
       {"(010)-(000)-(010)",
-       "bit code '(010)-(000)-(010)': character 8: found a row without blocks, allowed at least one block in every row"},
+       "bit code '(010)-(000)-(010)': character 8: expected at least one block in every row, got a row without blocks"},
   };
   for (const auto& [code, message] : typos) {
     EXPECT_THAT([typo = code] { bitCodeScene(typo); }, ThrowsMessage<InputError>(message));
@@ -125,7 +125,7 @@ TEST(BitCode, HasAtMostTwoThousandRows) {
   for (int row = 1; row < 2000; ++row) code += "-(010)";
   EXPECT_EQ(bitCodeScene(code).blocks.size(), 2000U);
   EXPECT_THAT([&] { bitCodeScene(code + "-(010)"); },
-              ThrowsMessage<InputError>(HasSubstr("character 12000: found more rows, allowed 1 to 2000")));
+              ThrowsMessage<InputError>(HasSubstr("character 12000: expected 1 to 2000 rows, got more")));
 }
 
 TEST(LooseBlocks, AreLowerAndCarryNothingAtFirst) {
@@ -167,16 +167,16 @@ TEST(Offsets, AndLooseBlocksMustNameAPresentBlockOnce) {
     options.offsets = std::move(offsets);
     return [options] { bitCodeScene("(111)-(101)", options); };
   };
-  const std::string allowed = ": found no block there, allowed rows 0 to 1 and positions 1 to 3 where a block is present";
+  const std::string allowed = ": expected rows 0 to 1 and positions 1 to 3 where a block is present, got no block there";
   for (const auto& [row, position] : {std::pair{1, 2}, {2, 1}, {-1, 1}, {0, 0}, {0, 4}}) {
     EXPECT_THAT(offset({{row, position, 0.0, 0.0}}),
                 ThrowsMessage<InputError>("(111)-(101): offset of row " + std::to_string(row) + ", position " +
                                           std::to_string(position) + allowed));
   }
   EXPECT_THAT(offset({{0, 1, 0.0, 0.0}, {0, 1, 0.001, 0.0}}),
-              ThrowsMessage<InputError>("(111)-(101): offset of row 0, position 1: found it twice, allowed once"));
+              ThrowsMessage<InputError>("(111)-(101): offset of row 0, position 1: expected once, got it twice"));
   EXPECT_THAT(offset({{0, 1, std::numeric_limits<double>::quiet_NaN(), 0.0}}),
-              ThrowsMessage<InputError>("(111)-(101): offset of row 0, position 1: dx: found nan, allowed -1 to 1 m"));
+              ThrowsMessage<InputError>("(111)-(101): offset of row 0, position 1: dx: expected -1 to 1 m, got nan"));
   TowerOptions options;
   options.loose = {{1, 2, 0.0003}};
   EXPECT_THAT([&] { bitCodeScene("(111)-(101)", options); },
@@ -184,15 +184,16 @@ TEST(Offsets, AndLooseBlocksMustNameAPresentBlockOnce) {
   options.loose = {{1, 1, 0.02}};
   EXPECT_THAT(
       [&] { bitCodeScene("(111)-(101)", options); },
-      ThrowsMessage<InputError>("(111)-(101): loose block at row 1, position 1: lower by: found 0.02, allowed 0 to 0.009 m"));
+      ThrowsMessage<InputError>("(111)-(101): loose block at row 1, position 1: lower by: expected 0 to 0.009 m, got 0.02"));
 }
 
 TEST(Offsets, MayNotPushBlocksIntoOneAnother) {
   TowerOptions options;
   options.offsets = {{0, 1, 0.0, 0.001}};
-  EXPECT_THAT([&] { bitCodeScene("(111)-(101)", options); },
-              ThrowsMessage<InputError>("(111)-(101): block 0 (row 0, position 1) and block 1 (row 0, position 2) start 0.55 mm "
-                                        "inside each other, allowed up to 0.2 mm, as at rest"));
+  EXPECT_THAT(
+      [&] { bitCodeScene("(111)-(101)", options); },
+      ThrowsMessage<InputError>("(111)-(101): block 0 (row 0, position 1) and block 1 (row 0, position 2): expected a start up "
+                                "to 0.2 mm inside each other, as at rest, got 0.55 mm"));
 }
 
 TEST(UnevenRows, StandOnTheHighestBlockBelow) {
@@ -297,14 +298,14 @@ TEST(Variation, IsHeldToItsLimits) {
   TowerOptions options;
   options.heightsSigma_m = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THAT([&] { towerScene(3, options); },
-              ThrowsMessage<InputError>("tower:3: standard deviation of the heights: found nan, allowed 0 to 0.003 m"));
+              ThrowsMessage<InputError>("tower:3: standard deviation of the heights: expected 0 to 0.003 m, got nan"));
   options = {};
   options.massSigma_kg = -0.001;
   EXPECT_THAT([&] { towerScene(3, options); },
-              ThrowsMessage<InputError>("tower:3: standard deviation of the masses: found -0.001, allowed 0 to 0.0059 kg"));
+              ThrowsMessage<InputError>("tower:3: standard deviation of the masses: expected 0 to 0.0059 kg, got -0.001"));
   options = {};
   options.startGap_m = 5.0;
-  EXPECT_THAT([&] { towerScene(3, options); }, ThrowsMessage<InputError>("tower:3: start gap: found 5, allowed 0 to 1 m"));
+  EXPECT_THAT([&] { towerScene(3, options); }, ThrowsMessage<InputError>("tower:3: start gap: expected 0 to 1 m, got 5"));
 }
 
 TEST(SceneName, IsATowerACodeOrAFile) {
@@ -318,16 +319,16 @@ TEST(SceneName, IsATowerACodeOrAFile) {
 }
 
 TEST(SceneName, ThatIsNoneOfTheseIsNamed) {
-  EXPECT_THAT([] { sceneFromName("tower:0"); }, ThrowsMessage<InputError>("tower:0: found 0 rows, allowed 1 to 2000"));
+  EXPECT_THAT([] { sceneFromName("tower:0"); }, ThrowsMessage<InputError>("tower:0: expected 1 to 2000 rows, got 0"));
   EXPECT_THAT([] { sceneFromName("tower:1000000000"); },
-              ThrowsMessage<InputError>("tower:1000000000: found 1000000000 rows, allowed 1 to 2000"));
+              ThrowsMessage<InputError>("tower:1000000000: expected 1 to 2000 rows, got 1000000000"));
   for (const std::string rows : {"", "ten", "18x", "1.5", " 3", "99999999999999999999"}) {
     EXPECT_THAT([&] { sceneFromName("tower:" + rows); },
-                ThrowsMessage<InputError>("tower:R: found '" + rows + "' rows, allowed a whole number from 1 to 2000"));
+                ThrowsMessage<InputError>("tower:R: expected a whole number of rows from 1 to 2000, got '" + rows + "'"));
   }
   EXPECT_THAT([] { sceneFromName("no-such-scene.toml"); },
-              ThrowsMessage<InputError>("no-such-scene.toml: found no such file, allowed a scene file, tower:R with R rows, or a "
-                                        "bit code such as (010)-(111)"));
+              ThrowsMessage<InputError>("no-such-scene.toml: expected a scene file, tower:R with R rows, or a bit code such as "
+                                        "(010)-(111), got no such file"));
 }
 
 TEST(Gravity, PointsStraightDownUnlessTilted) {

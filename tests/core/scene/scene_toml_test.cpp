@@ -1,6 +1,7 @@
 #include "core/error.h"
 #include "core/scene/scene.h"
 #include "tests/support/program.h"
+#include "tests/support/says.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -163,51 +164,55 @@ TEST(SceneFile, WithoutATowerRefusesTheOptionsOfOne) {
     change(options);
     return [path, options] { sceneFromName(path, options); };
   };
-  const std::string rest = " for a scene without [tower], allowed for towers only";
+  const std::string rest = ", got a scene without";
   EXPECT_THAT(with([](TowerOptions& o) { o.heightsSigma_m = 0.0002; }),
-              ThrowsMessage<InputError>(path + ": found a variation of heights" + rest));
+              ThrowsMessage<InputError>(path + ": expected a [tower] for a variation of heights" + rest));
   EXPECT_THAT(with([](TowerOptions& o) { o.massSigma_kg = 0.001; }),
-              ThrowsMessage<InputError>(path + ": found a variation of masses" + rest));
-  EXPECT_THAT(with([](TowerOptions& o) { o.seed = 1; }), ThrowsMessage<InputError>(path + ": found a seed" + rest));
-  EXPECT_THAT(with([](TowerOptions& o) { o.startGap_m = 0.01; }), ThrowsMessage<InputError>(path + ": found a start gap" + rest));
+              ThrowsMessage<InputError>(path + ": expected a [tower] for a variation of masses" + rest));
+  EXPECT_THAT(with([](TowerOptions& o) { o.seed = 1; }),
+              ThrowsMessage<InputError>(path + ": expected a [tower] for a seed" + rest));
+  EXPECT_THAT(with([](TowerOptions& o) { o.startGap_m = 0.01; }),
+              ThrowsMessage<InputError>(path + ": expected a [tower] for a start gap" + rest));
   EXPECT_NO_THROW(sceneFromName(path));
 }
 
-// One line each: file, line and column, key, what was found, what is allowed.
+// One line each: file, line and column, key, what is expected, what it got.
 TEST(BadSceneFile, IsNamedInOneLine) {
   const std::pair<const char*, const char*> cases[] = {
       {"unknown_key",
-       ":3:1: unknown key 'colour' in block[0], allowed centre_m, dimensions_m, mass_kg, rotation_deg, velocity_m_s, "
-       "spin_rad_s, restitution, fixed, friction, static_friction, kinetic_friction, corners_m"},
-      {"wrong_type", ":1:11: seconds: found the text 'ten', allowed a number from 0.001 to 10000000 s"},
-      {"wrong_whole_number", ":2:8: tower.rows: found 3.5, allowed a whole number from 1 to 2000"},
-      {"wrong_array", ":2:12: block[0].centre_m: found an array of 2, allowed an array of three numbers from -10000 to 10000 m"},
-      {"wrong_array_value", ":2:18: block[0].centre_m[1]: found true, allowed a number from -10000 to 10000 m"},
-      {"not_an_array_of_tables", ":1:1: block: found a table, allowed up to 200000 tables, each [[block]]"},
-      {"not_a_table", ":1:9: tower: found 18, allowed a table, [tower]"},
-      {"negative_mass", ":6:11: block[1].mass_kg: found -0.0196, allowed 1e-09 to 1000000 kg"},
-      {"not_a_number", ":3:22: block[0].velocity_m_s[1]: found nan, allowed -1000 to 1000 m/s"},
-      {"infinite", ":1:11: seconds: found inf, allowed 0.001 to 10000000 s"},
-      {"absurd_size", ":3:32: block[0].dimensions_m[2]: found 1000, allowed 1e-05 to 100 m"},
-      {"absurd_rows", ":2:8: tower.rows: found 1000000000, allowed a whole number from 1 to 2000"},
-      {"zero_thickness", ":3:32: block[0].dimensions_m[2]: found 0, allowed 1e-05 to 100 m"},
-      {"code_typo", ":1:1: tower: bit code '(010)-(0120)': character 10: found '2', allowed 0, 1 or L"},
+       ":3:1: expected centre_m, dimensions_m, mass_kg, rotation_deg, velocity_m_s, "
+       "spin_rad_s, restitution, fixed, friction, static_friction, kinetic_friction, corners_m in block[0], got the unknown key "
+       "'colour'"},
+      {"wrong_type", ":1:11: seconds: expected a number from 0.001 to 10000000 s, got the text 'ten'"},
+      {"wrong_whole_number", ":2:8: tower.rows: expected a whole number from 1 to 2000, got 3.5"},
+      {"wrong_array", ":2:12: block[0].centre_m: expected an array of three numbers from -10000 to 10000 m, got an array of 2"},
+      {"wrong_array_value", ":2:18: block[0].centre_m[1]: expected a number from -10000 to 10000 m, got true"},
+      {"not_an_array_of_tables", ":1:1: block: expected up to 200000 tables, each [[block]], got a table"},
+      {"not_a_table", ":1:9: tower: expected a table, [tower], got 18"},
+      {"negative_mass", ":6:11: block[1].mass_kg: expected 1e-09 to 1000000 kg, got -0.0196"},
+      {"not_a_number", ":3:22: block[0].velocity_m_s[1]: expected -1000 to 1000 m/s, got nan"},
+      {"infinite", ":1:11: seconds: expected 0.001 to 10000000 s, got inf"},
+      {"absurd_size", ":3:32: block[0].dimensions_m[2]: expected 1e-05 to 100 m, got 1000"},
+      {"absurd_rows", ":2:8: tower.rows: expected a whole number from 1 to 2000, got 1000000000"},
+      {"zero_thickness", ":3:32: block[0].dimensions_m[2]: expected 1e-05 to 100 m, got 0"},
+      {"code_typo", ":1:1: tower: bit code '(010)-(0120)': character 10: expected 0, 1 or L, got '2'"},
       {"absent_offset",
-       ":1:1: tower: (010)-(010): offset of row 1, position 3: found no block there, allowed rows 0 to 1 and "
-       "positions 1 to 3 where a block is present"},
-      {"rows_and_code", ":1:1: tower: found both or neither of rows and code, allowed either"},
-      {"no_blocks", ": found no blocks, allowed a [tower], [[block]]s or both"},
-      {"no_centre", ":1:1: block[0]: found no centre_m, which is required"},
-      {"inside_each_other", ": block 0 and block 1 start 1 mm inside each other, allowed up to 0.2 mm, as at rest"},
-      {"inside_the_floor", ": block 0 starts 1 mm inside the floor z = 0, allowed up to 0.2 mm, as at rest"},
+       ":1:1: tower: (010)-(010): offset of row 1, position 3: expected rows 0 to 1 and positions 1 to 3 where a block is "
+       "present, got no block there"},
+      {"rows_and_code", ":1:1: tower: expected either rows or code, got both or neither"},
+      {"no_blocks", ": expected a [tower], [[block]]s or both, got no blocks"},
+      {"no_centre", ":1:1: block[0]: expected the key centre_m, got none"},
+      {"inside_each_other", ": block 0 and block 1: expected a start up to 0.2 mm inside each other, as at rest, got 1 mm"},
+      {"inside_the_floor", ": block 0: expected a start up to 0.2 mm inside the floor z = 0, as at rest, got 1 mm"},
       {"unknown_method",
-       ":5:10: settings.method: found 'euler', allowed implicit (also: bdf2), implicit-euler, implicit-eigen (also: bdf2-eigen), "
-       "semi-implicit-euler, midpoint, runge-kutta-4, report (also: legacy-2003), rigid-pgs, rigid-lcp, xpbd or auto"},
-      {"setting_out_of_range", ":5:20: settings.stability_safety: found 1.5, allowed 0.05 to 1"},
-      {"force_on_no_block", ":5:9: force[0].block: found 1, allowed a whole number from 0 to 0"},
-      {"force_ends_first", ":8:9: force[0].end_s: found 1, allowed 2 to 10000000 s"},
-      {"friction_twice", ":4:1: friction: found both or neither of coefficient and static with kinetic, allowed either"},
-      {"kinetic_above_static", ":6:11: friction.kinetic: found 0.5, allowed 0 to 0.4 (the static one)"},
+       ":5:10: settings.method: expected implicit (also: bdf2), implicit-euler, implicit-eigen (also: bdf2-eigen), "
+       "semi-implicit-euler, midpoint, runge-kutta-4, report (also: legacy-2003), rigid-pgs, rigid-lcp, xpbd or auto, got "
+       "'euler'"},
+      {"setting_out_of_range", ":5:20: settings.stability_safety: expected 0.05 to 1, got 1.5"},
+      {"force_on_no_block", ":5:9: force[0].block: expected a whole number from 0 to 0, got 1"},
+      {"force_ends_first", ":8:9: force[0].end_s: expected 2 to 10000000 s, got 1"},
+      {"friction_twice", ":4:1: friction: expected either coefficient or static with kinetic, got both or neither"},
+      {"kinetic_above_static", ":6:11: friction.kinetic: expected 0 to 0.4 (the static one), got 0.5"},
   };
   for (const auto& [name, message] : cases) {
     const std::string path = kData + name + ".toml";
@@ -236,18 +241,17 @@ TEST(SceneFile, FixesAndDrivesBlocks) {
   EXPECT_EQ(scene.drives[1].end_s, kTimeRange.most);
   EXPECT_THAT(
       [&] { fromText(blocks + "[[drive]]\nblock = 3\n"); },
-      testing::ThrowsMessage<InputError>(testing::HasSubstr("drive[0].block: found 3, allowed a whole number from 0 to 2")));
+      testing::ThrowsMessage<InputError>(testing::HasSubstr("drive[0].block: expected a whole number from 0 to 2, got 3")));
   EXPECT_THAT([&] { fromText(blocks + "[[force]]\nblock = 0\nforce_n = [1, 0, 0]\nend_s = 1\n"); },
               testing::ThrowsMessage<InputError>(
-                  testing::HasSubstr("force 0: block: found block 0, which is fixed, allowed is a block that moves")));
+                  testing::HasSubstr("force 0: block: expected a block that moves, got block 0, which is fixed")));
 }
 
 // toml++ has no double for them, and what it gave instead was read all the same.
 TEST(BadSceneFile, WholeNumbersThatNoDoubleIsAreNumbersOutOfRange) {
   for (const std::string number : {"9007199254740993", "15027880428509895", "-9223372036854775807"}) {
-    EXPECT_THAT(
-        [&] { fromText("[[block]]\ncentre_m = [0, 0, 1]\nrotation_deg = [0, " + number + ", 0]\n"); },
-        testing::ThrowsMessage<InputError>(testing::HasSubstr("rotation_deg[1]: found " + number + ", allowed -360 to 360")))
+    EXPECT_THAT([&] { fromText("[[block]]\ncentre_m = [0, 0, 1]\nrotation_deg = [0, " + number + ", 0]\n"); },
+                testing::ThrowsMessage<InputError>(says("rotation_deg[1]: expected -360 to 360..., got " + number)))
         << number;
   }
 }
@@ -257,7 +261,7 @@ TEST(BadSceneFile, UnknownSettingListsTheKnownOnes) {
   std::string known = "method, inertia, sleep";
   for (const SettingRow& row : settingTable()) known += fmt::format(", {}", row.key);
   EXPECT_THAT([&] { sceneFromToml(path); },
-              ThrowsMessage<InputError>(path + ":5:1: unknown key 'sub_steps' in settings, allowed " + known));
+              ThrowsMessage<InputError>(path + ":5:1: expected " + known + " in settings, got the unknown key 'sub_steps'"));
 }
 
 TEST(BadSceneFile, BothNamesOfOneSettingAreRefused) {
@@ -265,7 +269,7 @@ TEST(BadSceneFile, BothNamesOfOneSettingAreRefused) {
     const std::string value = asToml(rowOf(alias.key), rowOf(alias.key).most);
     const std::string text =
         fmt::format("[tower]\nrows = 1\n[settings]\n{0} = {2}\n{1} = {2}\n", alias.formerKey, alias.key, value);
-    const std::string message = fmt::format(":5:{0}: settings.{1}: found {1} and its former name {2}, allowed is one of them",
+    const std::string message = fmt::format(":5:{0}: settings.{1}: expected {1} or its former name {2}, got both",
                                             alias.key.size() + 4, alias.key, alias.formerKey);
     EXPECT_THAT([&] { fromText(text); }, testing::ThrowsMessage<InputError>(testing::EndsWith(message)));
   }
@@ -274,7 +278,7 @@ TEST(BadSceneFile, BothNamesOfOneSettingAreRefused) {
 TEST(BadSceneFile, AFormerKeyIsNamedAsItIsGiven) {
   EXPECT_THAT(
       [] { fromText("[tower]\nrows = 1\n[settings]\nrest_speed = -1.0\n"); },
-      testing::ThrowsMessage<InputError>(testing::EndsWith(":4:14: settings.rest_speed: found -1, allowed 0 to 1 sqrt(g h)")));
+      testing::ThrowsMessage<InputError>(testing::EndsWith(":4:14: settings.rest_speed: expected 0 to 1 sqrt(g h), got -1")));
 }
 
 TEST(BadSceneFile, BrokenTomlIsNamedByLineAndColumn) {
@@ -290,12 +294,13 @@ TEST(BadSceneFile, BrokenTomlIsNamedByLineAndColumn) {
 
 TEST(BadSceneFile, MissingFilesAndFoldersAreNamed) {
   EXPECT_THAT([] { sceneFromToml("no/such/scene.toml"); },
-              ThrowsMessage<InputError>("no/such/scene.toml: found no such file, allowed a scene file, tower:R with R rows, or a "
-                                        "bit code such as (010)-(111)"));
+              ThrowsMessage<InputError>("no/such/scene.toml: expected a scene file, tower:R with R rows, or a bit code such as "
+                                        "(010)-(111), got no such file"));
   EXPECT_THAT([] { sceneFromToml(SPRINGTOWER_SOURCE_DIR "/scenes"); },
-              ThrowsMessage<InputError>(SPRINGTOWER_SOURCE_DIR "/scenes: found a folder, allowed a scene file"));
+              ThrowsMessage<InputError>(SPRINGTOWER_SOURCE_DIR "/scenes: expected a scene file, got a folder"));
   EXPECT_THAT([] { sceneFromToml("no\nsuch"); },
-              ThrowsMessage<InputError>(testing::StartsWith("no\\x0asuch: found no such file")));
+              ThrowsMessage<InputError>(
+                  testing::AllOf(testing::StartsWith("no\\x0asuch: expected "), testing::EndsWith(", got no such file"))));
 }
 
 TEST(ExampleScenes, AllLoad) {

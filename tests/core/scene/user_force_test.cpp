@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 #include "core/scene/scene.h"
+#include "tests/support/says.h"
 
 #include <gmock/gmock.h>
 
@@ -54,14 +55,14 @@ TEST(UserForce, HasItsPointInItsBlockAndOnlyOne) {
   scene.forces[0].point->z() = 0.0092;
   EXPECT_THAT(
       [&] { checkScene(scene, "test"); },
-      ThrowsMessage<InputError>(HasSubstr("force 0: point z: found 0.0092, allowed -0.0091 to 0.0091 m (within the block)")));
+      ThrowsMessage<InputError>(HasSubstr("force 0: point z: expected -0.0091 to 0.0091 m (within the block), got 0.0092")));
   scene.forces[0].point = Vec3::Zero();
   scene.forces[0].corner = 3;
-  EXPECT_THAT([&] { checkScene(scene, "test"); }, ThrowsMessage<InputError>(HasSubstr("corner: found 3, allowed -1 to -1")));
+  EXPECT_THAT([&] { checkScene(scene, "test"); }, ThrowsMessage<InputError>(says("corner: expected -1 to -1 ..., got 3")));
   scene.forces[0] = ramp();
   scene.forces[0].torqueAtEnd = Vec3(0.0, 2e6, 0.0);
   EXPECT_THAT([&] { checkScene(scene, "test"); },
-              ThrowsMessage<InputError>(HasSubstr("torque at the end y: found 2000000, allowed -1000000 to 1000000 N m")));
+              ThrowsMessage<InputError>(HasSubstr("torque at the end y: expected -1000000 to 1000000 N m, got 2000000")));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include "narrowphase/exact/exact_time_of_impact.h"
 #include "tests/narrowphase/exact/feature_distance.h"
 #include "tests/support/program.h"
+#include "tests/support/says.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -197,22 +198,27 @@ TEST(QueryFile, ReadsEveryColumnToItsPlace) {
 }
 
 TEST(QueryFile, NamesWhatIsWrong) {
-  EXPECT_THAT(complaint(""), testing::HasSubstr("found no queries"));
-  EXPECT_THAT(complaint(kHeader), testing::HasSubstr("found no queries"));
-  EXPECT_THAT(complaint("a,b,c\n"), testing::HasSubstr("line 1: found 3 columns, allowed are 32"));
+  EXPECT_THAT(complaint(""), testing::HasSubstr("expected a header line and at least one query, got no queries"));
+  EXPECT_THAT(complaint(kHeader), testing::HasSubstr("expected a header line and at least one query, got no queries"));
+  EXPECT_THAT(complaint("a,b,c\n"), testing::HasSubstr("line 1: expected 32 columns, got 3"));
   std::string header = kHeader;
   header.replace(header.find("toi"), 3, "tio");
-  EXPECT_THAT(complaint(header), testing::HasSubstr("found 'tio' as name of column 6, allowed is 'toi'"));
-  EXPECT_THAT(complaint(kHeader + "one,s,s,f,1,0.5,0,1,7," + kCoordinates), testing::HasSubstr("line 2: found 33 columns"));
-  EXPECT_THAT(complaint(kHeader + "one,s,s,f,yes,0.5,0,1," + kCoordinates), testing::HasSubstr("found 'yes' in column gt"));
-  EXPECT_THAT(complaint(kHeader + "one,s,s,f,1,1.5,0,1," + kCoordinates), testing::HasSubstr("found '1.5' in column toi"));
-  EXPECT_THAT(complaint(kHeader + "one,s,s,f,1,,0,1," + kCoordinates), testing::HasSubstr("found '' in column toi"));
-  EXPECT_THAT(complaint(kHeader + "one,s,s,f,0,0.5,0,1," + kCoordinates), testing::HasSubstr("allowed is nothing where gt is 0"));
+  EXPECT_THAT(complaint(header), testing::HasSubstr("expected 'toi' as name of column 6, got 'tio'"));
+  EXPECT_THAT(complaint(kHeader + "one,s,s,f,1,0.5,0,1,7," + kCoordinates),
+              testing::HasSubstr("line 2: expected 32 columns, got 33"));
+  EXPECT_THAT(complaint(kHeader + "one,s,s,f,yes,0.5,0,1," + kCoordinates),
+              testing::HasSubstr("expected 0 or 1 in column gt, got 'yes'"));
+  EXPECT_THAT(complaint(kHeader + "one,s,s,f,1,1.5,0,1," + kCoordinates),
+              testing::HasSubstr("expected a number from 0 to 1 in column toi, got '1.5'"));
+  EXPECT_THAT(complaint(kHeader + "one,s,s,f,1,,0,1," + kCoordinates),
+              testing::HasSubstr("expected a number from 0 to 1 in column toi, got ''"));
+  EXPECT_THAT(complaint(kHeader + "one,s,s,f,0,0.5,0,1," + kCoordinates),
+              testing::HasSubstr("expected nothing in column toi where gt is 0"));
   const std::string before = kHeader + "one,s,s,f,1,0.5,0,1," + kCoordinates + "two,s,s,f,1,0.5,0,1,";
   const std::string after = kCoordinates.substr(kCoordinates.find(','));
   for (const char* bad : {"nan", "inf", "0.25x", " 0.25", ""}) {
     EXPECT_THAT(complaint(fmt::format("{}{}{}", before, bad, after)),
-                testing::HasSubstr(fmt::format("line 3: found '{}' in column a0x", bad)));
+                says(fmt::format("line 3: expected a number from ... in column a0x, got '{}'", bad)));
   }
   EXPECT_THROW(readCollisionQueries("no-such-file.csv"), InputError);
 }

@@ -9,6 +9,7 @@
 #include "tests/support/block_scenes.h"
 #include "tests/support/method_names.h"
 #include "tests/support/prepare_and_step.h"
+#include "tests/support/says.h"
 
 #include <array>
 #include <cmath>
@@ -299,22 +300,22 @@ TEST(DrivesInput, AreChecked) {
     return "";
   };
   Drive drive;
-  EXPECT_EQ(messageOf(drive), "scene: drive 0: found neither a velocity, a spin nor an amplitude, allowed at least one of them");
+  EXPECT_EQ(messageOf(drive), "scene: drive 0: expected at least one of a velocity, a spin and an amplitude, got none");
   drive.velocity.x() = 1.0;
   EXPECT_EQ(messageOf(drive), "");
   drive.block = 1;
-  EXPECT_EQ(messageOf(drive), "scene: drive 0: block: found block 1, which is not fixed, allowed is a fixed block");
+  EXPECT_EQ(messageOf(drive), "scene: drive 0: block: expected a fixed block, got block 1, which is not fixed");
   drive.block = 2;
-  EXPECT_EQ(messageOf(drive), "scene: drive 0: block: found 2, allowed 0 to 1");
+  EXPECT_EQ(messageOf(drive), "scene: drive 0: block: expected 0 to 1, got 2");
   drive.block = 0;
   drive.frequency_hz = 1.0;
-  EXPECT_EQ(messageOf(drive), "scene: drive 0: found an amplitude or a frequency without the other, allowed both or neither");
+  EXPECT_EQ(messageOf(drive), "scene: drive 0: expected both an amplitude and a frequency or neither, got one without the other");
   drive.amplitude.x() = 10.0;
   drive.frequency_hz = 100.0;
-  EXPECT_THAT(messageOf(drive), ::testing::HasSubstr("fastest corner: found 6284"));
+  EXPECT_THAT(messageOf(drive), says("fastest corner: expected ..., got 6284"));
   drive.start_s = 2.0;
   drive.end_s = 1.0;
-  EXPECT_EQ(messageOf(drive), "scene: drive 0: end: found 1, allowed 2 to 10000000 s");
+  EXPECT_EQ(messageOf(drive), "scene: drive 0: end: expected 2 to 10000000 s, got 1");
 }
 
 }  // namespace

@@ -341,15 +341,15 @@ TEST(FixedBlocksInput, IsChecked) {
   Scene scene = fixedScene(Method::implicit, {shelfAt(0.0), shelfAt(0.01), freeBlock({0.0, 0.0, 0.5})});
   EXPECT_EQ(messageOf(scene), "") << "fixed blocks may lie in one another and in the floor";
   scene.forces.push_back(constantForce(0, -1, Vec3::UnitX(), 0.0, 1.0));
-  EXPECT_EQ(messageOf(scene), "scene: force 0: block: found block 0, which is fixed, allowed is a block that moves");
+  EXPECT_EQ(messageOf(scene), "scene: force 0: block: expected a block that moves, got block 0, which is fixed");
   scene.forces.clear();
   scene.blocks[1].spin.z() = 1.0;
-  EXPECT_EQ(messageOf(scene), "scene: block 1: found a velocity or a spin, allowed none for a fixed block");
+  EXPECT_EQ(messageOf(scene), "scene: block 1: expected no velocity and no spin for a fixed block, got one");
   scene.blocks[1].spin.setZero();
   scene.blocks[2].centre.z() = 0.0;
   EXPECT_THAT(messageOf(scene), ::testing::HasSubstr("inside the floor"));
   scene.blocks.pop_back();
-  EXPECT_EQ(messageOf(scene), "scene: found fixed blocks only, allowed at least one that is not");
+  EXPECT_EQ(messageOf(scene), "scene: expected at least one block that is not fixed, got fixed blocks only");
 }
 
 }  // namespace

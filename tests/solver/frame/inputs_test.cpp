@@ -6,6 +6,7 @@
 #include "solver/hand/grip.h"
 #include "tests/support/block_scenes.h"
 #include "tests/support/prepare_and_step.h"
+#include "tests/support/says.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -28,7 +29,7 @@ double laggingSpeed(const Simulation& simulation, double force_n) {
 TEST(Inputs, BlocksThatAreNotThereAreRefused) {
   Simulation simulation(oneBlockScene(false));
   for (const std::size_t block : {std::size_t{1}, std::numeric_limits<std::size_t>::max()}) {
-    const auto message = ThrowsMessage<InputError>(HasSubstr("allowed are those of the scene, from 0 to 0"));
+    const auto message = ThrowsMessage<InputError>(HasSubstr("expected a block of the scene, from 0 to 0"));
     EXPECT_THAT([&] { kick(simulation, block, Vec3::UnitX()); }, message);
     EXPECT_THAT([&] { forceForOneFrame(simulation, block, Vec3::UnitX()); }, message);
     EXPECT_THAT([&] { handOn(simulation, blockId(block)); }, message);
@@ -90,21 +91,21 @@ TEST(Inputs, WhatIsNotAllowedChangesNothing) {
       [&] {
         applyForce(simulation, {3, -1, Vec3::UnitX(), 0.0, 1.0});
       },
-      ThrowsMessage<InputError>(HasSubstr("force: block: found 3, allowed 0 to 2")));
+      ThrowsMessage<InputError>(HasSubstr("force: block: expected 0 to 2, got 3")));
   EXPECT_THAT(
       [&] {
         setOnlyForce(simulation, {0, -1, Vec3(0.0, kNan, 0.0), 0.0, 1.0});
       },
-      ThrowsMessage<InputError>(HasSubstr("force: force y: found nan")));
+      ThrowsMessage<InputError>(says("force: force y: expected ..., got nan")));
   EXPECT_THAT(
       [&] {
         applyForce(simulation, {0, -1, Vec3::UnitX(), 1.0, 0.5});
       },
-      ThrowsMessage<InputError>(HasSubstr("force: end: found 0.5, allowed 1 to")));
+      ThrowsMessage<InputError>(says("force: end: expected 1 to ..., got 0.5")));
   EXPECT_THAT([&] { setGravity(simulation, {.magnitude = -1.0}); },
-              ThrowsMessage<InputError>(HasSubstr("gravity: magnitude: found -1")));
+              ThrowsMessage<InputError>(says("gravity: magnitude: expected ..., got -1")));
   EXPECT_THAT([&] { setFriction(simulation, 0.2, 0.3); },
-              ThrowsMessage<InputError>(HasSubstr("kinetic friction: found 0.3, allowed 0 to 0.2")));
+              ThrowsMessage<InputError>(says("kinetic friction: expected 0 to 0.2..., got 0.3")));
   EXPECT_TRUE(simulation.scene.forces.empty());
   EXPECT_EQ(simulation.scene.gravity.magnitude, kStandardGravity_m_s2);
   EXPECT_EQ(simulation.scene.staticFriction, 0.4);
@@ -118,7 +119,7 @@ TEST(Inputs, OfASceneInThePlaneStayInIt) {
       [&] {
         applyForce(simulation, {0, -1, Vec3(1.0, 0.1, 0.0), 0.0, 1.0});
       },
-      ThrowsMessage<InputError>(HasSubstr("force: force y: found 0.1")));
+      ThrowsMessage<InputError>(says("force: force y: expected ..., got 0.1")));
   EXPECT_THAT([&] { setGravity(simulation, {.tilt_deg = 5.0, .direction_deg = 90.0}); },
               ThrowsMessage<InputError>(HasSubstr("gravity: y")));
   applyForce(simulation, {0, -1, Vec3(1.0, 0.0, 0.1), 0.0, 1.0});

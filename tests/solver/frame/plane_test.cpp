@@ -5,6 +5,7 @@
 #include "solver/metrics/penetration.h"
 #include "tests/support/block_scenes.h"
 #include "tests/support/prepare_and_step.h"
+#include "tests/support/says.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -115,16 +116,17 @@ TEST(Plane, RefusesScenesThatAreNotInIt) {
     return [scene] { checkScene(scene, "s"); };
   };
   EXPECT_THAT(refusal([](Scene& s) { s.blocks[0].centre.y() = 0.01; }),
-              ThrowsMessage<InputError>(HasSubstr("s: block 0: centre y: found 0.01")));
-  EXPECT_THAT(refusal([](Scene& s) { s.blocks[0].spin.z() = 1.0; }), ThrowsMessage<InputError>(HasSubstr("spin z: found 1")));
+              ThrowsMessage<InputError>(says("s: block 0: centre y: expected ..., got 0.01")));
+  EXPECT_THAT(refusal([](Scene& s) { s.blocks[0].spin.z() = 1.0; }),
+              ThrowsMessage<InputError>(says("spin z: expected ..., got 1")));
   EXPECT_THAT(refusal([](Scene& s) { s.blocks[0].velocity.y() = 1.0; }),
-              ThrowsMessage<InputError>(HasSubstr("velocity y: found 1")));
+              ThrowsMessage<InputError>(says("velocity y: expected ..., got 1")));
   EXPECT_THAT(refusal([](Scene& s) { s.blocks[0].orientation = Eigen::AngleAxisd(0.1, Vec3::UnitZ()); }),
               ThrowsMessage<InputError>(HasSubstr("turn out of the plane")));
   EXPECT_THAT(refusal([](Scene& s) { s.gravity.tilt_deg = s.gravity.direction_deg = 30.0; }),
               ThrowsMessage<InputError>(HasSubstr("gravity: y")));
   EXPECT_THAT(refusal([](Scene& s) { s.forces.push_back(constantForce(0, -1, Vec3::UnitY(), 0.0, 1.0)); }),
-              ThrowsMessage<InputError>(HasSubstr("force 0: force y: found 1")));
+              ThrowsMessage<InputError>(says("force 0: force y: expected ..., got 1")));
   EXPECT_THAT(refusal([](Scene& s) { s.forces.push_back(constantForce(0, 3, Vec3::UnitX(), 0.0, 1.0)); }),
               ThrowsMessage<InputError>(HasSubstr("force 0: corner")));
 }

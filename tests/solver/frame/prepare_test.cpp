@@ -107,7 +107,8 @@ TEST(Prepare, WhoHasEndedItIsNotCalledAgain) {
 
 TEST(Prepare, RefusesANegativeBudget) {
   Simulation simulation(towerScene(1));
-  EXPECT_THAT([&] { prepare(simulation, {.budget_s = -1.0}); }, ThrowsMessage<InputError>(HasSubstr("found a budget of -1 s")));
+  EXPECT_THAT([&] { prepare(simulation, {.budget_s = -1.0}); },
+              ThrowsMessage<InputError>(HasSubstr("expected a budget of 0 s or more, got -1 s")));
   EXPECT_FALSE(isPrepared(simulation));
 }
 

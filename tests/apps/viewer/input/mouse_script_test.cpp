@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 #include "tests/support/program.h"
+#include "tests/support/says.h"
 
 #include <fstream>
 #include <gmock/gmock.h>
@@ -11,7 +12,6 @@ namespace springtower {
 namespace {
 
 using ::testing::ElementsAre;
-using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
 TEST(MouseScript, TheMouseGoesStraightFromStepToStep) {
@@ -37,7 +37,7 @@ TEST(MouseScript, SaysWhatIsWrong) {
       readMouseScript(path);
       ADD_FAILURE() << line;
     } catch (const InputError& error) {
-      EXPECT_THAT(error.what(), HasSubstr("mouse, line 2: found '" + std::string(line) + "', allowed")) << line;
+      EXPECT_THAT(error.what(), says("mouse, line 2: expected ..., got '" + std::string(line) + "'")) << line;
     }
   }
   EXPECT_THROW(readMouseScript(scratch.file("none")), InputError);
