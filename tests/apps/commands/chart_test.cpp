@@ -419,7 +419,8 @@ TEST(Chart, RefusesRecordsOfFallsWithoutTheirColumns) {
   const ScratchFolder scratch;
   std::ofstream(scratch.file("peers.csv"))
       << "engine,version,settings,scene,threads,median_ms,penetration_end_mm,verdict\nBox,1,a,heap:200,1,1,0.1,moves\n";
-  expectRefusal({"--peers", scratch.file("peers.csv"), "--out", scratch.file("out")}, "expected a column 'penetration_max_mm', got none");
+  expectRefusal({"--peers", scratch.file("peers.csv"), "--out", scratch.file("out")},
+                "expected a column 'penetration_max_mm', got none");
 }
 
 TEST(Chart, RefusesRecordsOfStacksWithoutTheirColumns) {
