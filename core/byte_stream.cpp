@@ -35,8 +35,8 @@ std::uint64_t checksumOf(std::string_view bytes) {
   return hash.value();
 }
 
-[[noreturn]] void refuseSeal(std::string_view source, std::string_view found, std::string_view allowed) {
-  throw InputError(fmt::format("{}: expected {}, got {}", source, allowed, found));
+[[noreturn]] void refuseSeal(std::string_view source, std::string_view got, std::string_view expected) {
+  throw InputError(fmt::format("{}: expected {}, got {}", source, expected, got));
 }
 
 void checkLetters(SealKind kind, std::string_view bytes, std::string_view source) {
@@ -66,8 +66,8 @@ std::size_t ByteReader::count() {
   return size;
 }
 
-void ByteReader::refuse(std::string_view found, std::string_view allowed) const {
-  refuseSeal(source_, found, allowed);
+void ByteReader::refuse(std::string_view got, std::string_view expected) const {
+  refuseSeal(source_, got, expected);
 }
 
 void ByteReader::end() const {

@@ -45,7 +45,7 @@ class ByteReader {
   /// The number of elements of a container, of which each has a byte at least.
   std::size_t count();
   /// Throws InputError: what is expected, and what it got in its place.
-  [[noreturn]] void refuse(std::string_view found, std::string_view allowed) const;
+  [[noreturn]] void refuse(std::string_view got, std::string_view expected) const;
   /// Throws InputError unless all bytes have been read.
   void end() const;
 

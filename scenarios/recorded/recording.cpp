@@ -177,7 +177,7 @@ Json json(const SceneChoice& choice) {
 
 SceneChoice choiceFrom(const Json& json, const std::string& where) {
   if (!json.is_object() || !json.contains("springtower_recording") || json.at("springtower_recording") != kFormat)
-    throw InputError(where + ": this is no recording of the viewer");
+    throw InputError(where + ": expected a recording of the viewer, got none");
   SceneChoice choice;
   choice.name = text(json, "scene", where);
   if (json.contains("scene_bytes")) {

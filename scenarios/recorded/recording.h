@@ -80,7 +80,7 @@ std::string headerLine(const SceneChoice& choice);
 std::string frameLine(const std::vector<LoggedFrame>& frames, std::size_t frame);
 
 /// Reads one. Of a file that was broken off in the middle of a line, as a process that is killed leaves it, the whole lines are
-/// read, and `missing` says so. Throws InputError naming the file, the line and the key, what was found and what is allowed:
+/// read, and `missing` says so. Throws InputError naming the file, the line and the key, what is expected and what it got:
 /// every number is within the limits of what it sets, blocks are the scene's and may move, orientations are unit quaternions.
 Recording readRecording(const std::string& path);
 

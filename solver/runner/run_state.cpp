@@ -62,7 +62,7 @@ LoadedRun readRun(const std::string& path, const std::string& source) {
   const MoveRun& moves = run.progress.moves;
   const bool fits = run.progress.reference.size() == blocks && moves.leftOut.size() == blocks &&
                     run.progress.laid <= moves.laid.size() && (run.scene.moves.empty() || moves.rigid.size() == blocks);
-  if (!fits) reader.refuse("moves of other blocks", "those of the scene in it");
+  if (!fits) reader.refuse("those of others", "moves of the scene's blocks");
   loaded.commit = file.commit;
   return loaded;
 }

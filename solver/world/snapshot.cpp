@@ -19,7 +19,7 @@ void transferShape(Stream& stream, StoredShape& stored) {
   stream(stored.count, stored.incidentFace, stored.referenceFace, upperIsB, slips, kind);
   if constexpr (Stream::kReads) {
     if (stored.count < 0 || stored.count > static_cast<std::int8_t>(kManifoldPoints) || kind > PointKind::anchor)
-      stream.refuse("a contact that cannot be", "one as it was written");
+      stream.refuse("one that cannot be", "a contact as it was written");
     stored.upperIsB = upperIsB;
     stored.slips = slips;
     stored.kind = kind;
@@ -111,7 +111,7 @@ void checkPairs(const Snapshot& snapshot, const ByteReader& reader) {
   for (const std::vector<double>& axis : pairs.axis) fits = fits && axis.size() == count;
   for (const BlockPair& pair : pairs.key) fits = fits && pair.a >= 0 && pair.a < blocks && pair.b >= -1 && pair.b < blocks;
   for (std::size_t at = 0; fits && at < count; ++at) fits = pairs.phase[at] <= PairPhase::edge;
-  if (!fits) reader.refuse("pairs of blocks that cannot be", "those that were written");
+  if (!fits) reader.refuse("others, which cannot be", "the pairs of blocks that were written");
 }
 
 }  // namespace

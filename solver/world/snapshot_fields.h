@@ -259,7 +259,7 @@ void fieldsOf(Stream& stream, SparseFactors& sparse) {
     if (size == 0) return;
     if (size < 0 || start.size() != static_cast<std::size_t>(size) + 1 || row.size() != value.size() || start.front() != 0 ||
         start.back() != static_cast<Index>(row.size())) {
-      stream.refuse("a sparse matrix whose lists do not fit", "one as it was written");
+      stream.refuse("one whose lists do not fit", "a sparse matrix as it was written");
     }
     sparse.matrix =
         Eigen::Map<const Matrix>(size, size, static_cast<Eigen::Index>(row.size()), start.data(), row.data(), value.data());

@@ -41,7 +41,7 @@ Vec3 placeIn(std::size_t frame) {
   return recordedGame().frames[frame].input.hand.place;
 }
 
-// A hand that is sure of itself would draw at the largest speed from begin to end.
+// A steady pull would have the largest speed from begin to end.
 void expectHesitation(const Held& draw) {
   constexpr double kSlow_m_s = 0.01;
   const Vec3 line = recordedGame().frames[draw.begin].input.hand.line;

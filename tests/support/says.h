@@ -8,7 +8,7 @@
 namespace springtower {
 
 /// Matches a text that has the parts of `message` between its dots, one after the other: errors say "PLACE: expected Y, got X",
-/// and `says("force: corner: expected ..., got 8")` asks for place and X, whatever Y is. Without dots it is HasSubstr.
+/// and `says("force: corner: expected ..., got 8")` matches PLACE and X, with any Y. Without dots it is HasSubstr.
 MATCHER_P(says, message, std::string(negation ? "does not say \"" : "says \"") + message + '"') {
   constexpr std::string_view kGap = "...";
   const std::string text(arg);
