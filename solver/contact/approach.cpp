@@ -135,8 +135,16 @@ std::array<double, kManifoldPoints> depthsAt(const IslandStep& step, const Conta
   return pointForces(manifold, {&upper, &still, &still}, {manifold.lower < 0 ? nullptr : &lower, &still, &still}, step.law).depth;
 }
 
+// Overlap of the blocks of a pair along their best separating direction, m; negative where they are apart.
+double overlapOf(const BlockPair& pair, const ParticleArray& position) {
+  return -findSeparation(cornersOf(position, static_cast<std::size_t>(pair.a)),
+                         cornersOf(position, static_cast<std::size_t>(pair.b)))
+              .best();
+}
+
 // Whether a touching pair has an impact in the step just computed: points that first touch in it closed too fast, or the blocks
-// overlap by more than `most` beyond their deepest point. `displacement`: upper bound of their relative displacement, m.
+// overlap by more than `most` beyond their deepest point and beyond what they overlapped before. `displacement`: upper bound of
+// their relative displacement, m.
 bool hasImpact(const IslandStep& step, std::size_t at, double displacement, double most) {
   const BlockPair& pair = step.engine.pairs.key[at];
   const ContactView manifold = contactOf(step.engine, at);
@@ -161,8 +169,8 @@ bool hasImpact(const IslandStep& step, std::size_t at, double displacement, doub
   }
   if (!late) return false;
   const double known = std::max(0.0, *std::max_element(depth.begin(), depth.begin() + manifold.count));
-  return -findSeparation(cornersOf(now, static_cast<std::size_t>(pair.a)), cornersOf(now, static_cast<std::size_t>(pair.b)))
-              .best() > known + most;
+  const double overlap = overlapOf(pair, now);
+  return overlap > known + most && overlap > overlapOf(pair, step.engine.memo.previous) + most;
 }
 
 // Velocity of a place on a block, m/s.

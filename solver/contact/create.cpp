@@ -65,12 +65,14 @@ void edgeManifold(const Separation& separation, const BlockPair& pair, Manifold&
 
 // Whether faces touch although edges separate better: at two points or more, as deep as the edges. (The crossing of nearly
 // parallel edges would be another point of the outline at each refresh, and give no resistance to sinking.) Faces far from
-// parallel touch along a line at most, and then must separate as well as the edges.
+// parallel touch along a line at most, and then must separate as well as the edges. `shallower`: by how much the points of the
+// faces may be less deep than the edges; what holds the blocks at the edges would be a gap to the points.
 bool sharesOutline(const Separation& separation, double face, const CornerView& upper, const CornerView& lower, double slack,
-                   const Manifold& fresh) {
+                   double shallower, const Manifold& fresh) {
   if (fresh.count < 2) return false;
   const Deepest deepest = deepestPoints(fresh, upper, lower, slack);
   if (deepest.count < 2 || deepest.depth > slack - separation.edge) return false;
+  if (separation.edge < 0.0 && deepest.depth < -separation.edge - shallower) return false;
   const Vec3 incident = faceFrame(upper, fresh.incidentFace).normal;
   const Vec3 reference = faceFrame(lower, fresh.referenceFace).normal;
   return std::abs(incident.dot(reference)) >= tuning::kFaceCosine ||
@@ -94,7 +96,8 @@ void chooseManifold(const Simulation& simulation, const Separation& separation, 
   const bool crossed = separation.edge > face + slack;
   faceManifold(separation, a, b, limits, pair, referenceIsB, fresh);
   const bool upperIsA = fresh.upper == pair.a;
-  if (crossed && !sharesOutline(separation, face, upperIsA ? a : b, upperIsA ? b : a, edgeSlack, fresh)) {
+  const double shallower = tuning::kEdgeDepthSlack * simulation.tolerance_m;
+  if (crossed && !sharesOutline(separation, face, upperIsA ? a : b, upperIsA ? b : a, edgeSlack, shallower, fresh)) {
     edgeManifold(separation, pair, fresh);
     return;
   }

@@ -130,9 +130,7 @@ void evaluate(IslandStep& step, const MotionState& state, const ParticleArray* c
   const bool sameMotion = carried == &state.velocity;
   const double kick_s = sameMotion && update == PointUpdate::store ? step.kick_s : 0.0;
   const Evaluation evaluation{
-      {advance_s, step.maxStiffening, update == PointUpdate::trial ? 0.0 : 1.0, step.sticks, kick_s, step.smoothing_j},
-      sameMotion,
-      update};
+      {advance_s, step.maxStiffening, update == PointUpdate::trial, step.sticks, kick_s, step.smoothing_j}, sameMotion, update};
   overBlocks(step, [&](std::size_t first, std::size_t last) {
     const auto blocks = step.blocks.subspan(first, last - first);
     computeFrames(state.position, blocks, engine.memo.frames);

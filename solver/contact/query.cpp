@@ -1,10 +1,11 @@
 #include "solver/contact/query.h"
 
+#include "core/parallel.h"
 #include "core/tuning.h"
 #include "solver/block/inertia.h"
 #include "solver/block/springs.h"
 #include "solver/contact/rigid_contacts.h"
-#include "solver/world/island_step.h"
+#include "solver/world/over_island.h"
 #include "solver/world/stiffness.h"
 
 #include <algorithm>
@@ -32,7 +33,8 @@ struct ManifoldNow {
     const double behind = simulation.engine->memo.blockHistory[upper].lastExplicitStep_s;
     const double kick = traitsOf(simulation.scene.settings.method).leapfrog ? behind : 0.0;
     const PointRows rows{manifold.points.data(), manifold.points.data() + 1};
-    manifoldForces(manifold, up, low, law, {behind, 1.0, 1.0, false, kick}, reducedMass(simulation.model, stored), &rows, force);
+    manifoldForces(manifold, up, low, law, {behind, 1.0, false, false, kick}, reducedMass(simulation.model, stored), &rows,
+                   force);
     points = pointForces(manifold, up, low, law);
     if (stored.kind != PointKind::penalty) {
       manifold = copyOf(stored);
@@ -188,6 +190,38 @@ Energy energy(const Simulation& simulation) {
     energy.kinetic += 0.5 * model.mass[b] * massProduct(settings.inertia, state.velocity, coming, b);
   }
   return energy;
+}
+
+IslandEnergy islandEnergy(const IslandStep& step) {
+  const Simulation& simulation = step.simulation;
+  const BlockModel& model = simulation.model;
+  const ParticleArray& position = simulation.state.position;
+  const ParticleArray& velocity = simulation.state.velocity;
+  const Vec3 gravity = simulation.scene.gravity.at(simulation.time_s);
+  const auto sum = [](const IslandEnergy& a, const IslandEnergy& b) {
+    return IslandEnergy{a.kinetic_j + b.kinetic_j, a.total_j + b.total_j};
+  };
+  const auto ofBlocks = [&](std::size_t first, std::size_t last) {
+    IslandEnergy energy;
+    for (const std::int32_t block : step.blocks.subspan(first, last - first)) {
+      const auto b = static_cast<std::size_t>(block);
+      energy.kinetic_j += 0.5 * model.mass[b] * massProduct(simulation.scene.settings.inertia, velocity, velocity, b);
+      energy.total_j += springEnergy(model, position, b) - model.mass[b] * gravity.dot(centre(position, b));
+    }
+    energy.total_j += energy.kinetic_j;
+    return energy;
+  };
+  const auto ofPairs = [&](std::size_t first, std::size_t last) {
+    IslandEnergy energy;
+    for (const std::int32_t pair : step.pairs.subspan(first, last - first)) {
+      const auto at = static_cast<std::size_t>(pair);
+      if (!step.engine.pairs.touches(at)) continue;
+      energy.total_j += energyOf(simulation, ManifoldNow(simulation, step.law, contactOf(step.engine, at)), step.law);
+    }
+    return energy;
+  };
+  return sum(mergeRanges(step.blocks.size(), tuning::kBlockGrain, isWide(step), IslandEnergy{}, ofBlocks, sum),
+             mergeRanges(step.pairs.size(), tuning::kPairGrain, isWide(step), IslandEnergy{}, ofPairs, sum));
 }
 
 double energyRise(const Energy& before, const Energy& after) {

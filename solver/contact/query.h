@@ -1,6 +1,7 @@
 #pragma once
 
 #include "solver/world/engine.h"
+#include "solver/world/island_step.h"
 
 namespace springtower {
 
@@ -19,5 +20,12 @@ struct ContactWrench {
 
 /// The wrench on the upper block. All zero where the manifold is separated.
 ContactWrench contactWrenchOnUpper(const Simulation& simulation, const ContactView& manifold);
+
+/// Energy of an island, with the gravity of the frame's start and the islands' contacts with what it lies on.
+struct IslandEnergy {
+  double kinetic_j = 0.0;
+  double total_j = 0.0;  ///< with gravity's, and what blocks and contacts store
+};
+IslandEnergy islandEnergy(const IslandStep& step);
 
 }  // namespace springtower

@@ -1,5 +1,7 @@
 #include "solver/frame/island.h"
 
+#include "core/tuning.h"
+#include "solver/contact/query.h"
 #include "solver/contact/rigid_contacts.h"
 #include "solver/contact/update.h"
 #include "solver/frame/explicit_steps.h"
@@ -23,7 +25,23 @@ double takeBackImplicitSteps(IslandStep& step) {
   return step.part.begin_s;
 }
 
-// Implicit steps, as far as they fit and converge; then rigid ones.
+// Whether an island moves, and nothing does work on it in the frame.
+bool movesAlone(const IslandStep& step, const IslandFacts& facts) {
+  return facts.moves && facts.leftAlone && step.driven.empty() && step.simulation.scene.gravity.sway_deg == 0.0;
+}
+
+// Implicit steps lose energy as long as contacts last. Where a block that rocks lands or leaves in them, it may come out faster.
+bool hasGained(const IslandStep& step, const IslandEnergy& before) {
+  const IslandEnergy now = islandEnergy(step);
+  const Simulation& simulation = step.simulation;
+  double weight_n = 0.0;
+  for (const std::int32_t block : step.blocks) weight_n += simulation.model.mass[static_cast<std::size_t>(block)];
+  weight_n *= simulation.scene.gravity.magnitude;
+  return now.total_j - before.total_j > tuning::kMaxImplicitGain * (before.kinetic_j + now.kinetic_j) +
+                                            tuning::kFreePushOut * weight_n * simulation.lengths.blockHeight_m;
+}
+
+// Implicit steps, as far as they fit and converge; then rigid ones. These also take a frame in which implicit ones gain energy.
 IslandOutcome runByModes(IslandStep& step) {
   const IslandFacts facts = islandFacts(step);
   bool isStanding = false;  // found only where implicit steps fail
@@ -33,10 +51,13 @@ IslandOutcome runByModes(IslandStep& step) {
   setMode(step, mode);
   if (facts.leftAlone) noteFallen(step);
   if (mode == IslandMode::implicit) {
+    const bool isChecked = movesAlone(step, facts);
+    const IslandEnergy before = isChecked ? islandEnergy(step) : IslandEnergy{};
     outcome = runImplicitSteps(step, facts.mostlyFallen, begin_s);
-    if (!outcome.inside || begin_s >= step.part.end_s) return outcome;
+    const bool ends = begin_s >= step.part.end_s;
+    if (!outcome.inside || (ends && !(isChecked && hasGained(step, before)))) return outcome;
     isStanding = stands(step, facts.mostlyFallen);
-    if (facts.rigidBefore) begin_s = takeBackImplicitSteps(step);
+    if (facts.rigidBefore || ends) begin_s = takeBackImplicitSteps(step);
     setMode(step, IslandMode::rigid);
   }
   const int before = outcome.substeps;

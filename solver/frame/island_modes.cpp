@@ -5,6 +5,7 @@
 #include "solver/contact/evaluate_forces.h"
 #include "solver/contact/query.h"
 #include "solver/contact/rigid_contacts.h"
+#include "solver/implicit/step_count.h"
 #include "solver/rigid/run.h"
 #include "solver/world/checkpoint.h"
 #include "solver/world/over_island.h"
@@ -30,23 +31,38 @@ double speedOf(const IslandStep& step, double speed) {
   return speed * step.simulation.lengths.blockHeight_m / step.simulation.lengths.fallTime_s;
 }
 
-// Whether the root mean square speed, weighted by mass, is above this one, in sqrt(g h).
-bool isFasterThan(const IslandStep& step, double speed) {
+// Whether the root mean square speed, weighted by mass, is above this one.
+bool isFasterThan(const IslandStep& step, double least_m_s) {
   double mass_kg = 0.0;
   double twiceKinetic_j = 0.0;
   for (const std::int32_t block : step.blocks) {
     mass_kg += massOf(step, block);
     twiceKinetic_j += massOf(step, block) * centreVelocity(step, block).squaredNorm();
   }
-  const double least = speedOf(step, speed);
-  return twiceKinetic_j > mass_kg * least * least;
+  return twiceKinetic_j > mass_kg * least_m_s * least_m_s;
 }
 
-// Whether blocks that have more than half of the mass move faster than this against a velocity, m/s.
+bool isLeftAlone(const IslandStep& step) {
+  return !holdsTether(step) && !isPushed(step);
+}
+
+// Whether a hand or a user force acts on this block itself.
+bool isLed(const IslandStep& step, std::int32_t block) {
+  if (holdsTether(step) && static_cast<std::int32_t>(index(step.simulation.tether.block)) == block) return true;
+  const Simulation& simulation = step.simulation;
+  const double end_s = simulation.time_s + simulation.scene.settings.frame_s;
+  return std::any_of(simulation.scene.forces.begin(), simulation.scene.forces.end(),
+                     [&](const UserForce& user) { return user.block == block && user.actsWithin(simulation.time_s, end_s); });
+}
+
+// Whether blocks that have more than half of the mass move faster than this against a velocity, m/s. What is led does not count:
+// it moves as fast as a hand does.
 bool mostIsFasterThan(const IslandStep& step, double least_m_s, const Vec3& against) {
+  const bool leftAlone = isLeftAlone(step);
   double mass_kg = 0.0;
   double fast_kg = 0.0;
   for (const std::int32_t block : step.blocks) {
+    if (!leftAlone && isLed(step, block)) continue;
     mass_kg += massOf(step, block);
     if ((centreVelocity(step, block) - against).squaredNorm() > least_m_s * least_m_s) fast_kg += massOf(step, block);
   }
@@ -69,10 +85,6 @@ bool isSupported(const IslandStep& step) {
     const BlockPair& key = step.engine.pairs.key[at];
     return step.engine.pairs.touches(at) && (key.b < 0 || sleeps(step.simulation, key.a) || sleeps(step.simulation, key.b));
   });
-}
-
-bool isLeftAlone(const IslandStep& step) {
-  return !holdsTether(step) && !isPushed(step);
 }
 
 // Converts the spring forces of a manifold's points to initial impulses.
@@ -136,7 +148,8 @@ IslandFacts islandFacts(const IslandStep& step) {
     pinned += step.engine.memo.islandHistory[static_cast<std::size_t>(block)].rigidFrames > 0 ? 1U : 0U;
   facts.rigidPinned = 2 * pinned > step.blocks.size();
   facts.mostlyFallen = isMostlyFallen(step);
-  if (!facts.leftAlone || facts.rigidPinned) return facts;
+  if (facts.leftAlone && facts.rigidPinned) return facts;
+  facts.moves = isFasterThan(step, quiescentSpeed(step.simulation));
   const double entry = speedOf(step, tuning::kRigidEntrySpeed);
   facts.fast = mostIsFasterThan(step, entry, Vec3::Zero()) &&
                (!isSupported(step) || mostIsFasterThan(step, 0.5 * entry, meanVelocity(step)));
@@ -153,7 +166,7 @@ IslandMode nextMode(ModeChange when, const IslandFacts& facts) {
   bool rigid = false;
   switch (when) {
     case ModeChange::frameBegins:
-      rigid = facts.leftAlone && (facts.rigidPinned || facts.fast);
+      rigid = facts.fast || (facts.leftAlone && facts.rigidPinned);
       break;
     case ModeChange::frameContinues:
       rigid = facts.rigidBefore;
@@ -199,8 +212,8 @@ IslandOutcome runRigidMode(IslandStep& step, double begin_s, bool stands) {
   const int groups = static_cast<int>(std::ceil(most * share / tuning::kSubstepsPerStep));
   const IslandOutcome outcome = runRigidSteps(step, groups * tuning::kSubstepsPerStep, begin_s);
   // A block that rocks is slow for a moment at each turn.
-  const bool moving =
-      isFasterThan(step, tuning::kRigidExitSpeed) && step.engine.scratch.rigidIslands.of(step.blocks.front()).rebounds;
+  const bool moving = isFasterThan(step, speedOf(step, tuning::kRigidExitSpeed)) &&
+                      step.engine.scratch.rigidIslands.of(step.blocks.front()).rebounds;
   const std::int32_t least = moving ? framesOf(simulation, tuning::kRigidRestTime) : 0;
   for (const std::int32_t block : step.blocks) {
     BlockHistory& history = step.engine.memo.blockHistory[static_cast<std::size_t>(block)];

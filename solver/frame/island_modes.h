@@ -20,9 +20,11 @@ struct IslandFacts {
   bool leftAlone = false;     ///< neither a hand nor a user force acts
   bool rigidBefore = false;   ///< rigid steps advanced one of its blocks in the last frame
   bool rigidPinned = false;   ///< more than half of its blocks are to stay in rigid steps: they moved, or implicit ones failed
+  bool moves = false;         ///< it is faster than what rests; not looked at where it is left alone and pinned
   bool mostlyFallen = false;  ///< more than half of its blocks have fallen since they slept last
   /// Whether blocks that have more than half of the mass are faster than 0.45 sqrt(g h): they could rise by a tenth of their
-  /// height. What stands on something and slides as a whole is not fast: that is smooth.
+  /// height. What stands on something and slides as a whole is not fast: that is smooth. Blocks on which a hand or a force acts
+  /// themselves do not count.
   bool fast = false;
 };
 IslandFacts islandFacts(const IslandStep& step);
@@ -36,7 +38,7 @@ void noteFallen(const IslandStep& step);
 bool stands(const IslandStep& step, bool mostlyFallen);
 
 /// The transition table:
-///   frame begins: rigid if left alone and fast or pinned to rigid steps; else implicit.
+///   frame begins: rigid if fast, or left alone and pinned to rigid steps; else implicit.
 ///   frame continues, after another part of it: rigid where a block was in the last part, else implicit.
 /// Where implicit steps do not fit or do not converge, rigid ones take the rest of the frame.
 IslandMode nextMode(ModeChange when, const IslandFacts& facts);

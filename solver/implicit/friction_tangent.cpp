@@ -190,15 +190,17 @@ PointStiffness pointStiffness(const IslandStep& step, const ContactView& manifol
   const double stiffness = law.stiffnessOf(manifold.upper, manifold.lower);
   const PenaltyRow& row = trial.penalty(i);
   const std::size_t lane = laneOf(i);
-  // First contact in this step: its damping velocity is its depth over the step.
+  // First contact in this step: its Maxwell branch has not relaxed.
   const bool born = touchingAt(manifold, i) == 0.0;
+  // The damping velocity of a spring that begins to push in this step is its elastic depth over the step.
+  const bool pushedBefore = touchingAt(manifold, i) == 1.0;
   const double damping = law.dampingTime_s / step_s;
   const double relaxing = born ? law.maxwellRatio : law.maxwellRatio * law.maxwellTime_s / (law.maxwellTime_s + step.drift_s);
   const bool smoothed = step.smoothing_j > 0.0;
   const double k = stiffness * (smoothed ? row.stiffening[lane] : std::max(1.0, row.stiffening[lane]));
   const double held = smoothed ? stiffness * stiffestOf(manifold.penalty(i)) : k;
   PointStiffness result;
-  result.normal = k * (1.0 + relaxing + (born ? law.dampingTime_s / step.drift_s : damping));
+  result.normal = k * (1.0 + relaxing + (pushedBefore ? damping : law.dampingTime_s / step.drift_s));
   result.tangential = held * (law.tangentialRatio * (1.0 + damping));
   if ((mask >> (8 + i) & 1U) != 0) {
     // Before the first displacement the slip of the step before applies.

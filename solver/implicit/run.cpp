@@ -101,12 +101,13 @@ int mostSteps(const IslandStep& step, bool forced, bool mostlyFallen) {
   return rigidIsRight ? tuning::kMaxFrequencySteps : tuning::kMaxStandingSteps;
 }
 
-// Step count for retrying the rest of the frame after Newton failed: 4 a frame, 8 if 4 were already in use, and `most` after
-// these. Needed when a whole face starts to slip at once.
+// Step count for retrying the rest of the frame after Newton failed: 4 a frame, or the next of 8, 16, 32 and so on, up to `most`.
+// Needed when a whole face starts to slip at once.
 int retryStepCount(double share, int steps, int most) {
   const auto of = [&](int frame) { return static_cast<int>(std::lround(share * frame)); };
-  if (of(tuning::kStandardImplicitSteps) > steps) return of(tuning::kStandardImplicitSteps);
-  if (of(tuning::kMaxFrequencySteps) > steps) return of(tuning::kMaxFrequencySteps);
+  for (int frame = tuning::kStandardImplicitSteps; frame < most; frame *= 2) {
+    if (of(frame) > steps) return of(frame);
+  }
   return of(most);
 }
 
@@ -115,10 +116,10 @@ int fittingSteps(const IslandStep& step, int steps, bool forced, bool mostlyFall
   const auto fit = [&](int count) { return implicitStepsFit(step, step.part.duration_s() / stepsInPart(step, count)); };
   if (fit(steps)) return steps;
   const int most = mostSteps(step, forced, mostlyFallen);
-  for (const int finer : {std::min(tuning::kStandardImplicitSteps, most), most}) {
+  for (int finer = tuning::kStandardImplicitSteps; finer < most; finer *= 2) {
     if (finer > steps && fit(finer)) return finer;
   }
-  return 0;
+  return most > steps && fit(most) ? most : 0;
 }
 
 // Restarts BDF2 (drops the history) when an external force ends: acceleration jumps, and the history is wrong. Not when one
@@ -274,7 +275,7 @@ IslandOutcome runImplicitSteps(IslandStep& step, bool mostlyFallen, double& reac
     const double share = (end_s - reached_s) / simulation.scene.settings.frame_s;
     const int finest = retryStepCount(share, steps, forced ? tuning::kMaxLedSteps : tuning::kMaxStandingSteps);
     const bool canRetryFiner = finest > steps && simulation.scene.settings.substeps == 0 && !mostlyFallen;
-    if (!stepImplicit(step, canRetryFiner || mostlyFallen)) {
+    if (!stepImplicit(step, canRetryFiner)) {
       const int finer = canRetryFiner ? retryStepCount(share, steps, mostSteps(step, forced, mostlyFallen)) : 0;
       if (finer > steps) {
         takeSteps(finer);

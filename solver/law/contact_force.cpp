@@ -15,6 +15,8 @@ namespace {
 // Times the coefficient of friction, of points that stick whatever the force.
 constexpr double kStickingFriction = 1e6;
 
+constexpr double kUnbounded = 1e300;
+
 struct LawStep {
   const ContactLaw& law;
   const ContactStep& step;
@@ -24,7 +26,7 @@ struct LawStep {
   double impactFactor;    // stiffness scale per squared approach speed
   double stiffeningKeep;  // factor on a stiffening beyond 1 after the step
   double maxwellGain;     // share of its lag that the Maxwell branch loses in the step
-  double perAdvance;      // 1/s; 0 where the points are not advanced
+  double mostDamped;      // 1/s, bound of a damping velocity over the elastic depth
   double pointMass;       // kg, lower bound of the mass of a point: all four of a face that is hit flat push and squash the block
 };
 
@@ -40,7 +42,7 @@ SPRINGTOWER_INLINE LawStep lawStep(const ContactView& m, const ContactLaw& law, 
           reducedMass / (stiffness * aim * aim),
           1.0 / (1.0 + step.advance_s / law.stiffeningTime_s),
           step.advance_s / (law.maxwellTime_s + step.advance_s),
-          step.advance_s > 0.0 ? 1.0 / step.advance_s : 0.0,
+          step.endOnly && step.advance_s > 0.0 ? 1.0 / step.advance_s : kUnbounded,
           reducedMass / tuning::kFlatImpactInverseMass};
 }
 
@@ -172,7 +174,7 @@ SPRINGTOWER_INLINE void pointLaw(const LawStep& s, const Lanes& depth, const Lan
   impact = impact < s.step.maxStiffening ? impact : zero + s.step.maxStiffening;
   p.stiffening = known ? 1.0 + (p.stiffening - 1.0) * s.stiffeningKeep : impact;
   const Lanes lower = p.restDepth < depth ? p.restDepth : depth;
-  p.restDepth = known ? lower : depth * s.step.firstRestDepthShare;
+  p.restDepth = known ? lower : (s.step.endOnly ? zero : depth);
 
   const Lanes elastic = depth - p.restDepth;
   const Lanes maxwell = p.maxwellDepth + (elastic - p.maxwellDepth) * s.maxwellGain;
@@ -180,10 +182,11 @@ SPRINGTOWER_INLINE void pointLaw(const LawStep& s, const Lanes& depth, const Lan
       elastic * (1.0 + 1.0 / std::max(law.maxwellRatio, tuning::kMinMaxwellRatio));  // beyond this the Maxwell branch would pull
   p.maxwellDepth = known ? (maxwell < pushedOut ? maxwell : pushedOut) : zero;
   const Lanes stiffness = s.stiffness * p.stiffening;
-  // Implicit steps only: a point that makes contact inside the step has been closing for a part of it. Its damping velocity is
-  // limited to depth / step; otherwise the damping force would jump at zero depth, and the step equation might have no solution.
-  // (In explicit steps such a point has no elastic depth yet, so no force.)
-  const Lanes damped = known | (depth > closing * s.step.advance_s) ? closing : depth * s.perAdvance;
+  // A spring that begins to push inside an implicit step has been closing for a part of it. The damping velocity is limited to
+  // elastic depth / step: otherwise the damping force would jump where the spring begins, and the step equation might have no
+  // solution.
+  const Lanes mostDamped = elastic * s.mostDamped;
+  const Lanes damped = closing < mostDamped ? closing : mostDamped;
   Lanes push = stiffness * (elastic + law.maxwellRatio * (elastic - p.maxwellDepth) + law.dampingTime_s * damped);
   push = touching & (push > zero) & (elastic > zero) ? push : zero;
   if (s.step.kick_s > 0.0 && any(p.stiffening > one)) {

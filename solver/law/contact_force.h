@@ -40,10 +40,10 @@ struct ContactLaw {
 struct ContactStep {
   double advance_s = 0.0;      ///< s by which what the contact points store lags behind the positions
   double maxStiffening = 1.0;  ///< upper bound of the stiffening of a contact made now
-  /// Rest depth of a point at first contact, over its depth: at 1 the spring starts unloaded at the depth where it is detected,
-  /// which adds no energy; at 0 it starts at the surface, which an implicit step requires, as it evaluates the step's end only.
-  /// The damping velocity is then limited to depth over step.
-  double firstRestDepthShare = 1.0;
+  /// Whether forces are those at the step's end alone, as in implicit steps. Then the spring of a point that makes contact starts
+  /// at the surface, and damping velocities are limited to elastic depth over step; otherwise it starts unloaded at the depth
+  /// where it is detected, which adds no energy.
+  bool endOnly = false;
   bool sticks = false;  ///< whether points that push stick, where there is friction at all
   double kick_s = 0.0;  ///< s for which the force acts on the velocities of a leapfrog step; 0 in other steps
   /// J, of smoothed contacts, in the search for an equilibrium: every point, also across a gap, has the normal force N > 0 with

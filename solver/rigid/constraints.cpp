@@ -75,6 +75,21 @@ SPRINGTOWER_INLINE void followPush(const PackedPoint& p, double share, Lanes& la
   lasting += share * (acts - lasting);
 }
 
+// As what lasts of a point's force gets less, its springs would push the blocks out by as much, and as it grows, let them in
+// again. What they would push out stays an overlap without force instead, and what they let in is taken from that first: pushes
+// that vary from substep to substep would keep a heap in motion. (A stack that stands and is hit comes to rest without it.)
+SPRINGTOWER_INLINE void followSprings(const PackedPoint& p, const Lanes& before, Lanes& rest, Lanes& gap) {
+  const Lanes zero{};
+  const Lanes fallen = before - p.deepest;
+  const Lanes slack = gap + p.deepest;
+  Lanes kept, taken;
+  smallerOf(fallen, slack < zero ? -slack : zero, kept);
+  largerOf(fallen, -rest, taken);
+  const Lanes change = fallen > zero ? kept : taken;
+  rest += change;
+  gap += change;
+}
+
 SPRINGTOWER_INLINE void placePoint(const LanePlace& upper, const LanePlace& lower, const Springs& springs, PackedPlace& own,
                                    PackedPoint& p) {
   LaneVector onUpper, onLower;
@@ -88,8 +103,12 @@ SPRINGTOWER_INLINE void placePoint(const LanePlace& upper, const LanePlace& lowe
   dot(p.normal, apart, p.gap);
   p.gap += own.rest;
   p.softness = own.compliance / springs.step_s;
+  const Lanes tolerance = springs.tolerance_m + Lanes{};
+  Lanes before;
+  smallerOf(p.softness * own.lasting, tolerance, before);
   followPush(p, springs.share, own.lasting);
-  smallerOf(p.softness * own.lasting, springs.tolerance_m + Lanes{}, p.deepest);
+  smallerOf(p.softness * own.lasting, tolerance, p.deepest);
+  if (springs.heap) followSprings(p, before, own.rest, p.gap);
   p.armUpper = {0.5 * (onUpper.x + onLower.x), 0.5 * (onUpper.y + onLower.y), 0.5 * (onUpper.z + onLower.z)};
   p.armLower = p.armUpper;
   subtract(upper.centre, p.armUpper);

@@ -18,6 +18,7 @@ struct Springs {
   double step_s;       ///< its length
   double tolerance_m;  ///< how deep a push may press blocks into one another
   double rounding_m;   ///< of gaps
+  bool heap;           ///< whether most blocks have fallen: what springs push out then stays an overlap without force
   double share;        ///< of its mean over about a frame by which a push counts in a substep
 };
 

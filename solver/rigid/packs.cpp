@@ -209,7 +209,9 @@ void unpackGroup(ActingPoints& list, const PointGroup& group) {
     getLane(from.friction, group.lane, to.friction);
     to.push = from.push[group.lane];
     to.before = from.before[group.lane];
-    to.lasting = list.packed.places[packedRow(pair.first, i)].lasting[group.lane];
+    const PackedPlace& place = list.packed.places[packedRow(pair.first, i)];
+    to.rest = place.rest[group.lane];
+    to.lasting = place.lasting[group.lane];
     to.idle = from.idle[group.lane] != 0;
     to.sliding = from.sliding[group.lane] != 0;
   }

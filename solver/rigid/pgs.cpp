@@ -131,14 +131,18 @@ double workOfPushOut(const RigidIsland& island, double rate) {
   return rate * sum(sum4);
 }
 
+// Energy by which overlap may be pushed out in a frame without having been lost before, J.
+double freePushOut(const IslandStep& step, const RigidIsland& island) {
+  const double height_m = step.simulation.lengths.blockHeight_m;
+  return tuning::kFreePushOut * massOf(island) * step.simulation.scene.gravity.magnitude * height_m;
+}
+
 // The share of the usual rate at which overlap is pushed out. In rigid mode it is paid by energy that the frame has lost before,
 // and by as little beside it as lets a pile at rest come up again; a hand, a force or a driven block does work.
 double shareOfPushOut(const IslandStep& step, const RigidIsland& island, double rate) {
   if (isRigid(step.simulation.scene.settings.method) || isWorkedOn(step)) return 1.0;
   const double work_j = workOfPushOut(island, rate);
-  const double free_j =
-      tuning::kFreePushOut * massOf(island) * step.simulation.scene.gravity.magnitude * step.simulation.lengths.blockHeight_m;
-  return work_j > 0.0 ? std::clamp((free_j - island.gained_j) / work_j, 0.0, 1.0) : 1.0;
+  return work_j > 0.0 ? std::clamp((freePushOut(step, island) - island.gained_j) / work_j, 0.0, 1.0) : 1.0;
 }
 
 // Passes in rigid mode that cost little because few points are active, or that a stack needs which is hit and mostly stands: the
@@ -176,6 +180,30 @@ void relaxAndRebound(IslandStep& step, RigidIsland& island, int passes) {
   if (rebounds) forgetImpact(step, island);
 }
 
+// Of what the passes have moved blocks by beyond their velocities, lowers again what has lifted them by more than the frame has
+// lost: between very unlike masses a push that is too large gets less by a little in each pass only.
+void lowerUnpaid(const IslandStep& step, RigidIsland& island) {
+  if (!island.touches || isWorkedOn(step)) return;
+  const double unpaid_j =
+      kineticEnergy(island.bodies) - island.energyBefore_j - std::max(0.0, freePushOut(step, island) - island.gained_j);
+  if (!(unpaid_j > 0.0)) return;
+  const auto excessOf = [&](const RigidBody& body) { return Vec3(body.moved - step.drift_s * body.velocity); };
+  double lifted_j = 0.0;
+  for (const RigidBody& body : island.bodies) {
+    if (body.pushed && body.inverseMass > 0.0) lifted_j -= excessOf(body).dot(step.gravity) / body.inverseMass;
+  }
+  if (!(lifted_j > 0.0)) return;
+  const double share = std::min(1.0, unpaid_j / lifted_j);
+  for (RigidBody& body : island.bodies) {
+    if (!body.pushed || body.inverseMass == 0.0) continue;
+    const Vec3 excess = share * excessOf(body);
+    body.place -= excess;
+    body.moved -= excess;
+    turnAxes(-share * (body.turned - step.drift_s * body.spin), body.axes);
+    island.energyBefore_j -= excess.dot(step.gravity) / body.inverseMass;
+  }
+}
+
 // Few passes while an island is fast; more where its blocks overlap, or are coming to rest: then the load of a pile sinks in by
 // what a pass leaves, and there is no energy to lift it again.
 int rigidModePasses(const IslandStep& step, const RigidIsland& island) {
@@ -211,7 +239,7 @@ void stepImpulses(IslandStep& step, RigidIsland& island) {
   }
   island.energyBefore_j = kineticEnergy(island.bodies);
   readBodies(island);
-  const Springs springs{step.drift_s, step.simulation.tolerance_m, step.simulation.lengths.contactError_m,
+  const Springs springs{step.drift_s, step.simulation.tolerance_m, step.simulation.lengths.contactError_m, !island.stands,
                         step.drift_s / (step.drift_s + scene.settings.frame_s)};
   for (PackedPoints* packed : packsOf(island)) placeConstraints(island, springs, *packed);
   setImpacts(step, island);
@@ -233,7 +261,10 @@ void stepImpulses(IslandStep& step, RigidIsland& island) {
   // Nor with a driven block, which does work.
   if (rigidMode && island.touches && step.driven.empty())
     removeAddedEnergy(isolated, kineticEnergy(island.bodies) - island.energyBefore_j, island);
-  if (rigidMode) island.gained_j += kineticEnergy(island.bodies) - island.energyBefore_j;
+  if (rigidMode) {
+    lowerUnpaid(step, island);
+    island.gained_j += kineticEnergy(island.bodies) - island.energyBefore_j;
+  }
 }
 
 }  // namespace springtower

@@ -156,7 +156,7 @@ void warmStartFromManifold(const IslandStep& step, const RigidIsland& island, st
 }
 
 void storeInManifolds(IslandStep& step, RigidIsland& island, double substep_s) {
-  std::array<const PointList*, 2> lists = {&island.steady, &island.fast};
+  const std::array<const PointList*, 2> lists = {&island.steadyKnown, &island.fastKnown};
   std::array<std::size_t, 2> at{};
   for (const std::int32_t pair : step.pairs) {
     step.engine.scratch.covered[static_cast<std::size_t>(pair)] = 0;

@@ -213,9 +213,10 @@ void restoreFrame(Simulation& simulation) {
 }
 
 void restoreIsland(IslandStep& step) {
-  const FrameStartIn in = startOf(step.engine, step.blocks.front());
+  FrameStartIn& in = startOf(step.engine, step.blocks.front());
   for (const std::int32_t block : step.blocks) rewindBlock(step.simulation, static_cast<std::size_t>(block), in);
   for (const std::int32_t at : step.pairs) rewindPair(step.engine, static_cast<std::size_t>(at), in);
+  if (in == FrameStartIn::step) in = FrameStartIn::state;  // what the step held has been put back
 }
 
 void saveStep(IslandStep& step) {

@@ -13,14 +13,15 @@ IslandFacts movingIsland() {
   return facts;
 }
 
-TEST(IslandModes, FastIslandsThatAreLeftAloneTakeRigidSteps) {
+// Also those that a hand holds by one of their blocks.
+TEST(IslandModes, FastIslandsTakeRigidSteps) {
   IslandFacts facts;
   facts.leftAlone = true;
   EXPECT_EQ(nextMode(ModeChange::frameBegins, facts), IslandMode::implicit);
   facts.fast = true;
   EXPECT_EQ(nextMode(ModeChange::frameBegins, facts), IslandMode::rigid);
   facts.leftAlone = false;
-  EXPECT_EQ(nextMode(ModeChange::frameBegins, facts), IslandMode::implicit);
+  EXPECT_EQ(nextMode(ModeChange::frameBegins, facts), IslandMode::rigid);
 }
 
 // What has moved or hit something goes on in rigid steps until it has been slow for a time.
