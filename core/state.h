@@ -60,9 +60,12 @@ struct BlockModel {
   std::array<AlignedVector<double>, kSpringGroups> restLength;       ///< m
   std::array<AlignedVector<double>, kSpringGroups> springStiffness;  ///< N/m
   std::array<AlignedVector<double>, kSpringGroups> springDamping;    ///< N s/m
+  /// N/m, resistance of a block to warps beyond that of its springs (solver/block/springs.h), [blocks]; empty where none has any
+  AlignedVector<double> warpStiffness;
 
   [[nodiscard]] std::size_t blockCount() const { return mass.size(); }
   [[nodiscard]] bool isFixed(std::size_t block) const { return !fixed.empty() && fixed[block] != 0; }
+  [[nodiscard]] double warpStiffnessOf(std::size_t block) const { return warpStiffness.empty() ? 0.0 : warpStiffness[block]; }
 };
 
 /// Mean of a block's eight corners: its centre of mass in either inertia (m, or m/s for velocities).

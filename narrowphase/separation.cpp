@@ -1,5 +1,6 @@
 #include "narrowphase/separation.h"
 
+#include "core/elementary.h"
 #include "core/lanes.h"
 #include "core/tuning.h"
 
@@ -69,6 +70,33 @@ int extremeEdge(const Frame& frame, std::size_t axis, const Vec3& towards) {
   return static_cast<int>(4 * axis) + low + 2 * high;
 }
 
+// The face of a block with a normal of its frame, outwards or inwards.
+int faceAlong(std::size_t axis, bool outwards) {
+  return static_cast<int>(2 * axis) + (outwards ? 1 : 0);
+}
+
+// Fills in `level` from the gaps along the face normals of both. Of two normals that are nearly one, that along which the gap is
+// larger: it is the gap where the blocks meet, not at their far ends.
+void setLevel(const Frame& frameA, const Frame& frameB, const Vec3& between, const std::array<double, 3>& gapA,
+              const std::array<double, 3>& gapB, Separation& result) {
+  result.level = -std::numeric_limits<double>::infinity();
+  const Vec3& best = result.bestNormal();
+  for (std::size_t ofB = 0; ofB < 3; ++ofB) {
+    if (2.0 * elementary::square(frameB.normal[ofB].dot(best)) > 1.0) continue;
+    for (std::size_t ofA = 0; ofA < 3; ++ofA) {
+      const double gap = std::max(gapA[ofA], gapB[ofB]);
+      const double along = frameA.normal[ofA].dot(frameB.normal[ofB]);
+      if (!(gap > result.level) || std::abs(along) <= tuning::kParallelFaces) continue;
+      const Vec3& normal = gapA[ofA] > gapB[ofB] ? frameA.normal[ofA] : frameB.normal[ofB];
+      const bool isAboveB = frameB.normal[ofB].dot(between) >= 0.0;  // a over b along it
+      result.level = gap;
+      result.normalLevel = normal.dot(between) >= 0.0 ? normal : Vec3(-normal);
+      result.levelFaceOfB = faceAlong(ofB, isAboveB);
+      result.levelFaceOfA = faceAlong(ofA, (along > 0.0) != isAboveB);
+    }
+  }
+}
+
 }  // namespace
 
 SPRINGTOWER_KERNEL
@@ -85,11 +113,13 @@ Separation findSeparation(const CornerView& a, const CornerView& b) {
   const Vec3 between = frameA.centre - frameB.centre;
 
   Separation result;
+  std::array<double, 3> gapA;
+  std::array<double, 3> gapB;
   result.faceA = result.faceB = result.edge = kNothing;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const bool along = frameB.normal[axis].dot(between) >= 0.0;
     const Vec3 normal = along ? frameB.normal[axis] : Vec3(-frameB.normal[axis]);
-    const double gap = gapOf(normal, a, b);
+    const double gap = gapB[axis] = gapOf(normal, a, b);
     if (gap > result.faceB) {
       result.faceB = gap;
       result.faceOfB = static_cast<int>(2 * axis) + (along ? 1 : 0);
@@ -99,7 +129,7 @@ Separation findSeparation(const CornerView& a, const CornerView& b) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const bool along = frameA.normal[axis].dot(between) >= 0.0;
     const Vec3 normal = along ? frameA.normal[axis] : Vec3(-frameA.normal[axis]);
-    const double gap = gapOf(normal, a, b);
+    const double gap = gapA[axis] = gapOf(normal, a, b);
     if (gap > result.faceA) {
       result.faceA = gap;
       result.faceOfA = static_cast<int>(2 * axis) + (along ? 0 : 1);
@@ -121,7 +151,18 @@ Separation findSeparation(const CornerView& a, const CornerView& b) {
       }
     }
   }
+  setLevel(frameA, frameB, between, gapA, gapB, result);
   return result;
+}
+
+Separation alongLevel(const Separation& apart) {
+  Separation level = apart;
+  level.faceA = level.faceB = apart.level;
+  level.edge = -std::numeric_limits<double>::infinity();
+  level.faceOfA = apart.levelFaceOfA;
+  level.faceOfB = apart.levelFaceOfB;
+  level.normalFaceA = level.normalFaceB = apart.normalLevel;
+  return level;
 }
 
 }  // namespace springtower

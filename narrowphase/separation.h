@@ -3,6 +3,7 @@
 #include "core/state.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace springtower {
 
@@ -38,6 +39,11 @@ struct Separation {
   Vec3 normalFaceA;
   Vec3 normalFaceB;
   Vec3 normalEdge;
+  // Along a normal that faces of both have and that lies across the best one, the largest; minus infinity where there is none.
+  double level = 0.0;
+  int levelFaceOfA = 0;
+  int levelFaceOfB = 0;
+  Vec3 normalLevel;
 
   /// The largest of the three: where positive, a lower bound of the distance.
   [[nodiscard]] double best() const { return std::max(edge, std::max(faceA, faceB)); }
@@ -49,5 +55,16 @@ struct Separation {
 
 /// Computes it for blocks a and b. Precondition: no block is turned inside out.
 Separation findSeparation(const CornerView& a, const CornerView& b);
+
+/// Whether two blocks only graze along their best direction: level with one another across it, they overlap there by at most
+/// `most` (m) or are apart by as little, and move faster along the best direction. A block that slides over a seam has sunk a
+/// little into what it slides on, and would run into the side of what comes next. `velocity`: of a against b, m/s.
+inline bool grazes(const Separation& apart, double most, const Vec3& velocity) {
+  return std::abs(apart.level) <= most && apart.best() > apart.level &&
+         std::abs(velocity.dot(apart.bestNormal())) > std::abs(velocity.dot(apart.normalLevel));
+}
+
+/// The separation with that direction alone, along which they are level. Precondition: they graze.
+Separation alongLevel(const Separation& apart);
 
 }  // namespace springtower

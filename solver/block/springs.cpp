@@ -1,6 +1,9 @@
 #include "solver/block/springs.h"
 
+#include "core/elementary.h"
 #include "core/lanes.h"
+#include "core/tuning.h"
+#include "solver/block/modes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -125,6 +128,39 @@ SPRINGTOWER_INLINE void blockSprings(const BlockModel& model, const MotionState&
   }
 }
 
+// Forces of a block's warps: each pattern of corners by its part of the positions and velocities.
+SPRINGTOWER_INLINE void addWarpForces(const BlockModel& model, const MotionState& state, std::size_t b, ParticleArray& force) {
+  using namespace block_modes;
+  const double stiffness = model.warpStiffness[b] / 64.0;
+  const double damping = stiffness * model.springDamping[0][b] / model.springStiffness[0][b];
+  for (std::size_t a = 0; a < 3; ++a) {
+    double place[kCorners], rate[kCorners];
+    transform(state.position.values(a, b), place);
+    transform(state.velocity.values(a, b), rate);
+    double* f = force.values(a, b);
+    for (std::size_t m = kAffine; m < kCorners; ++m) {
+      const std::size_t pattern = kPattern[m];
+      const double resists = stiffness * place[pattern] + damping * rate[pattern];
+      for (std::size_t c = 0; c < kCorners; ++c) f[c] -= sign(c, pattern) * resists;
+    }
+  }
+}
+
+// Energy of warps, J.
+template <class Place>
+double energyOfWarps(const BlockModel& model, Place place, std::size_t block) {
+  using namespace block_modes;
+  const double stiffness = model.warpStiffnessOf(block);
+  if (stiffness == 0.0) return 0.0;
+  double squared = 0.0;
+  for (std::size_t m = kAffine; m < kCorners; ++m) {
+    Vec3 warp = Vec3::Zero();
+    for (std::size_t c = 0; c < kCorners; ++c) warp += sign(c, kPattern[m]) / 8.0 * place(c);
+    squared += warp.squaredNorm();
+  }
+  return 0.5 * stiffness * squared;
+}
+
 // Calls `visit(group, length)` for each spring of a block whose corners are at `place(corner)`.
 template <class Place, class Visit>
 void forEachSpring(Place place, Visit visit) {
@@ -143,7 +179,7 @@ double energyOfSprings(const BlockModel& model, Place place, std::size_t block) 
     const double change = length - model.restLength[group][block];
     energy += 0.5 * model.springStiffness[group][block] * change * change;
   });
-  return energy;
+  return energy + energyOfWarps(model, place, block);
 }
 
 }  // namespace
@@ -154,6 +190,7 @@ void springForces(const BlockModel& model, const MotionState& state, std::span<c
   for (const std::int32_t block : blocks) {
     const auto b = static_cast<std::size_t>(block);
     blockSprings(model, state, b, contactForce[b], force);
+    if (model.warpStiffnessOf(b) > 0.0) addWarpForces(model, state, b, force);
   }
 }
 
@@ -191,6 +228,28 @@ void setSprings(BlockModel& model, std::size_t block, double stiffness_n_m, doub
   }
 }
 
+void setWarpStiffness(BlockModel& model, std::size_t block, double load_n) {
+  const Vec3& size = model.dimensions[block];
+  double lacking = 0.0;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const std::size_t b = (a + 1) % 3;
+    const std::size_t c = (a + 2) % 3;
+    const double squareB = elementary::square(size[static_cast<Eigen::Index>(b)]);
+    const double squareC = elementary::square(size[static_cast<Eigen::Index>(c)]);
+    const auto ofFace = [&](std::size_t across) {
+      const std::size_t group = ((std::size_t{1} << a) | (std::size_t{1} << across)) - 1;
+      return model.springStiffness[group][block] / elementary::square(model.restLength[group][block]);
+    };
+    // Of the energy of an angle, half times its square.
+    const double springs = squareB * squareC * (ofFace(b) + ofFace(c));
+    const double needed = 0.25 * tuning::kTwistSafety * load_n * std::sqrt(std::max(squareB, squareC));
+    lacking = std::max(lacking, 16.0 * (needed - springs) / (squareB + squareC));
+  }
+  if (lacking == 0.0 && model.warpStiffness.empty()) return;
+  model.warpStiffness.resize(model.blockCount(), 0.0);
+  model.warpStiffness[block] = lacking;
+}
+
 Eigen::Matrix<double, 24, 24> springStiffnessMatrix(const BlockModel& model, std::size_t block) {
   Eigen::Matrix<double, 24, 24> stiffness = Eigen::Matrix<double, 24, 24>::Zero();
   const Vec3& size = model.dimensions[block];
@@ -211,6 +270,17 @@ Eigen::Matrix<double, 24, 24> springStiffnessMatrix(const BlockModel& model, std
       stiffness.block<3, 3>(j, j) += k;
       stiffness.block<3, 3>(i, j) -= k;
       stiffness.block<3, 3>(j, i) -= k;
+    }
+  }
+  for (std::size_t p = 0; p < kCorners; ++p) {
+    for (std::size_t q = 0; q < kCorners; ++q) {
+      double both = 0.0;
+      for (std::size_t m = kAffine; m < kCorners; ++m)
+        both += block_modes::sign(p, block_modes::kPattern[m]) * block_modes::sign(q, block_modes::kPattern[m]);
+      for (Eigen::Index a = 0; a < 3; ++a) {
+        stiffness(static_cast<Eigen::Index>(3 * p) + a, static_cast<Eigen::Index>(3 * q) + a) +=
+            model.warpStiffnessOf(block) / 64.0 * both;
+      }
     }
   }
   return stiffness;

@@ -10,12 +10,12 @@
 namespace springtower {
 
 /// Forces of the 28 springs of each listed block on its corners (report Eq. 4.1 to 4.3: linear in the change of length, and a
-/// dashpot along the spring), plus the contact forces on the blocks' affine parts, N; `force` of these blocks is overwritten.
-/// Springs are evaluated group by group, four at a time.
+/// dashpot along the spring), and of its warps, plus the contact forces on the blocks' affine parts, N; `force` of these blocks
+/// is overwritten. Springs are evaluated group by group, four at a time.
 void springForces(const BlockModel& model, const MotionState& state, std::span<const std::int32_t> blocks,
                   std::span<const AffineField> contactForce, ParticleArray& force);
 
-/// Energy stored in the springs of one block, J.
+/// Energy stored in the springs and warps of one block, J.
 double springEnergy(const BlockModel& model, const ParticleArray& position, std::size_t block);
 
 /// The same with its corners at these places in any axes, m.
@@ -29,7 +29,15 @@ double springStrain(const BlockModel& model, const ParticleArray& position, std:
 /// that are `dampingTime_s` times the stiffness.
 void setSprings(BlockModel& model, std::size_t block, double stiffness_n_m, double referenceLength_m, double dampingTime_s);
 
-/// Stiffness of a block's springs at rest, in its own frame, N/m: 24 x 24, by corner and component.
+/// Sets a block's resistance to warps. Contacts act on its affine part, so what presses it (`load_n`, N) gives way where its ends
+/// turn about its length against one another by an angle t: the mean of its edges gets shorter, by t^2 / 8 of a side. Springs
+/// along a slender block resist that as the square of its thickness over its length. What they lack for tuning::kTwistSafety
+/// times the load is a stiffness of all warps: the energy is half of it times the squares of the four patterns by which the
+/// corners differ from an affine field (hourglass stiffness, Flanagan & Belytschko 1981). None in blocks that are not slender.
+/// Precondition: its springs are set.
+void setWarpStiffness(BlockModel& model, std::size_t block, double load_n);
+
+/// Stiffness of a block's springs and of its warps at rest, in its own frame, N/m: 24 x 24, by corner and component.
 Eigen::Matrix<double, 24, 24> springStiffnessMatrix(const BlockModel& model, std::size_t block);
 
 }  // namespace springtower

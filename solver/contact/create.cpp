@@ -82,8 +82,11 @@ bool sharesOutline(const Separation& separation, double face, const CornerView& 
 // The touching faces or edges, from the best separating directions. The reference face changes only if the other is clearly
 // better. Faces are preferred to edges that separate better, if they touch as well. If the outlines do not overlap, the next best
 // direction is taken.
-void chooseManifold(const Simulation& simulation, const Separation& separation, const CornerView& a, const CornerView& b,
-                    double slack, const BlockPair& pair, const ContactView& old, Manifold& fresh) {
+void chooseManifold(const Simulation& simulation, const Separation& apart, const CornerView& a, const CornerView& b, double slack,
+                    const BlockPair& pair, const ContactView& old, Manifold& fresh) {
+  const ParticleArray& velocity = simulation.state.velocity;
+  const Vec3 relative = centre(velocity, static_cast<std::size_t>(pair.a)) - centre(velocity, static_cast<std::size_t>(pair.b));
+  const Separation separation = grazes(apart, grazingOverlap(simulation), relative) ? alongLevel(apart) : apart;
   const ManifoldLimits limits = limitsOf(simulation);
   const double edgeSlack = edgeSlackOf(simulation);
   const bool wasA = old.phase == PairPhase::face && old.lower == pair.a;
@@ -201,6 +204,10 @@ bool storeManifoldNow(IslandStep& step, std::size_t at) {
 }
 
 }  // namespace
+
+double grazingOverlap(const Simulation& simulation) {
+  return tuning::kGrazingOverlap * simulation.tolerance_m;
+}
 
 double refreshTravel(const Simulation& simulation) {
   return tuning::kRefreshTravel * simulation.lengths.blockHeight_m;

@@ -1,5 +1,6 @@
 #include "solver/rigid/constraints.h"
 
+#include "core/tuning.h"
 #include "solver/rigid/packs.h"
 
 #include <limits>
@@ -101,6 +102,9 @@ SPRINGTOWER_INLINE void placePoint(const LanePlace& upper, const LanePlace& lowe
   LaneVector apart = onUpper;
   subtract(onLower, apart);
   dot(p.normal, apart, p.gap);
+  // In a heap overlap without force gets less, as fast as any overlap and paid by what the frame loses: what one block has been
+  // pressed into another by, blow by blow, would add up.
+  if (springs.heap) own.rest *= 1.0 - tuning::kRigidModeBaumgarte;
   p.gap += own.rest;
   p.softness = own.compliance / springs.step_s;
   const Lanes tolerance = springs.tolerance_m + Lanes{};

@@ -37,17 +37,26 @@ PairBodies bodiesOf(const IslandStep& step, const RigidIsland& island, std::int3
   return of;
 }
 
-// How far any point of one block may get against the other in a time, m, as they move now and fall.
-double relativeMotion(const IslandStep& step, const RigidIsland& island, const PairBodies& of, double time_s) {
+// Of the centre of the first block against that of the second, m/s.
+Vec3 relativeVelocity(const RigidIsland& island, const PairBodies& of) {
   Vec3 velocity = Vec3::Zero();
-  double turning = 0.0;
   for (std::size_t s = 0; s < 2; ++s) {
     if (of.body[s] == unmovedBody(island)) continue;
     const RigidBody& body = island.bodies[static_cast<std::size_t>(of.body[s])];
     velocity += s == 0 ? body.velocity : Vec3(-body.velocity);
+  }
+  return velocity;
+}
+
+// How far any point of one block may get against the other in a time, m, as they move now and fall.
+double relativeMotion(const IslandStep& step, const RigidIsland& island, const PairBodies& of, double time_s) {
+  double turning = 0.0;
+  for (const std::int32_t at : of.body) {
+    if (at == unmovedBody(island)) continue;
+    const RigidBody& body = island.bodies[static_cast<std::size_t>(at)];
     turning += body.spin.norm() * body.radius_m;
   }
-  return (velocity.norm() + turning + step.simulation.scene.gravity.magnitude * time_s) * time_s;
+  return (relativeVelocity(island, of).norm() + turning + step.simulation.scene.gravity.magnitude * time_s) * time_s;
 }
 
 // The point in the axes of its bodies.
@@ -90,11 +99,13 @@ void setSeparated(IslandStep& step, std::size_t at, double gap, const Vec3& axis
 }
 
 // Finds the points of a pair within `reach` at the present positions. `separates`: one that has none is separated.
-void findPoints(IslandStep& step, const PairBodies& of, double reach, bool separates, NearPoints& near) {
+void findPoints(IslandStep& step, const RigidIsland& island, const PairBodies& of, double reach, bool separates,
+                NearPoints& near) {
   const auto at = static_cast<std::size_t>(of.pair);
   const ParticleArray& x = step.simulation.state.position;
   const CornerView a = cornersOf(x, static_cast<std::size_t>(of.block[0]));
   near.count = 0;
+  near.grazes = false;
   if (of.block[1] < 0) {
     findNearFloorPoints(a, reach, near);
     if (near.count == 0 && separates) setSeparated(step, at, *std::min_element(a.z, a.z + kCorners), Vec3::UnitZ());
@@ -114,7 +125,9 @@ void findPoints(IslandStep& step, const PairBodies& of, double reach, bool separ
     if (separates) setSeparated(step, at, apart.best(), apart.bestNormal());
     return;
   }
-  findNearPoints(a, b, apart, reach, tuning::kMergeRadius * step.simulation.lengths.blockHeight_m, near);
+  near.grazes = grazes(apart, grazingOverlap(step.simulation), relativeVelocity(island, of));
+  findNearPoints(a, b, near.grazes ? alongLevel(apart) : apart, reach,
+                 tuning::kMergeRadius * step.simulation.lengths.blockHeight_m, near);
 }
 
 // Appends a pair's points to a list.
@@ -226,9 +239,9 @@ void listPoints(IslandStep& step, RigidIsland& island, double substep_s, bool ag
       island.fastPairs.push_back(pair);
       continue;
     }
-    findPoints(step, of, reach, true, near);
+    findPoints(step, island, of, reach, true, near);
+    if (near.count > 0 || near.grazes) engine.scratch.covered[at] = 1;
     if (near.count == 0) continue;
-    engine.scratch.covered[at] = 1;
     addGroup(island, of, near, reach, motion, island.steady);
     warmStartLast(step, island, before, substep_s, island.steady);
   }
@@ -276,7 +289,7 @@ void listFastPoints(IslandStep& step, RigidIsland& island, bool firstSubstep) {
     if (before.list == &island.steady) unpackGroup(island.steady, *before.group);
     const double motion = relativeMotion(step, island, of, step.drift_s);
     const double reach = motion + tuning::kNearPointMargin * h;
-    findPoints(step, of, reach, false, near);
+    findPoints(step, island, of, reach, false, near);
     if (near.count == 0) continue;
     addGroup(island, of, near, reach, motion, island.fast);
     warmStartLast(step, island, before, step.drift_s, island.fast);

@@ -40,7 +40,7 @@ std::size_t ofReport(const ReportState& report) {
 }
 
 std::size_t ofModel(const BlockModel& model) {
-  std::size_t sum = sumOf(model.dimensions, model.mass, model.rootRestitution, model.fixed);
+  std::size_t sum = sumOf(model.dimensions, model.mass, model.rootRestitution, model.fixed, model.warpStiffness);
   for (std::size_t g = 0; g < kSpringGroups; ++g)
     sum += sumOf(model.restLength[g], model.springStiffness[g], model.springDamping[g]);
   return sum;

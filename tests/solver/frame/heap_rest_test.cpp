@@ -27,8 +27,8 @@ TEST(HeapRest, ImplicitStepsConvergeInFallenHeaps) {
     scene.settings.sleep = Sleep::off;
     Simulation simulation(scene);
     prepare(simulation);
-    for (int frame = 0; frame < 150; ++frame) stepFrame(simulation);
-    EXPECT_FALSE(isRigidAnywhere(simulation)) << "at rest after 2.5 s";
+    for (int frame = 0; frame < 240; ++frame) stepFrame(simulation);
+    EXPECT_FALSE(isRigidAnywhere(simulation)) << "at rest after 4 s";
     EXPECT_LT(rootMeanSquareCornerSpeed(simulation.state.velocity), 1e-5);
     const std::uint64_t failures = simulation.counters.newtonFailures;
     for (int frame = 0; frame < 30; ++frame) stepFrame(simulation);
