@@ -30,7 +30,7 @@ inline constexpr std::size_t kMostNearPoints = 17;
 struct NearPoints {
   std::array<NearPoint, kMostNearPoints> point;
   std::size_t count = 0;
-  bool grazes = false;  ///< whether they are those along which blocks that graze are level; may be none
+  bool grazes = false;  ///< whether the blocks graze: the points are those along which they are level, and there may be none
   void add(const NearPoint& one) { point[count++] = one; }
 };
 

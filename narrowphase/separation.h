@@ -39,7 +39,8 @@ struct Separation {
   Vec3 normalFaceA;
   Vec3 normalFaceB;
   Vec3 normalEdge;
-  // Along a normal that faces of both have and that lies across the best one, the largest; minus infinity where there is none.
+  // The largest separation along a face normal of both blocks more than 45 degrees from the best one; minus infinity if there is
+  // none. Negative: overlap.
   double level = 0.0;
   int levelFaceOfA = 0;
   int levelFaceOfB = 0;
@@ -56,12 +57,19 @@ struct Separation {
 /// Computes it for blocks a and b. Precondition: no block is turned inside out.
 Separation findSeparation(const CornerView& a, const CornerView& b);
 
-/// Whether two blocks only graze along their best direction: level with one another across it, they overlap there by at most
-/// `most` (m) or are apart by as little, and move faster along the best direction. A block that slides over a seam has sunk a
-/// little into what it slides on, and would run into the side of what comes next. `velocity`: of a against b, m/s.
-inline bool grazes(const Separation& apart, double most, const Vec3& velocity) {
-  return std::abs(apart.level) <= most && apart.best() > apart.level &&
-         std::abs(velocity.dot(apart.bestNormal())) > std::abs(velocity.dot(apart.normalLevel));
+/// When two blocks graze rather than meet.
+struct GrazingLimits {
+  double overlap_m;  ///< most overlap along the direction along which they are level, and most gap
+  double speed_m_s;  ///< least speed across it
+};
+
+/// Whether two blocks only graze along their best direction: level with one another across it, they overlap there by little or
+/// are apart by as little, and move faster along the best direction. A block that slides over a seam has sunk a little into what
+/// it slides on, and would run into the side of what comes next. `velocity`: of a against b, m/s.
+inline bool grazes(const Separation& apart, const GrazingLimits& limits, const Vec3& velocity) {
+  const double across = std::abs(velocity.dot(apart.bestNormal()));
+  return std::abs(apart.level) <= limits.overlap_m && apart.best() > apart.level && across > limits.speed_m_s &&
+         across > std::abs(velocity.dot(apart.normalLevel));
 }
 
 /// The separation with that direction alone, along which they are level. Precondition: they graze.

@@ -66,7 +66,7 @@ void edgeManifold(const Separation& separation, const BlockPair& pair, Manifold&
 // Whether faces touch although edges separate better: at two points or more, as deep as the edges. (The crossing of nearly
 // parallel edges would be another point of the outline at each refresh, and give no resistance to sinking.) Faces far from
 // parallel touch along a line at most, and then must separate as well as the edges. `shallower`: by how much the points of the
-// faces may be less deep than the edges; what holds the blocks at the edges would be a gap to the points.
+// faces may be less deep than the edges; otherwise they would be open although the blocks overlap at the edges.
 bool sharesOutline(const Separation& separation, double face, const CornerView& upper, const CornerView& lower, double slack,
                    double shallower, const Manifold& fresh) {
   if (fresh.count < 2) return false;
@@ -86,7 +86,7 @@ void chooseManifold(const Simulation& simulation, const Separation& apart, const
                     const BlockPair& pair, const ContactView& old, Manifold& fresh) {
   const ParticleArray& velocity = simulation.state.velocity;
   const Vec3 relative = centre(velocity, static_cast<std::size_t>(pair.a)) - centre(velocity, static_cast<std::size_t>(pair.b));
-  const Separation separation = grazes(apart, grazingOverlap(simulation), relative) ? alongLevel(apart) : apart;
+  const Separation separation = grazes(apart, grazingLimits(simulation), relative) ? alongLevel(apart) : apart;
   const ManifoldLimits limits = limitsOf(simulation);
   const double edgeSlack = edgeSlackOf(simulation);
   const bool wasA = old.phase == PairPhase::face && old.lower == pair.a;
@@ -122,7 +122,7 @@ void storeContact(Engine& engine, std::size_t at, const Manifold& manifold) {
   engine.contacts.store(contact, engine.pairs[at], manifold);
 }
 
-// Largest distance of a block's corners from its affine markSeparated, m. Separating axes are exact for the affine parts, from
+// Largest distance of a block's corners from its affine part, m. Separating axes are exact for the affine parts, from
 // which both corners and faces may differ by this distance: an apparent overlap of up to twice the sum of both warps may be no
 // overlap of the faces.
 double warp(const ParticleArray& position, std::size_t block) {
@@ -205,8 +205,9 @@ bool storeManifoldNow(IslandStep& step, std::size_t at) {
 
 }  // namespace
 
-double grazingOverlap(const Simulation& simulation) {
-  return tuning::kGrazingOverlap * simulation.tolerance_m;
+GrazingLimits grazingLimits(const Simulation& simulation) {
+  return {tuning::kGrazingOverlap * simulation.tolerance_m,
+          tuning::kQuiescentDisplacement * simulation.tolerance_m / simulation.scene.settings.frame_s};
 }
 
 double refreshTravel(const Simulation& simulation) {

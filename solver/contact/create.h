@@ -22,8 +22,8 @@ double clearanceNow(const Simulation& simulation, std::size_t at);
 /// separated when it has parted.
 void refreshManifold(IslandStep& step, std::size_t at, Counters& counters);
 
-/// Overlap up to which blocks that are level only graze one another, m (narrowphase/separation.h).
-double grazingOverlap(const Simulation& simulation);
+/// When blocks graze rather than meet.
+GrazingLimits grazingLimits(const Simulation& simulation);
 
 /// Travel (m, sum of both blocks) after which a manifold is refreshed.
 double refreshTravel(const Simulation& simulation);

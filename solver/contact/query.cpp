@@ -198,30 +198,34 @@ IslandEnergy islandEnergy(const IslandStep& step) {
   const ParticleArray& position = simulation.state.position;
   const ParticleArray& velocity = simulation.state.velocity;
   const Vec3 gravity = simulation.scene.gravity.at(simulation.time_s);
-  const auto sum = [](const IslandEnergy& a, const IslandEnergy& b) {
-    return IslandEnergy{a.kinetic_j + b.kinetic_j, a.total_j + b.total_j};
+  const auto ofBlocks = [&](std::size_t first, std::size_t last, const auto& energyOfBlock) {
+    double energy_j = 0.0;
+    for (const std::int32_t block : step.blocks.subspan(first, last - first))
+      energy_j += energyOfBlock(static_cast<std::size_t>(block));
+    return energy_j;
   };
-  const auto ofBlocks = [&](std::size_t first, std::size_t last) {
-    IslandEnergy energy;
-    for (const std::int32_t block : step.blocks.subspan(first, last - first)) {
-      const auto b = static_cast<std::size_t>(block);
-      energy.kinetic_j += 0.5 * model.mass[b] * massProduct(simulation.scene.settings.inertia, velocity, velocity, b);
-      energy.total_j += springEnergy(model, position, b) - model.mass[b] * gravity.dot(centre(position, b));
-    }
-    energy.total_j += energy.kinetic_j;
-    return energy;
+  const auto kinetic = [&](std::size_t first, std::size_t last) {
+    return ofBlocks(first, last, [&](std::size_t b) {
+      return 0.5 * model.mass[b] * massProduct(simulation.scene.settings.inertia, velocity, velocity, b);
+    });
   };
-  const auto ofPairs = [&](std::size_t first, std::size_t last) {
-    IslandEnergy energy;
+  const auto potential = [&](std::size_t first, std::size_t last) {
+    return ofBlocks(first, last, [&](std::size_t b) {
+      return springEnergy(model, position, b) - model.mass[b] * gravity.dot(centre(position, b));
+    });
+  };
+  const auto contacts = [&](std::size_t first, std::size_t last) {
+    double energy_j = 0.0;
     for (const std::int32_t pair : step.pairs.subspan(first, last - first)) {
       const auto at = static_cast<std::size_t>(pair);
       if (!step.engine.pairs.touches(at)) continue;
-      energy.total_j += energyOf(simulation, ManifoldNow(simulation, step.law, contactOf(step.engine, at)), step.law);
+      energy_j += energyOf(simulation, ManifoldNow(simulation, step.law, contactOf(step.engine, at)), step.law);
     }
-    return energy;
+    return energy_j;
   };
-  return sum(mergeRanges(step.blocks.size(), tuning::kBlockGrain, isWide(step), IslandEnergy{}, ofBlocks, sum),
-             mergeRanges(step.pairs.size(), tuning::kPairGrain, isWide(step), IslandEnergy{}, ofPairs, sum));
+  const double kinetic_j = sumRanges(step.blocks.size(), tuning::kBlockGrain, isWide(step), kinetic);
+  return {kinetic_j, kinetic_j + sumRanges(step.blocks.size(), tuning::kBlockGrain, isWide(step), potential) +
+                         sumRanges(step.pairs.size(), tuning::kPairGrain, isWide(step), contacts)};
 }
 
 double energyRise(const Energy& before, const Energy& after) {

@@ -21,7 +21,8 @@ struct ContactWrench {
 /// The wrench on the upper block. All zero where the manifold is separated.
 ContactWrench contactWrenchOnUpper(const Simulation& simulation, const ContactView& manifold);
 
-/// Energy of an island, with the gravity of the frame's start and the islands' contacts with what it lies on.
+/// Energy of one island, with gravity as at the frame's start, and of its contacts with each other, the floor and sleeping
+/// blocks.
 struct IslandEnergy {
   double kinetic_j = 0.0;
   double total_j = 0.0;  ///< with gravity's, and what blocks and contacts store

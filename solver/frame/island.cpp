@@ -15,12 +15,14 @@ namespace springtower {
 
 namespace {
 
-// Puts an island that was in rigid steps back to where they left it: the springs that it got for implicit steps have taken its
-// overlaps as their rest depths, which would add up over the tries. Returns the time of the frame, s.
-double takeBackImplicitSteps(IslandStep& step) {
+// Puts an island back to where the part of the frame began: one that was in rigid steps, as its new springs have taken overlaps
+// as their rest depths, which would add up over the tries; or one that implicit steps have given energy. `failed`: they did not
+// converge, and all blocks have the same number of frames before the next try. Returns the time of the frame, s.
+double takeBackImplicitSteps(IslandStep& step, bool failed) {
   std::vector<IslandHistory>& history = step.engine.memo.islandHistory;
   const std::int32_t frames = history[static_cast<std::size_t>(step.blocks.front())].rigidFrames;
   restoreIsland(step);
+  if (!failed) return step.part.begin_s;
   for (const std::int32_t block : step.blocks) history[static_cast<std::size_t>(block)].rigidFrames = frames;
   return step.part.begin_s;
 }
@@ -53,11 +55,15 @@ IslandOutcome runByModes(IslandStep& step) {
   if (mode == IslandMode::implicit) {
     const bool isChecked = movesAlone(step, facts);
     const IslandEnergy before = isChecked ? islandEnergy(step) : IslandEnergy{};
+    const std::uint64_t failures = step.counters.newtonFailures;
     outcome = runImplicitSteps(step, facts.mostlyFallen, begin_s);
     const bool ends = begin_s >= step.part.end_s;
     if (!outcome.inside || (ends && !(isChecked && hasGained(step, before)))) return outcome;
     isStanding = stands(step, facts.mostlyFallen);
-    if (facts.rigidBefore || ends) begin_s = takeBackImplicitSteps(step);
+    if (facts.rigidBefore || ends) {
+      begin_s = takeBackImplicitSteps(step, !ends && step.counters.newtonFailures > failures);
+      if (facts.leftAlone) noteFallen(step);
+    }
     setMode(step, IslandMode::rigid);
   }
   const int before = outcome.substeps;

@@ -46,23 +46,14 @@ bool isLeftAlone(const IslandStep& step) {
   return !holdsTether(step) && !isPushed(step);
 }
 
-// Whether a hand or a user force acts on this block itself.
-bool isLed(const IslandStep& step, std::int32_t block) {
-  if (holdsTether(step) && static_cast<std::int32_t>(index(step.simulation.tether.block)) == block) return true;
-  const Simulation& simulation = step.simulation;
-  const double end_s = simulation.time_s + simulation.scene.settings.frame_s;
-  return std::any_of(simulation.scene.forces.begin(), simulation.scene.forces.end(),
-                     [&](const UserForce& user) { return user.block == block && user.actsWithin(simulation.time_s, end_s); });
-}
-
-// Whether blocks that have more than half of the mass move faster than this against a velocity, m/s. What is led does not count:
-// it moves as fast as a hand does.
+// Whether blocks that have more than half of the mass move faster than this against a velocity, m/s. What a hand holds does not
+// count: it moves as fast as the hand does.
 bool mostIsFasterThan(const IslandStep& step, double least_m_s, const Vec3& against) {
-  const bool leftAlone = isLeftAlone(step);
+  const std::int32_t held = holdsTether(step) ? static_cast<std::int32_t>(index(step.simulation.tether.block)) : -1;
   double mass_kg = 0.0;
   double fast_kg = 0.0;
   for (const std::int32_t block : step.blocks) {
-    if (!leftAlone && isLed(step, block)) continue;
+    if (block == held) continue;
     mass_kg += massOf(step, block);
     if ((centreVelocity(step, block) - against).squaredNorm() > least_m_s * least_m_s) fast_kg += massOf(step, block);
   }
@@ -153,6 +144,10 @@ IslandFacts islandFacts(const IslandStep& step) {
   const double entry = speedOf(step, tuning::kRigidEntrySpeed);
   facts.fast = mostIsFasterThan(step, entry, Vec3::Zero()) &&
                (!isSupported(step) || mostIsFasterThan(step, 0.5 * entry, meanVelocity(step)));
+  // What a hand carries moves with it.
+  if (facts.fast && holdsTether(step))
+    facts.fast =
+        mostIsFasterThan(step, 0.5 * entry, centreVelocity(step, static_cast<std::int32_t>(index(step.simulation.tether.block))));
   return facts;
 }
 

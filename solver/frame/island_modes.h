@@ -23,8 +23,8 @@ struct IslandFacts {
   bool moves = false;         ///< it is faster than what rests; not looked at where it is left alone and pinned
   bool mostlyFallen = false;  ///< more than half of its blocks have fallen since they slept last
   /// Whether blocks that have more than half of the mass are faster than 0.45 sqrt(g h): they could rise by a tenth of their
-  /// height. What stands on something and slides as a whole is not fast: that is smooth. Blocks on which a hand or a force acts
-  /// themselves do not count.
+  /// height. What stands on something and slides as a whole is not fast, nor is what a hand carries with the block that it holds:
+  /// that is smooth.
   bool fast = false;
 };
 IslandFacts islandFacts(const IslandStep& step);

@@ -181,9 +181,10 @@ Simulation::Simulation(const Scene& given) : scene(given), engine(std::make_uniq
   lengths.contactError_m = tuning::kFirstContactError * lengths.blockHeight_m;
   lengths.partingGap_m = tuning::kPartingGap * lengths.blockHeight_m;
   chooseStiffness(*this);
+  const bool isReport = traitsOf(scene.settings.method).family == MethodFamily::report;  // its blocks have springs alone
   for (std::size_t b = 0; b < count; ++b) {
     setSprings(model, b, stiffness.edge_n_m[b], lengths.blockHeight_m, dampingTime_s);
-    setWarpStiffness(model, b, 4.0 * stiffness.edge_n_m[b] * tolerance_m);
+    if (!isReport) setWarpStiffness(model, b, 4.0 * stiffness.edge_n_m[b] * tolerance_m);
   }
 
   sizeEngine(*this);

@@ -265,7 +265,6 @@ IslandOutcome runImplicitSteps(IslandStep& step, bool mostlyFallen, double& reac
     begins = true;
   };
   takeSteps(stepsInPart(step, steps));
-  // An island that has mostly fallen goes back to rigid steps where implicit ones do not converge.
   step.maxStiffening = 1.0;
   beginWithForces(step, known);
   while (steps > 0) {
@@ -273,8 +272,9 @@ IslandOutcome runImplicitSteps(IslandStep& step, bool mostlyFallen, double& reac
     step.gravity = simulation.scene.gravity.at(step.time_s + step.drift_s);  // forces are those of the step's end
     chooseFormula(step, island, std::exchange(begins, false));
     const double share = (end_s - reached_s) / simulation.scene.settings.frame_s;
-    const int finest = retryStepCount(share, steps, forced ? tuning::kMaxLedSteps : tuning::kMaxStandingSteps);
-    const bool canRetryFiner = finest > steps && simulation.scene.settings.substeps == 0 && !mostlyFallen;
+    const int next = retryStepCount(share, steps, forced ? tuning::kMaxLedSteps : tuning::kMaxStandingSteps);
+    // An island that has mostly fallen goes back to rigid steps where implicit ones do not converge.
+    const bool canRetryFiner = next > steps && simulation.scene.settings.substeps == 0 && !mostlyFallen;
     if (!stepImplicit(step, canRetryFiner)) {
       const int finer = canRetryFiner ? retryStepCount(share, steps, mostSteps(step, forced, mostlyFallen)) : 0;
       if (finer > steps) {

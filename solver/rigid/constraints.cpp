@@ -102,8 +102,8 @@ SPRINGTOWER_INLINE void placePoint(const LanePlace& upper, const LanePlace& lowe
   LaneVector apart = onUpper;
   subtract(onLower, apart);
   dot(p.normal, apart, p.gap);
-  // In a heap overlap without force gets less, as fast as any overlap and paid by what the frame loses: what one block has been
-  // pressed into another by, blow by blow, would add up.
+  // In a heap 1 % of the overlap without force becomes, in each substep, overlap that is pushed out, as far as energy lost in the
+  // frame pays for it. Otherwise what each impact leaves would add up.
   if (springs.heap) own.rest *= 1.0 - tuning::kRigidModeBaumgarte;
   p.gap += own.rest;
   p.softness = own.compliance / springs.step_s;

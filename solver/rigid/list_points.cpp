@@ -125,7 +125,7 @@ void findPoints(IslandStep& step, const RigidIsland& island, const PairBodies& o
     if (separates) setSeparated(step, at, apart.best(), apart.bestNormal());
     return;
   }
-  near.grazes = grazes(apart, grazingOverlap(step.simulation), relativeVelocity(island, of));
+  near.grazes = grazes(apart, grazingLimits(step.simulation), relativeVelocity(island, of));
   findNearPoints(a, b, near.grazes ? alongLevel(apart) : apart, reach,
                  tuning::kMergeRadius * step.simulation.lengths.blockHeight_m, near);
 }

@@ -18,7 +18,7 @@ namespace springtower {
 /// change with the poses. The same list gives the same packs.
 void packPoints(const IslandStep& step, const RigidIsland& island, ActingPoints& list);
 
-/// The impulses of a group's points, from the packs to the list; of all groups.
+/// What placing and passes have changed in a group's points, from the packs to the list; of all groups.
 void unpackGroup(ActingPoints& list, const PointGroup& group);
 void unpackPoints(ActingPoints& list);
 

@@ -180,8 +180,9 @@ void relaxAndRebound(IslandStep& step, RigidIsland& island, int passes) {
   if (rebounds) forgetImpact(step, island);
 }
 
-// Of what the passes have moved blocks by beyond their velocities, lowers again what has lifted them by more than the frame has
-// lost: between very unlike masses a push that is too large gets less by a little in each pass only.
+// Passes move blocks by more than their velocities where they push overlap out. If the frame has gained energy that nothing lost
+// before pays for, takes back the share of that extra motion whose lifting work is the unpaid energy. Between very unlike masses
+// a push that is too large is corrected only slowly over the passes.
 void lowerUnpaid(const IslandStep& step, RigidIsland& island) {
   if (!island.touches || isWorkedOn(step)) return;
   const double unpaid_j =
@@ -262,7 +263,7 @@ void stepImpulses(IslandStep& step, RigidIsland& island) {
   if (rigidMode && island.touches && step.driven.empty())
     removeAddedEnergy(isolated, kineticEnergy(island.bodies) - island.energyBefore_j, island);
   if (rigidMode) {
-    lowerUnpaid(step, island);
+    if (!isolated) lowerUnpaid(step, island);
     island.gained_j += kineticEnergy(island.bodies) - island.energyBefore_j;
   }
 }

@@ -373,6 +373,7 @@ IslandOutcome runRigidSteps(IslandStep& step, int steps, double begin_s) {
   const double contacts_j = isRigid(method) ? 0.0 : strainEnergyOfContacts(step);
   outcome.inside = runSteps(step, count, substeps, begin_s);
   if (sequential && outcome.inside) {
+    writeVelocities(step);  // which manifold a pair has depends on how its blocks move
     storeInManifolds(step, island, step.drift_s / substeps);
     if (!isRigid(method)) takeShapes(step, step.part.end_s - begin_s, contacts_j, island);
   }

@@ -10,7 +10,7 @@ namespace springtower {
 namespace {
 
 const Vec3 kTile_m(0.1, 0.2, 0.02);
-constexpr double kMost_m = 1e-4;
+constexpr GrazingLimits kLimits{1e-4, 1e-4};
 
 // A tile at the origin, b, and another, a, on the level of its top and beside it, pitched about y.
 Separation besideTop(double gap_m, double sunk_m, double pitch_rad) {
@@ -50,12 +50,13 @@ TEST(Grazing, DependsOnTheOverlapAndOnTheWayTheBlocksMove) {
   const Vec3 along(0.5, 0.1, 0.0);
   const Vec3 down(0.01, 0.0, -0.5);
   for (const double gap_m : {3e-4, -1e-5}) {
-    EXPECT_TRUE(grazes(besideTop(gap_m, 2e-5, 0.0), kMost_m, along));
-    EXPECT_FALSE(grazes(besideTop(gap_m, 2e-5, 0.0), kMost_m, down)) << "it falls onto the edge";
-    EXPECT_FALSE(grazes(besideTop(gap_m, 2e-5, 0.0), kMost_m, Vec3::Zero())) << "it rests";
-    EXPECT_FALSE(grazes(besideTop(gap_m, 5e-4, 0.0), kMost_m, along)) << "a step";
+    EXPECT_TRUE(grazes(besideTop(gap_m, 2e-5, 0.0), kLimits, along));
+    EXPECT_FALSE(grazes(besideTop(gap_m, 2e-5, 0.0), kLimits, down)) << "it falls onto the edge";
+    EXPECT_FALSE(grazes(besideTop(gap_m, 2e-5, 0.0), kLimits, Vec3::Zero())) << "it rests";
+    EXPECT_FALSE(grazes(besideTop(gap_m, 2e-5, 0.0), kLimits, Vec3(1e-9, 0.0, 0.0))) << "it rests, but for rounding";
+    EXPECT_FALSE(grazes(besideTop(gap_m, 5e-4, 0.0), kLimits, along)) << "a step";
   }
-  EXPECT_FALSE(grazes(besideTop(-1e-3, 2e-5, 0.0), kMost_m, along)) << "it is on it: that is the best direction";
+  EXPECT_FALSE(grazes(besideTop(-1e-3, 2e-5, 0.0), kLimits, along)) << "it is on it: that is the best direction";
 }
 
 TEST(Grazing, LeavesTheDirectionAlongWhichTheyAreLevel) {

@@ -2,7 +2,10 @@
 #include "core/random.h"
 #include "core/scene/scene.h"
 #include "core/tuning.h"
+#include "scenarios/registry.h"
 #include "scenarios/towers.h"
+#include "solver/contact/query.h"
+#include "solver/frame/over_islands.h"
 #include "solver/world/engine.h"
 #include "solver/world/simulation.h"
 #include "tests/support/block_scenes.h"
@@ -295,6 +298,33 @@ TEST(Snapshot, KeepsSleep) {
   prepareAndStep(awake);
   EXPECT_EQ(awake.substeps, 0);
   EXPECT_EQ(stateHash(awake), stateHash(simulation));
+}
+
+// What decides whether a frame of implicit steps is kept: sums over a wide island, equal bit for bit however threads share them.
+TEST(Determinism, TheEnergyOfAWideIslandIsTheSameOnAnyThreads) {
+  Scene scene = sceneNamed("heap:300");
+  scene.settings.sleep = Sleep::off;
+  Simulation simulation(scene);
+  for (int frame = 0; frame < 90; ++frame) prepareAndStep(simulation);
+  const Islands& islands = simulation.engine->memo.islands;
+  std::size_t widest = 0;
+  for (std::size_t i = 1; i < islands.count(); ++i) {
+    if (islands.island(i).size() > islands.island(widest).size()) widest = i;
+  }
+  ASSERT_GE(islands.island(widest).size(), static_cast<std::size_t>(tuning::kParallelBlocks));
+  const auto energyOn = [&](int threads) {
+    tbb::task_arena arena(threads);
+    return arena.execute([&] { return islandEnergy(islandStep(simulation, contactLaw(simulation), widest)); });
+  };
+  const IslandEnergy one = energyOn(1);
+  EXPECT_GT(one.total_j, one.kinetic_j);
+  for (int round = 0; round < 20; ++round) {
+    for (const int threads : {2, 3, 4}) {
+      const IslandEnergy many = energyOn(threads);
+      EXPECT_EQ(many.kinetic_j, one.kinetic_j);
+      EXPECT_EQ(many.total_j, one.total_j);
+    }
+  }
 }
 
 }  // namespace
