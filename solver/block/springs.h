@@ -29,9 +29,9 @@ double springStrain(const BlockModel& model, const ParticleArray& position, std:
 /// that are `dampingTime_s` times the stiffness.
 void setSprings(BlockModel& model, std::size_t block, double stiffness_n_m, double referenceLength_m, double dampingTime_s);
 
-/// Sets a block's resistance to warps. Contacts act on its affine part, so what presses it (`load_n`, N) gives way where its ends
-/// turn about its length against one another by an angle t: the mean of its edges gets shorter, by t^2 / 8 of a side. Springs of
-/// a slender block resist that, relative to its load, as the cube of its thickness over its length. What they lack for
+/// Sets a block's resistance to warps. Contacts act on its affine part, so a load (`load_n`, N) does work on it where its
+/// ends turn about its length against one another by an angle t: its mean edges get shorter, by t^2 / 8 of a side. Springs of a
+/// slender block resist that, relative to its load, as the cube of its thickness over its length. What they lack for
 /// tuning::kTwistSafety times the load is a stiffness of all warps: the energy is half of it times the squares of the four
 /// patterns by which the corners differ from an affine field (hourglass stiffness, Flanagan & Belytschko 1981). None in blocks
 /// that are not slender. Precondition: its springs are set.

@@ -35,12 +35,10 @@ bool movesAlone(const IslandStep& step, const IslandFacts& facts) {
 // Implicit steps lose energy as long as contacts last. Where a block that rocks lands or leaves in them, it may come out faster.
 bool hasGained(const IslandStep& step, const IslandEnergy& before) {
   const IslandEnergy now = islandEnergy(step);
-  const Simulation& simulation = step.simulation;
-  double weight_n = 0.0;
-  for (const std::int32_t block : step.blocks) weight_n += simulation.model.mass[static_cast<std::size_t>(block)];
-  weight_n *= simulation.scene.gravity.magnitude;
-  return now.total_j - before.total_j > tuning::kMaxImplicitGain * (before.kinetic_j + now.kinetic_j) +
-                                            tuning::kFreePushOut * weight_n * simulation.lengths.blockHeight_m;
+  double mass_kg = 0.0;
+  for (const std::int32_t block : step.blocks) mass_kg += step.simulation.model.mass[static_cast<std::size_t>(block)];
+  return now.total_j - before.total_j >
+         tuning::kMaxImplicitGain * (before.kinetic_j + now.kinetic_j) + freePushOut(step.simulation, mass_kg);
 }
 
 // Implicit steps, as far as they fit and converge; then rigid ones. These also take a frame in which implicit ones gain energy.

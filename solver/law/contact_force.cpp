@@ -26,7 +26,7 @@ struct LawStep {
   double impactFactor;    // stiffness scale per squared approach speed
   double stiffeningKeep;  // factor on a stiffening beyond 1 after the step
   double maxwellGain;     // share of its lag that the Maxwell branch loses in the step
-  double mostDamped;      // 1/s, bound of a damping velocity over the elastic depth
+  double mostRate;        // 1/s, bound of a damping velocity over the elastic depth
   double pointMass;       // kg, lower bound of the mass of a point: all four of a face that is hit flat push and squash the block
 };
 
@@ -185,7 +185,7 @@ SPRINGTOWER_INLINE void pointLaw(const LawStep& s, const Lanes& depth, const Lan
   // A spring that begins to push inside an implicit step has been closing for a part of it. The damping velocity is limited to
   // elastic depth / step: otherwise the damping force would jump where the spring begins, and the step equation might have no
   // solution.
-  const Lanes mostDamped = elastic * s.mostDamped;
+  const Lanes mostDamped = elastic * s.mostRate;
   const Lanes damped = closing < mostDamped ? closing : mostDamped;
   Lanes push = stiffness * (elastic + law.maxwellRatio * (elastic - p.maxwellDepth) + law.dampingTime_s * damped);
   push = touching & (push > zero) & (elastic > zero) ? push : zero;

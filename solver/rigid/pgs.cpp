@@ -131,18 +131,12 @@ double workOfPushOut(const RigidIsland& island, double rate) {
   return rate * sum(sum4);
 }
 
-// Energy by which overlap may be pushed out in a frame without having been lost before, J.
-double freePushOut(const IslandStep& step, const RigidIsland& island) {
-  const double height_m = step.simulation.lengths.blockHeight_m;
-  return tuning::kFreePushOut * massOf(island) * step.simulation.scene.gravity.magnitude * height_m;
-}
-
 // The share of the usual rate at which overlap is pushed out. In rigid mode it is paid by energy that the frame has lost before,
 // and by as little beside it as lets a pile at rest come up again; a hand, a force or a driven block does work.
 double shareOfPushOut(const IslandStep& step, const RigidIsland& island, double rate) {
   if (isRigid(step.simulation.scene.settings.method) || isWorkedOn(step)) return 1.0;
   const double work_j = workOfPushOut(island, rate);
-  return work_j > 0.0 ? std::clamp((freePushOut(step, island) - island.gained_j) / work_j, 0.0, 1.0) : 1.0;
+  return work_j > 0.0 ? std::clamp((freePushOut(step.simulation, massOf(island)) - island.gained_j) / work_j, 0.0, 1.0) : 1.0;
 }
 
 // Passes in rigid mode that cost little because few points are active, or that a stack needs which is hit and mostly stands: the
@@ -185,8 +179,8 @@ void relaxAndRebound(IslandStep& step, RigidIsland& island, int passes) {
 // a push that is too large is corrected only slowly over the passes.
 void lowerUnpaid(const IslandStep& step, RigidIsland& island) {
   if (!island.touches || isWorkedOn(step)) return;
-  const double unpaid_j =
-      kineticEnergy(island.bodies) - island.energyBefore_j - std::max(0.0, freePushOut(step, island) - island.gained_j);
+  const double unpaid_j = kineticEnergy(island.bodies) - island.energyBefore_j -
+                          std::max(0.0, freePushOut(step.simulation, massOf(island)) - island.gained_j);
   if (!(unpaid_j > 0.0)) return;
   const auto excessOf = [&](const RigidBody& body) { return Vec3(body.moved - step.drift_s * body.velocity); };
   double lifted_j = 0.0;

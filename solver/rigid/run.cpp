@@ -204,6 +204,10 @@ int rigidSubsteps(const Settings& settings) {
   return settings.method == Method::rigidLcp ? tuning::kLcpSubsteps : tuning::kRigidSubsteps;
 }
 
+double freePushOut(const Simulation& simulation, double mass_kg) {
+  return tuning::kFreePushOut * mass_kg * simulation.scene.gravity.magnitude * simulation.lengths.blockHeight_m;
+}
+
 void turnAxes(const Vec3& angle, Eigen::Matrix3d& axes) {
   for (Eigen::Index k = 0; k < 3; ++k) axes.col(k) = turnedVector(0.5 * angle, axes.col(k));
 }

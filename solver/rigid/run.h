@@ -16,6 +16,9 @@ Eigen::Matrix3d straightAxes(const ParticleArray& position, std::size_t block);
 /// Steps of a frame: from the settings, or the default.
 int rigidSubsteps(const Settings& settings);
 
+/// Energy by which the overlap of blocks of a mass (kg) may be pushed out in a frame beyond what the frame has lost, J.
+double freePushOut(const Simulation& simulation, double mass_kg);
+
 /// Advances an island from `begin_s` to the end of the part of the frame with `steps` solutions of its contacts (> 0): reads
 /// poses from the particles, solves and moves by the method (by sequential impulses for an island of another method in rigid
 /// mode), and looks for contacts, with sequential impulses after every few solutions, between which the points are known that may

@@ -86,7 +86,7 @@ TEST(Warps, HaveForcesThatFollowFromTheirEnergy) {
   EXPECT_LT(torque.norm(), 1e-9 * largest);
 }
 
-// Beams that land flat, and one on edge: they twisted by themselves, and their corners got 1 mm into the floor.
+// Beams and a lath that land flat: they twisted by themselves, and their corners got 1 mm into the floor.
 TEST(Warps, BeamsRestOnTheFloor) {
   for (const Vec3& size : {Vec3(1.0, 0.02, 0.02), Vec3(0.5, 0.02, 0.02), Vec3(1.0, 0.04, 0.005)}) {
     SCOPED_TRACE(testing::Message() << size.transpose());
