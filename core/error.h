@@ -19,4 +19,10 @@ struct DivergenceError : std::runtime_error {
   double time_s;  ///< simulated time, s
 };
 
+/// An explicit method would need more steps for the coming frame than `kMaxExplicitSubsteps`: which block is the stiffest for its
+/// mass, when, and how many. Nothing has been stepped. To users it is a simulation that fails, as one that diverges.
+struct StepLimitError : DivergenceError {
+  using DivergenceError::DivergenceError;
+};
+
 }  // namespace springtower

@@ -1,5 +1,6 @@
 #include "solver/algebra/block_ldlt.h"
 
+#include "core/flush_denormals.h"
 #include "core/lanes.h"
 #include "core/parallel.h"
 #include "core/tuning.h"
@@ -182,10 +183,12 @@ void clear(BlockCholesky& matrix) {
 }
 
 bool factorise(BlockCholesky& matrix) {
+  const FlushDenormals flush;
   return matrix.tasks.empty() ? factoriseInOrder(matrix) : factoriseInTasks(matrix);
 }
 
 void solve(BlockCholesky& matrix, std::span<double> values) {
+  const FlushDenormals flush;
   matrix.tasks.empty() ? solveInOrder(matrix, values) : solveInTasks(matrix, values);
 }
 

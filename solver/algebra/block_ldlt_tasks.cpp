@@ -1,5 +1,6 @@
 #include "solver/algebra/block_ldlt_tasks.h"
 
+#include "core/flush_denormals.h"
 #include "core/lanes.h"
 #include "core/parallel.h"
 #include "core/tuning.h"
@@ -14,6 +15,16 @@ namespace {
 
 std::size_t at(std::int32_t index) {
   return static_cast<std::size_t>(index);
+}
+
+// forRanges whose ranges, on whatever thread, have no denormal numbers: what fills in gets less from column to column, and
+// without this a factorisation of 5000 blocks takes twice as long and more.
+template <class Body>
+void overRanges(std::size_t count, std::size_t grain, bool parallel, const Body& body) {
+  forRanges(count, grain, parallel, [&](std::size_t first, std::size_t last) {
+    const FlushDenormals flush;
+    body(first, last);
+  });
 }
 
 // Eliminates a task's columns, as far as its own columns are concerned: blocks in rows of the top are updated, but left
@@ -77,10 +88,10 @@ bool eliminateTopColumn(BlockCholesky& matrix, std::size_t column) {
   const std::size_t first = at(matrix.columnStart[column]);
   const std::size_t count = at(matrix.columnStart[column + 1]) - first;
   const bool parallel = count * (count + 3) / 2 >= tuning::kParallelProducts;
-  forRanges(count, tuning::kEliminationRowGrain, parallel,
-            [&](std::size_t from, std::size_t to) { divideBlocks(matrix, column, first + from, first + to); });
+  overRanges(count, tuning::kEliminationRowGrain, parallel,
+             [&](std::size_t from, std::size_t to) { divideBlocks(matrix, column, first + from, first + to); });
   // Rows have the more to do the later they come, so each range takes as many from the end as from the beginning.
-  forRanges((count + 1) / 2, tuning::kEliminationRowGrain, parallel, [&](std::size_t from, std::size_t to) {
+  overRanges((count + 1) / 2, tuning::kEliminationRowGrain, parallel, [&](std::size_t from, std::size_t to) {
     for (std::size_t r = from; r < to; ++r) {
       updateRow(matrix, first, first + r);
       if (count - 1 - r != r) updateRow(matrix, first, first + count - 1 - r);
@@ -102,7 +113,7 @@ std::span<const EliminationTasks::Source> sourcesOf(const EliminationTasks& task
 
 template <class Kernel>
 void overTasks(const EliminationTasks& tasks, const Kernel& kernel) {
-  forRanges(tasks.count(), 1, true, [&](std::size_t first, std::size_t last) {
+  overRanges(tasks.count(), 1, true, [&](std::size_t first, std::size_t last) {
     for (std::size_t task = first; task < last; ++task) kernel(columnsOf(tasks, task));
   });
 }
@@ -185,12 +196,13 @@ bool factoriseInTasks(BlockCholesky& matrix) {
   bool positive = mergeRanges(
       tasks.count(), 1, true, true,
       [&](std::size_t first, std::size_t last) {
+        const FlushDenormals flush;
         bool all = true;
         for (std::size_t task = first; task < last; ++task) all = eliminateTask(matrix, columnsOf(tasks, task)) && all;
         return all;
       },
       both);
-  forRanges(tasks.partCount(), 1, true, [&](std::size_t first, std::size_t last) {
+  overRanges(tasks.partCount(), 1, true, [&](std::size_t first, std::size_t last) {
     for (std::size_t part = first; part < last; ++part) gatherTopColumns(matrix, sourcesOf(tasks, part));
   });
   overTasks(tasks, [&](std::span<const std::int32_t> columns) { divideTopRows(matrix, columns); });
@@ -202,19 +214,19 @@ void solveInTasks(BlockCholesky& matrix, std::span<double> values) {
   const EliminationTasks& tasks = matrix.tasks;
   float* y = matrix.work.data();
   const auto overNodes = [&](const auto& kernel) {
-    forRanges(matrix.nodeCount(), tuning::kBlockGrain, true, [&](std::size_t first, std::size_t last) {
+    overRanges(matrix.nodeCount(), tuning::kBlockGrain, true, [&](std::size_t first, std::size_t last) {
       for (std::size_t j = first; j < last; ++j) kernel(values.data() + kNodeSize * at(matrix.node[j]), y + kNodeSize * j);
     });
   };
   overNodes([](const double* from, float* to) {
     for (std::size_t c = 0; c < kNodeSize; ++c) to[c] = static_cast<float>(from[c]);
   });
-  forRanges(tasks.count(), 1, true, [&](std::size_t first, std::size_t last) {
+  overRanges(tasks.count(), 1, true, [&](std::size_t first, std::size_t last) {
     for (std::size_t task = first; task < last; ++task)
       substituteTask(matrix, columnsOf(tasks, task), y, matrix.taken.data() + kNodeSize * tasks.top.size() * task);
   });
-  forRanges(tasks.top.size(), tuning::kBlockGrain, true,
-            [&](std::size_t first, std::size_t last) { addTaken(matrix, first, last, y); });
+  overRanges(tasks.top.size(), tuning::kBlockGrain, true,
+             [&](std::size_t first, std::size_t last) { addTaken(matrix, first, last, y); });
   substituteTop(matrix, y);
   backward(matrix, tasks.top, y);
   overTasks(tasks, [&](std::span<const std::int32_t> columns) { backward(matrix, columns, y); });

@@ -1,5 +1,6 @@
 #include "solver/frame/explicit_steps.h"
 
+#include "core/error.h"
 #include "core/tuning.h"
 #include "solver/block/inertia.h"
 #include "solver/contact/approach.h"
@@ -19,6 +20,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <fmt/format.h>
 
 namespace springtower {
 
@@ -43,6 +46,29 @@ TetherRates tetherRates(const IslandStep& step) {
 double shortening(double radius, double dampingTime_s, double damping) {
   const auto longest = [&](double rate) { return std::sqrt(rate * rate + 4.0 * radius) - rate; };
   return longest(dampingTime_s * radius + damping) / longest(dampingTime_s * radius);
+}
+
+// The block of the largest eigenvalue of M^-1 K with its neighbours held.
+std::int32_t stiffestBlock(const IslandStep& step) {
+  std::int32_t stiffest = step.blocks.front();
+  double most = 0.0;
+  for (const std::int32_t& block : step.blocks) {
+    const double radius = spectralBound(step.simulation, {&block, 1}, step.pairs);
+    if (radius <= most) continue;
+    most = radius;
+    stiffest = block;
+  }
+  return stiffest;
+}
+
+[[noreturn]] void refuseSteps(const IslandStep& step, double needed) {
+  const std::int32_t block = stiffestBlock(step);
+  throw StepLimitError(
+      fmt::format("block {} at {:.6f} s: its springs or contacts are so stiff for its mass that method {} needs {:.3g} steps for "
+                  "the next frame, allowed are {:.3g} (the methods auto and implicit do not depend on stiffness)",
+                  block, step.simulation.time_s, nameOf(step.simulation.scene.settings.method), needed,
+                  static_cast<double>(tuning::kMaxExplicitSubsteps)),
+      block, step.simulation.time_s);
 }
 
 // Chooses the number of steps of an island for this frame, and the largest stiffening of contacts made in it.
@@ -78,9 +104,11 @@ int chooseSubsteps(IslandStep& step) {
     const auto stepsFor = [&](double radius) {
       const double dt = stableStep(settings.method, radius + held.stiffness, simulation.dampingTime_s, margin) *
                         shortening(radius + held.stiffness, simulation.dampingTime_s, held.damping);
-      return std::clamp(std::ceil(settings.frame_s / dt), 1.0, static_cast<double>(tuning::kMaxExplicitSubsteps));
+      return std::max(std::ceil(settings.frame_s / dt), 1.0);
     };
-    substeps = static_cast<int>(std::min(stepsFor(needed), std::max<double>(tuning::kMaxImpactSubsteps, stepsFor(begun))));
+    const double steps = std::min(stepsFor(needed), std::max<double>(tuning::kMaxImpactSubsteps, stepsFor(begun)));
+    if (!(steps <= tuning::kMaxExplicitSubsteps)) refuseSteps(step, steps);
+    substeps = static_cast<int>(steps);
     allowed =
         stableSpectralRadius(settings.method, settings.frame_s / substeps, simulation.dampingTime_s, settings.stabilitySafety);
     if (held.stiffness > 0.0) allowed = std::min(allowed, needed);

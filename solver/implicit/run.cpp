@@ -92,13 +92,19 @@ int stepsInPart(const IslandStep& step, int steps) {
   return std::max(1, static_cast<int>(std::ceil(steps * share - 1e-9)));
 }
 
+// Upper bound of the steps a frame of the last retry. In a wide island finer steps would take seconds.
+int mostStepsOfRetries(const IslandStep& step, bool forced) {
+  if (forced) return tuning::kMaxLedSteps;
+  return step.blocks.size() >= tuning::kParallelBlocks ? tuning::kMaxFrequencySteps : tuning::kMaxStandingSteps;
+}
+
 // Steps a frame of the last retry. Rigid steps leave what a hand leads, and a stack that a blow has set swaying, less well in
-// place. But where blocks are about to rebound they are right, and in a wide island finer steps would take seconds.
+// place. But where blocks are about to rebound they are right.
 int mostSteps(const IslandStep& step, bool forced, bool mostlyFallen) {
   if (step.simulation.scene.settings.substeps > 0) return 0;
-  if (forced) return tuning::kMaxLedSteps;
-  const bool rigidIsRight = mostlyFallen || step.blocks.size() >= tuning::kParallelBlocks || isAboutToRebound(step);
-  return rigidIsRight ? tuning::kMaxFrequencySteps : tuning::kMaxStandingSteps;
+  const int most = mostStepsOfRetries(step, forced);
+  const bool canEndEarlier = !forced && most > tuning::kMaxFrequencySteps;
+  return canEndEarlier && (mostlyFallen || isAboutToRebound(step)) ? tuning::kMaxFrequencySteps : most;
 }
 
 // Step count for retrying the rest of the frame after Newton failed: 4 a frame, or the next of 8, 16, 32 and so on, up to `most`.
@@ -272,10 +278,11 @@ IslandOutcome runImplicitSteps(IslandStep& step, bool mostlyFallen, double& reac
     step.gravity = simulation.scene.gravity.at(step.time_s + step.drift_s);  // forces are those of the step's end
     chooseFormula(step, island, std::exchange(begins, false));
     const double share = (end_s - reached_s) / simulation.scene.settings.frame_s;
-    const int next = retryStepCount(share, steps, forced ? tuning::kMaxLedSteps : tuning::kMaxStandingSteps);
+    const int next = retryStepCount(share, steps, mostStepsOfRetries(step, forced));
     // An island that has mostly fallen goes back to rigid steps where implicit ones do not converge.
     const bool canRetryFiner = next > steps && simulation.scene.settings.substeps == 0 && !mostlyFallen;
-    if (!stepImplicit(step, canRetryFiner)) {
+    // Steps that are hardly finer need as many iterations.
+    if (!stepImplicit(step, canRetryFiner && next >= 2 * steps)) {
       const int finer = canRetryFiner ? retryStepCount(share, steps, mostSteps(step, forced, mostlyFallen)) : 0;
       if (finer > steps) {
         takeSteps(finer);

@@ -78,12 +78,13 @@ void compareWithProgram(const RandomScene& random, Record& record) {
   const std::string report = folder.file("report.json");
   std::ofstream(file) << sceneText(random, random.scene.name);
   const ProgramResult result = runProgram("springtower", {"run", file, "--threads", "1", "--report", report});
-  const int wanted = record.diverged.empty() ? 0 : 3;
+  const std::string& failure = record.diverged.empty() ? record.stepLimit : record.diverged;
+  const int wanted = failure.empty() ? 0 : 3;
   record.programAgrees = result.exitCode == wanted;
   if (result.exitCode != wanted) {
     record.programSays = fmt::format("exit code {} instead of {}: {}", result.exitCode, wanted, result.error);
   } else if (wanted == 3) {
-    record.programAgrees = result.error.find(record.diverged) != std::string::npos;
+    record.programAgrees = result.error.find(failure) != std::string::npos;
     if (!*record.programAgrees) record.programSays = "another message: " + result.error;
   } else {
     const Json json = Json::parse(contentOf(report));

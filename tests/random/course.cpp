@@ -93,6 +93,9 @@ Course playScene(const Scene& scene, int threads, double limit_s, const CourseWa
   Course course;
   try {
     play(scene, limit_s, watch, course);
+  } catch (const StepLimitError& error) {
+    course.stepLimit = error.what();
+    course.simulated_s = error.time_s;
   } catch (const DivergenceError& error) {
     course.diverged = error.what();
     course.simulated_s = error.time_s;
@@ -106,7 +109,8 @@ bool agree(const Course& one, const Course& other) {
   const std::size_t both = std::min(one.hashes.size(), other.hashes.size());
   if (!std::equal(one.hashes.begin(), one.hashes.begin() + static_cast<std::ptrdiff_t>(both), other.hashes.begin())) return false;
   if (one.cut || other.cut) return true;
-  return one.frames == other.frames && one.hash == other.hash && one.diverged.empty() == other.diverged.empty();
+  return one.frames == other.frames && one.hash == other.hash && one.diverged.empty() == other.diverged.empty() &&
+         one.stepLimit == other.stepLimit;
 }
 
 }  // namespace springtower

@@ -22,6 +22,7 @@ struct Course {
   double movedMost = 0.0;  ///< farthest that the centre of a block was from its start at the end of a frame, in its least sides
   bool cut = false;        ///< the limit came before the end
   std::string diverged;    ///< message of DivergenceError
+  std::string stepLimit;   ///< message of StepLimitError
   std::string notFinite;   ///< the block and the frame
   std::string refused;     ///< message of InputError
 };
@@ -37,7 +38,8 @@ struct CourseWatch {
 /// and is in the course.
 Course playScene(const Scene& scene, int threads, double limit_s, const CourseWatch& watch = {});
 
-/// Whether two runs of one scene agree: in the hashes of their states as far as both went, and in that both diverged or none.
+/// Whether two runs of one scene agree: in the hashes of their states as far as both went, and in that both diverged or none, and
+/// both ended at the limit of an explicit method's steps or none.
 bool agree(const Course& one, const Course& other);
 
 }  // namespace springtower

@@ -157,6 +157,7 @@ void copyCourse(const Course& course, Record& record) {
   record.mostSubsteps = course.mostSubsteps;
   record.tolerance_m = course.tolerance_m;
   record.diverged = course.diverged;
+  record.stepLimit = course.stepLimit;
   record.notFinite = course.notFinite;
   record.refused = course.refused;
   record.movedMost = course.movedMost;
@@ -215,13 +216,15 @@ Record judgeScene(const Scene& scene, const JudgeOptions& options) {
     record.sameOnTwoThreads = agree(first, playScene(scene, 2, kThreadsShare * options.limit_s));
     end();
   }
-  const bool whole = !first.cut && first.diverged.empty() && first.notFinite.empty();
-  if (!options.compareSleep || !whole) return record;
+  const auto isWhole = [](const Course& course) {
+    return !course.cut && course.diverged.empty() && course.stepLimit.empty() && course.notFinite.empty();
+  };
+  if (!options.compareSleep || !isWhole(first)) return record;
   Scene other = scene;
   other.settings.sleep = scene.settings.sleep == Sleep::off ? Sleep::on : Sleep::off;
   begin(options.limit_s);
   const Course second = playScene(other, 1, options.limit_s);
-  if (!second.cut && second.diverged.empty() && second.notFinite.empty()) {
+  if (isWhole(second)) {
     record.sameVerdict = (first.movedMost > kMaxMove) == (second.movedMost > kMaxMove);
   }
   end();

@@ -36,6 +36,7 @@ void forEachMember(SomeRecord& record, const Use& use) {
   use("cut", record.cut);
   use("most_substeps", record.mostSubsteps);
   use("diverged", record.diverged);
+  use("step_limit", record.stepLimit);
   use("not_finite", record.notFinite);
   use("refused", record.refused);
   use("deepest_m", record.deepest_m);
@@ -121,7 +122,8 @@ bool has(const Record& record, Fault fault) {
     case Fault::hung:
       return record.ended == "limit";
     case Fault::slow:
-      return has(record, Fault::hung) || (record.diverged.empty() && record.processor_s > record.simulated_s);
+      return has(record, Fault::hung) ||
+             (record.diverged.empty() && record.stepLimit.empty() && record.processor_s > record.simulated_s);
     case Fault::deep:
       return sound && exceeds(record.deepest_m, kMaxDepthShare * record.leastSide_m);
     case Fault::momentum:

@@ -29,8 +29,9 @@ struct Record {
   bool cut = false;          ///< the processor time allowed was over before the scene was
   int mostSubsteps = 0;      ///< of a frame
   std::string diverged;      ///< the message, empty where it did not
-  std::string notFinite;     ///< what was not a number although nothing was thrown
-  std::string refused;       ///< why it was not simulated at all
+  std::string stepLimit;  ///< the message of an explicit method that would need too many steps: no fault, as it is said at once
+  std::string notFinite;  ///< what was not a number although nothing was thrown
+  std::string refused;    ///< why it was not simulated at all
 
   double deepest_m = 0.0;     ///< deepest penetration at the end of any frame
   double energyGained = 0.0;  ///< largest rise of the energy above its least value before, less the work of hand and forces,

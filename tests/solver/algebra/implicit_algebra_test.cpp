@@ -8,7 +8,9 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <cmath>
 #include <gtest/gtest.h>
+#include <limits>
 #include <numeric>
 #include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/task_arena.h>
@@ -109,6 +111,33 @@ TEST(BlockCholesky, AWideMatrixHasTheSameBitsOnAnyNumberOfThreads) {
     EXPECT_LT((full * solutions.back() - right).cwiseAbs().maxCoeff(), 1e-5);
     EXPECT_EQ(solutions.back(), solutions.front()) << threads << " threads";
   }
+}
+
+// What fills in is the smaller the farther apart two blocks are: coupled by 1e-13 of their diagonal, neighbours of neighbours of
+// neighbours would have 1e-39, below the normal numbers of float. Such fill is zero, on any thread, and the caller computes with
+// denormal numbers as before.
+TEST(BlockCholesky, FillsInWithoutDenormalNumbers) {
+  constexpr std::int32_t kRows = 100;
+  const std::vector<BlockPair> edges = towerEdges(kRows);
+  EliminationOrder order;
+  for (std::int32_t node = 0; node < 3 * kRows; ++node) order.centre.emplace_back(node % 3, 0.0, node / 3);
+  orderByDissection(edges, order);
+  BlockCholesky matrix;
+  ASSERT_TRUE(analyse(order.nodes, edges, kNoLimit, matrix));
+  randomMatrix(edges, matrix);
+  for (float& entry : matrix.lower) entry *= 1e-13F;
+  const auto isDenormal = [](float value) { return std::fpclassify(value) == FP_SUBNORMAL; };
+  for (const std::size_t threads : {1U, 4U}) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    tbb::task_arena arena(static_cast<int>(threads));
+    arena.execute([&] {
+      BlockCholesky work = matrix;
+      EXPECT_TRUE(factorise(work));
+      EXPECT_TRUE(std::none_of(work.lower.begin(), work.lower.end(), isDenormal)) << threads << " threads";
+    });
+  }
+  volatile double least = std::numeric_limits<double>::min();
+  EXPECT_GT(0.5 * least, 0.0) << "flushes only inside";
 }
 
 // In double, for a matrix rounded to float; a copy gives the same bits.

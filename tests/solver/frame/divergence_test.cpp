@@ -79,5 +79,36 @@ TEST(Divergence, IsNotThatOfAFastBlock) {
   }
 }
 
+// A plate of 20 kg on a block of 20 g, a thousandth of a millimetre deep at most: explicit steps would be millions a frame. They
+// are refused by the block that is too light for what it carries, before anything has moved; implicit steps carry it.
+TEST(StepLimit, OfAnExplicitMethodIsSaidBeforeTheFrame) {
+  Scene scene = sceneNamed("tower:1");
+  scene.blocks.resize(1);
+  BlockSpec plate = scene.blocks.front();
+  plate.centre[2] += plate.dimensions[2];
+  plate.mass = 2000.0 * plate.mass;
+  scene.blocks.push_back(plate);
+  scene.settings.tolerance_m = 1e-7;
+  scene.settings.method = Method::semiImplicitEuler;
+  Simulation simulation(scene);
+  prepare(simulation);
+  const ParticleArray before = simulation.state.position;
+  try {
+    stepFrame(simulation);
+    FAIL() << "expected an error, took " << simulation.substeps << " steps";
+  } catch (const StepLimitError& error) {
+    const std::string message = error.what();
+    EXPECT_EQ(error.block, 0);
+    EXPECT_EQ(message.rfind("block 0 at 0.000000 s", 0), 0U) << message;
+    EXPECT_NE(message.find("method semi-implicit-euler needs"), std::string::npos) << message;
+    EXPECT_NE(message.find("allowed are 1e+06"), std::string::npos) << message;
+  }
+  for (std::size_t c = 0; c < kCorners; ++c) EXPECT_EQ(simulation.state.position.at(0, c), before.at(0, c));
+  scene.settings.method = Method::implicit;
+  Simulation carried(scene);
+  prepareAndStep(carried);
+  EXPECT_GT(centre(carried.state.position, 1)[2], centre(before, 1)[2] - 1e-5);
+}
+
 }  // namespace
 }  // namespace springtower
