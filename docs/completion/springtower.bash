@@ -86,7 +86,7 @@ _springtower() {
     profile)
       case $previous in
         --rows) COMPREPLY=(); return ;;
-        --scenes) _springtower_listed "rest sway heights pull pull-sleep game collapse asleep towers pile walls pyramids topple hit heaps piles rain"; return ;;
+        --scenes) _springtower_listed "rest sway heights pull pull-sleep game collapse asleep towers pile walls pyramids starts topple hit heaps piles rain"; return ;;
         --methods) _springtower_listed "implicit bdf2 implicit-euler implicit-eigen bdf2-eigen semi-implicit-euler midpoint runge-kutta-4 report legacy-2003 rigid-pgs rigid-lcp xpbd auto"; return ;;
         --tolerances) COMPREPLY=(); return ;;
         --threads) COMPREPLY=(); return ;;

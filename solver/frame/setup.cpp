@@ -142,7 +142,9 @@ void sizeEngine(Simulation& simulation) {
   e.memo.frames.resize(count);
   e.memo.motion.resize(count);
   e.scratch.contactForce.resize(count);
-  e.springRadius.resize(count);
+  const MethodFamily family = traitsOf(scene.settings.method).family;
+  const bool isExplicit = family == MethodFamily::explicitSprings || family == MethodFamily::report;
+  if (isExplicit) e.springRadius.resize(count);
   e.memo.previous = simulation.state.position;
   e.memo.blockHistory.assign(count, BlockHistory{});
   e.memo.islandHistory.assign(count, IslandHistory{});
@@ -150,8 +152,10 @@ void sizeEngine(Simulation& simulation) {
   if (!isRigid(scene.settings.method)) e.scratch.newContactCount.assign(count, 0);
   placeFixedBlocks(simulation);
   for (std::size_t b = 0; b < count; ++b) {
-    const bool equal = equalsPrevious(model, simulation.stiffness, b);
-    e.springRadius[b] = equal ? e.springRadius[b - 1] : blockSpectralRadius(model, scene.settings.inertia, b);
+    if (isExplicit) {
+      const bool equal = equalsPrevious(model, simulation.stiffness, b);
+      e.springRadius[b] = equal ? e.springRadius[b - 1] : blockSpectralRadius(model, scene.settings.inertia, b);
+    }
     e.sleep.windows[b].centre = centre(simulation.state.position, b);
   }
 }

@@ -36,7 +36,8 @@ bool isSameBlock(const Simulation& simulation, std::size_t a, std::size_t b) {
   const BlockStiffness& stiffness = simulation.stiffness;
   return simulation.model.dimensions[a] == simulation.model.dimensions[b] && isSame(simulation.model.mass) &&
          simulation.friction.haveSameSurface(static_cast<std::int32_t>(a), static_cast<std::int32_t>(b)) &&
-         isSame(stiffness.stack_n_m) && isSame(stiffness.floor_n_m) && isSame(stiffness.edge_n_m);
+         isSame(stiffness.stack_n_m) && isSame(stiffness.floor_n_m) && isSame(stiffness.edge_n_m) &&
+         (stiffness.loadShare.empty() || isSame(stiffness.loadShare));
 }
 
 bool isPlacedAlike(const Simulation& simulation, std::size_t a, std::size_t b, const Vec3& shift) {

@@ -27,17 +27,25 @@ namespace {
 
 // Whether all blocks touch something and none moves.
 bool mayRest(const IslandStep& step) {
-  std::vector<std::uint8_t> touches(step.simulation.model.blockCount(), 0);
+  // By place in the island: an array for all blocks of the scene would be one for each of many islands.
+  std::vector<std::uint8_t> touches(step.blocks.size(), 0);
+  const auto placeOf = [&](std::int32_t block) {
+    return static_cast<std::size_t>(std::lower_bound(step.blocks.begin(), step.blocks.end(), block) - step.blocks.begin());
+  };
+  const auto touch = [&](std::int32_t block) {
+    const std::size_t place = placeOf(block);
+    if (place < touches.size() && step.blocks[place] == block) touches[place] = 1;  // none that is fixed
+  };
   for (const std::int32_t at : step.pairs) {
     const ContactView manifold = contactOf(step.engine, static_cast<std::size_t>(at));
     if (manifold.phase == PairPhase::separated) continue;
-    touches[static_cast<std::size_t>(manifold.upper)] = 1;
-    if (manifold.lower >= 0) touches[static_cast<std::size_t>(manifold.lower)] = 1;
+    touch(manifold.upper);
+    touch(manifold.lower);
   }
   const ParticleArray& velocity = step.simulation.state.velocity;
   return std::all_of(step.blocks.begin(), step.blocks.end(), [&](std::int32_t block) {
     const auto b = static_cast<std::size_t>(block);
-    bool still = touches[b] != 0;
+    bool still = touches[placeOf(block)] != 0;
     for (std::size_t c = 0; c < kCorners; ++c) still = still && velocity.at(b, c) == Vec3::Zero();
     return still;
   });

@@ -13,6 +13,9 @@ struct BlockStiffness {
   std::vector<double> stack_n_m;  ///< of one between blocks of the stack in which this block stands; 0 for a fixed block
   std::vector<double> floor_n_m;  ///< of one on the floor, which has fewer points: a tower's block rests on three others
   std::vector<double> edge_n_m;   ///< of an upright edge as long as the scene's least block is high
+  /// What a block is to bear, itself included, over the mean weight of its stack's blocks, at most 1; empty where it is 1 for
+  /// all. Of a light block among heavy ones it is less, and so is what its smoothed contacts bear (ContactStep::smoothing_j).
+  std::vector<double> loadShare;
 };
 
 /// Stiffness of a contact point of two blocks, N/m, normal; `lower` is negative for the floor. Between two stacks the stiffer of
@@ -25,6 +28,13 @@ inline double pairStiffness(const BlockStiffness& of, std::int32_t upper, std::i
   const double ofB = of.stack_n_m[b];
   if (std::min(ofA, ofB) > 0.0) return std::max(ofA, ofB);
   return ofA > 0.0 ? of.floor_n_m[a] : of.floor_n_m[b];
+}
+
+/// Share of a contact in the smoothing: the lesser one of its blocks; `lower` is negative for the floor.
+inline double smoothingShare(const BlockStiffness& of, std::int32_t upper, std::int32_t lower) {
+  if (of.loadShare.empty()) return 1.0;
+  const double ofUpper = of.loadShare[static_cast<std::size_t>(upper)];
+  return lower < 0 ? ofUpper : std::min(ofUpper, of.loadShare[static_cast<std::size_t>(lower)]);
 }
 
 /// Largest of the stiffnesses of blocks, N/m; 0 where there are none.

@@ -27,6 +27,7 @@ struct LawStep {
   double stiffeningKeep;  // factor on a stiffening beyond 1 after the step
   double maxwellGain;     // share of its lag that the Maxwell branch loses in the step
   double mostRate;        // 1/s, bound of a damping velocity over the elastic depth
+  double smoothing_j;     // of this contact
   double pointMass;       // kg, lower bound of the mass of a point: all four of a face that is hit flat push and squash the block
 };
 
@@ -43,6 +44,7 @@ SPRINGTOWER_INLINE LawStep lawStep(const ContactView& m, const ContactLaw& law, 
           1.0 / (1.0 + step.advance_s / law.stiffeningTime_s),
           step.advance_s / (law.maxwellTime_s + step.advance_s),
           step.endOnly && step.advance_s > 0.0 ? 1.0 / step.advance_s : kUnbounded,
+          step.smoothing_j > 0.0 ? step.smoothing_j * smoothingShare(*law.stiffness, m.upper, m.lower) : 0.0,
           reducedMass / tuning::kFlatImpactInverseMass};
 }
 
@@ -133,7 +135,7 @@ SPRINGTOWER_INLINE void smoothedLaw(const LawStep& s, const Lanes& depth, const 
     return std::max(std::max(p.stiffening[0], p.stiffening[1]), std::max(p.stiffening[2], p.stiffening[3]));
   };
   Lanes root;
-  squareRoot(depth * depth + 4.0 * s.step.smoothing_j / s.stiffness, root);
+  squareRoot(depth * depth + 4.0 * s.smoothing_j / s.stiffness, root);
   double holding = stiffest();
   p.stiffening = used ? 0.5 * (1.0 + depth / root) : zero;
   if (s.step.advance_s == 0.0) {
@@ -163,7 +165,7 @@ SPRINGTOWER_INLINE void pointLaw(const LawStep& s, const Lanes& depth, const Lan
   // First contact: the rest depth is the depth when it is detected (explicit steps) or 0 (implicit steps), so the spring starts
   // unloaded and adds no energy. Stiffness is multiplied so that the impact at the present closing speed stops within the impact
   // depth. The rest depth shrinks with the depth as the point lifts, while the spring stores nothing.
-  if (s.step.smoothing_j > 0.0) {
+  if (s.smoothing_j > 0.0) {
     smoothedLaw(s, depth, slip, normal, inUse, p);
     return;
   }

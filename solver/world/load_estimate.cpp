@@ -249,18 +249,22 @@ struct StackSums {
   double foot_m = 1e300;  // m, of the level ones
   double top_m = -1e300;
   std::size_t levels = 0;
+  std::size_t blocks = 0;
 };
 
 // Sums loads from the top down.
 void weigh(const Scene& scene, const std::vector<Footprint>& footprints, const Supports& below,
            const std::vector<std::size_t>& fromTop, LoadEstimate& estimate, std::vector<StackSums>& sums) {
-  std::vector<double> load(scene.blocks.size(), 0.0);
+  std::vector<double>& load = estimate.load_n;
+  load.assign(scene.blocks.size(), 0.0);
   // Without gravity nothing loads a contact, yet blocks must be stiff: their weights on Earth are used.
   const double weighing = scene.gravity.magnitude > 0.0 ? scene.gravity.magnitude : kStandardGravity_m_s2;
   for (const std::size_t b : fromTop) {
     const auto stack = static_cast<std::size_t>(estimate.stackOf[b]);
     const double own = scene.blocks[b].mass * weighing;
     load[b] += own;
+    estimate.stacks[stack].mean_n += own;
+    ++sums[stack].blocks;
     if (isLevel(scene.blocks[b])) sums[stack].level_n += own;
     const double height_m = footprints[b].upper_m - footprints[b].lower_m;
     const bool uneven = unevenness(below[b], height_m) > tuning::kUnevenHeight * height_m;
@@ -391,6 +395,7 @@ LoadEstimate estimateLoads(const Scene& scene) {
   }
   for (std::size_t s = 0; s < sums.size(); ++s) {
     StackLoad& of = estimate.stacks[s];
+    of.mean_n /= static_cast<double>(std::max<std::size_t>(1, sums[s].blocks));
     of.sway_n_m = swayStiffness(joints[s], sums[s]);
     const double concentration = concentrationOf(scene.gravity, sums[s]);
     of.contact_n *= concentration;

@@ -15,6 +15,7 @@ struct StackLoad {
   double contact_n = 0.0;  ///< N, largest load of one contact point between its blocks: the one that the tolerance applies to
   double floor_n = 0.0;    ///< N, largest load of one contact point on the floor, also under the heaviest block of the scene
   double edge_n = 0.0;     ///< N, largest load of one of a block's four upright edges, also under the heaviest block
+  double mean_n = 0.0;     ///< N, mean weight of its blocks
   double sway_n_m = 0.0;   ///< N/m, least contact stiffness at which the stack does not buckle under its own weight
 };
 
@@ -22,6 +23,7 @@ struct StackLoad {
 struct LoadEstimate {
   std::vector<StackLoad> stacks;
   std::vector<std::int32_t> stackOf;  ///< of each block, [blocks]
+  std::vector<double> load_n;         ///< N, of each block: its weight and what the blocks on it pass on, [blocks]
   int layers = 0;                     ///< most blocks on top of one another
   double askewFall_m = 0.0;           ///< m, largest height from which a block that does not lie flat falls onto what is below it
 

@@ -155,7 +155,8 @@ MemoryUse memoryUse(const Simulation& simulation) {
                 ofReport(engine.report) +
                 sumOf(engine.springRadius, engine.roundingFactor, engine.staticResponse, engine.responseStart,
                       engine.sleep.windows, engine.sleep.checkedLoads) +
-                sumOf(simulation.stiffness.stack_n_m, simulation.stiffness.floor_n_m, simulation.stiffness.edge_n_m);
+                sumOf(simulation.stiffness.stack_n_m, simulation.stiffness.floor_n_m, simulation.stiffness.edge_n_m,
+                      simulation.stiffness.loadShare);
   return use;
 }
 

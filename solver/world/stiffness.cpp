@@ -15,8 +15,13 @@ BlockStiffness stiffnessForTolerance(const LoadEstimate& loads, double tolerance
     const auto stiffness = [&](double load_n) { return std::max(load_n / tolerance_m, stack.sway_n_m); };
     result.stack_n_m.push_back(stiffness(stack.contact_n));
     result.floor_n_m.push_back(stiffness(stack.floor_n));
+    result.loadShare.push_back(stack.mean_n > 0.0 ? std::min(1.0, loads.load_n[b] / stack.mean_n) : 1.0);
     result.edge_n_m.push_back(stiffness(stack.edge_n));
   }
+  // Of equal blocks each bears at least the mean weight, but for the rounding of the mean.
+  constexpr double kAll = 1.0 - 1e-12;
+  if (std::all_of(result.loadShare.begin(), result.loadShare.end(), [](double share) { return share >= kAll; }))
+    result.loadShare = {};
   return result;
 }
 

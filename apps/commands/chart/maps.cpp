@@ -1,10 +1,10 @@
 #include "apps/commands/chart/maps.h"
 
 #include "apps/common/interruption.h"
+#include "apps/common/prepare_or_end.h"
 #include "core/error.h"
 #include "core/processor_time.h"
 #include "core/scene/scene.h"
-#include "solver/frame/prepare.h"
 #include "solver/metrics/measures.h"
 #include "solver/metrics/penetration.h"
 #include "solver/world/engine.h"
@@ -79,7 +79,7 @@ MapPoint tried(Method method, int rows, double tolerance_m, int steps, const Map
   ParticleArray settled;
   double squares = 0.0;
   try {
-    prepare(simulation);
+    prepareOrEnd(simulation);
     for (long frame = 0; frame < frames; ++frame) {
       endIfInterrupted();
       stepFrame(simulation);

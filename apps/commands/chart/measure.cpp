@@ -2,9 +2,9 @@
 
 #include "apps/commands/chart/scene.h"
 #include "apps/common/interruption.h"
+#include "apps/common/prepare_or_end.h"
 #include "core/error.h"
 #include "core/processor_time.h"
-#include "solver/frame/prepare.h"
 #include "solver/metrics/balance.h"
 #include "solver/metrics/measures.h"
 #include "solver/metrics/penetration.h"
@@ -43,7 +43,7 @@ double tooSlowAtFewRows(const ChartCase& what, const ChartLimits& limits) {
   Simulation simulation(sceneOf(low, few));
   double frame_s = 0.0;
   try {
-    prepare(simulation);
+    prepareOrEnd(simulation);
     stepFrame(simulation);
     const double begin_s = threadTime_s();
     stepFrame(simulation);
@@ -71,7 +71,7 @@ ParticleArray convergedEnd(const ChartCase& what, const ChartLimits& limits) {
   Scene scene = sceneOf(finest, limits);
   if (what.knob == Knob::tolerance) scene.settings.stabilitySafety /= kFinerSteps;
   Simulation simulation(scene);
-  prepare(simulation);
+  prepareOrEnd(simulation);
   const double end_s = timesOf(what.scene, limits).end_s - 0.5 * scene.settings.frame_s;
   while (simulation.time_s < end_s) {
     endIfInterrupted();
@@ -227,7 +227,7 @@ class ChartRun {
       simulation_.time_s = static_cast<double>(++simulation_.frame) * simulation_.scene.settings.frame_s;
       return step_s;
     }
-    prepare(simulation_);
+    prepareOrEnd(simulation_);
     const double begin_s = threadTime_s();
     if (hand_.block >= 0) pull(hand_, simulation_);
     stepFrame(simulation_);

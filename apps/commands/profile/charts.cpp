@@ -72,6 +72,8 @@ std::string describe(ProfileScene scene) {
       return "walls in running bond at rest, all blocks awake";
     case ProfileScene::pyramids:
       return "pyramids of cubes and of bricks at rest, all blocks awake";
+    case ProfileScene::starts:
+      return "towers that begin in equilibrium, all blocks awake";
     case ProfileScene::topple:
       return "towers that topple, gravity tilted by 14.5 degrees";
     case ProfileScene::hit:
@@ -226,7 +228,7 @@ class Charts {
 
   // A line for each family and number of threads, and Bullet's points hollow.
   void stackGrowth() {
-    Plot chart = plot("Walls and pyramids: blocks against time", ProfileScene::walls);
+    Plot chart = plot("Walls, pyramids and towers: blocks against time", ProfileScene::walls);
     chart.subtitle = "at rest, all blocks awake" + commonOf(series_);
     chart.x = {"blocks", true};
     chart.y = {"ms a frame", true};

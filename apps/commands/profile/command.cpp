@@ -45,9 +45,10 @@ scenes: rest (settled, awake), sway (gravity sways by 0.1 degree), heights (vary
 awake), pull-sleep (the same with sleep), game (a recorded game on 18 rows, whole, as the viewer plays it, with sleep: a hand
 that hesitates draws out two blocks, lifts them and lays them on top; with a third the tower falls), collapse (gravity tilted by
 14.5 degrees), asleep, towers (many of 18 rows, awake), pile (a connected stack of 108 blocks a row, dropped from 10 cm: its
-first frames on the floor), walls (running bond, half blocks at the ends), pyramids (cubes of 20 mm; bricks laid across); of
-both: the search for the equilibrium, depth, creep, what is required of some, Bullet with the steps that come nearest in depth,
-and the growth of cost with blocks; on one thread and two; some 2 minutes
+first frames on the floor), walls (running bond, half blocks at the ends), pyramids (cubes of 20 mm; bricks laid across), starts
+(towers: equal, uneven, under gravity tilted by half of what tips them over, many); of these three: the search for the
+equilibrium, depth, creep, what is required of some, Bullet with the steps that come nearest in depth, and the growth of cost
+with blocks; on one thread and two; some 2 minutes
 falls, each timed whole, awake, on one thread and two, with depth, energy, memory, what is required, and Bullet beside: topple
 (towers under gravity tilted by 14.5 degrees), hit (a block at 5 m/s), heaps, piles, rain; some 5 minutes
 
@@ -57,6 +58,7 @@ examples:
   springtower profile --rows 18 --scenes rest --tolerances 1e-5 --threads 1,2
   springtower profile --rows 46 --scenes pile --tolerances 2e-4 --threads 1,2 --samples 1    some 5000 blocks; minutes
   springtower profile --scenes walls,pyramids --quick             a look at their table in seconds
+  springtower profile --scenes starts --peer-limit 0              how long towers take until their first frame
   springtower profile --stacks wall:20x12,cubes:60 --peer-limit 0 these alone, without Bullet
   springtower profile --scenes topple,hit,heaps,piles,rain        the table of what moves in large numbers
   springtower profile --falls heap:100,shot:18 --threads 1        these alone, on one thread
@@ -203,8 +205,9 @@ CLI::App* defineProfile(CLI::App& program, ProfileCommand& command) {
   list("--threads", command.threads, "N,N,...", "threads to use (default 1; of what has a name and a size 1,2)");
   list("--towers", command.towers, "N,N,...", "how many towers scene `towers` has (default 1,4,16,64)");
   list("--stacks", command.stacks, "NAME:SIZE,...",
-       "walls and pyramids to time in scenes `walls` and `pyramids`, which it implies: wall:COLUMNSxCOURSES, cubes:ROWS, "
-       "bricks:ROWS (default those that have something to meet, 246 to 5050 blocks)");
+       "what to time in scenes `walls`, `pyramids` and `starts`, which it implies: wall:COLUMNSxCOURSES, cubes:ROWS, "
+       "bricks:ROWS, tower:ROWS, uneven:ROWS, tilted:ROWS, uneven-tilted:ROWS, tilted-towers:TOWERS (default those that have "
+       "something to meet, 54 to 5050 blocks)");
   list("--falls", command.falls, "NAME:SIZE,...",
        "what to time in scenes `topple`, `hit`, `heaps`, `piles` and `rain`, which it implies: topple:ROWS, towers:TOWERS, "
        "shot:ROWS, heap:BLOCKS, pile:ROWS, rain:BLOCKS (default those that have something to meet, 54 to 3456 blocks)");

@@ -29,6 +29,7 @@ enum class ProfileScene {
   pile,       ///< one wide stack of 108 blocks a row that lands after a fall of 10 cm
   walls,      ///< walls in running bond at rest, awake
   pyramids,   ///< pyramids of cubes and of bricks at rest, awake
+  starts,     ///< towers whose search for the equilibrium is timed: equal, uneven, tilted, many
   topple,     ///< towers that topple under gravity that leans by 14.5 degrees
   hit,        ///< towers that a block flies at
   heaps,      ///< blocks turned at random that fall from a lattice
@@ -39,14 +40,14 @@ enum class ProfileScene {
 /// Names as the command line spells them, in the order of the enumeration.
 inline constexpr auto kProfileSceneNames =
     std::to_array<std::string_view>({"rest", "sway", "heights", "pull", "pull-sleep", "game", "collapse", "asleep", "towers",
-                                     "pile", "walls", "pyramids", "topple", "hit", "heaps", "piles", "rain"});
+                                     "pile", "walls", "pyramids", "starts", "topple", "hit", "heaps", "piles", "rain"});
 constexpr std::string_view nameOf(ProfileScene scene) {
   return kProfileSceneNames[static_cast<std::size_t>(scene)];
 }
 
 /// Whether a scene is of stacks by name and size (apps/commands/profile/stacks.h).
 constexpr bool isStack(ProfileScene scene) {
-  return scene == ProfileScene::walls || scene == ProfileScene::pyramids;
+  return scene >= ProfileScene::walls && scene <= ProfileScene::starts;
 }
 
 /// Whether a scene is of what moves in large numbers, by name and size (apps/commands/profile/falls.h).

@@ -3,12 +3,12 @@
 #include "apps/commands/profile/falls.h"
 #include "apps/commands/profile/stacks.h"
 #include "apps/common/interruption.h"
+#include "apps/common/prepare_or_end.h"
 #include "core/error.h"
 #include "core/processor_time.h"
 #include "scenarios/recorded/recorded_game.h"
 #include "scenarios/towers.h"
 #include "scenarios/walls.h"
-#include "solver/frame/prepare.h"
 #include "solver/hand/played_frame.h"
 
 #include <chrono>
@@ -124,7 +124,7 @@ void PreparedScene::step() {
     const bool goesOn = simulation.frame < game->frames.size();
     return stepPlayed(goesOn ? game->frames[simulation.frame].input.hand : Hand{}, grip, contacts, simulation);
   }
-  prepare(simulation);
+  prepareOrEnd(simulation);
   const BlockId held = hand.hand.block;
   if (held != kFloor) advancePull(hand, contactForcesOn(simulation, held), simulation);
   stepFrame(simulation);
@@ -150,15 +150,15 @@ std::unique_ptr<PreparedScene> prepareScene(const ProfileCase& what, const Profi
     scene->leftOut.assign(scene->simulation.scene.blocks.size(), 1);
   try {
     if (isStack(what.scene)) {
-      scene->equilibrium_s = prepare(scene->simulation).processor_s;  // it may take longer than all else
+      scene->equilibrium_s = prepareOrEnd(scene->simulation).processor_s;  // it may take longer than all else
     }
     const Deadline deadline(limits.prepare_s);
     if (what.scene == ProfileScene::asleep) {
       fallAsleep(*scene, deadline);
     } else if (what.scene == ProfileScene::game) {
-      prepare(scene->simulation);
+      prepareOrEnd(scene->simulation);
     } else if (what.scene == ProfileScene::collapse || isFall(what.scene)) {
-      prepare(scene->simulation);
+      prepareOrEnd(scene->simulation);
       scene->step();
     } else if (what.scene != ProfileScene::pile) {
       settle(*scene, limits.settle_s, deadline);

@@ -1,8 +1,10 @@
 #include "apps/commands/profile/stacks.h"
 
 #include "apps/common/options.h"
+#include "core/elementary.h"
 #include "core/error.h"
 #include "core/limits.h"
+#include "scenarios/towers.h"
 #include "scenarios/walls.h"
 
 #include <algorithm>
@@ -10,11 +12,27 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <limits>
+#include <numbers>
+#include <utility>
 
 namespace springtower {
 namespace {
 
 constexpr double kNotSet = std::numeric_limits<double>::quiet_NaN();
+
+constexpr int kMaxStartRows = 1000;
+constexpr int kManyRows = 18;
+
+Scene unevenTower(int rows) {
+  return towerScene(rows, {.heightsSigma_m = kUnevenHeightsSigma_m});
+}
+
+// Leaning by a share of the slope at which it tips over or slides, whichever comes first.
+Scene tilted(Scene tower, int rows) {
+  const double tipping = elementary::atan2(kBlockLength_m, static_cast<double>(rows) * kBlockHeight_m);
+  const double sliding = elementary::atan2(tower.staticFriction, 1.0);
+  return leaning(std::move(tower), kStartTiltShare * std::min(tipping, sliding) * 180.0 / std::numbers::pi);
+}
 
 constexpr std::array<StackFamily, kStackFamilies> kFamilies = {
     {{"wall",
@@ -29,9 +47,37 @@ constexpr std::array<StackFamily, kStackFamilies> kFamilies = {
       ProfileScene::pyramids,
       {400, 0},
       [](int rows, int) { return cubePyramidScene(rows); }},
-     {"bricks", "bricks:ROWS", "pyramids of bricks", ProfileScene::pyramids, {400, 0}, [](int rows, int) {
-        return brickPyramidScene(rows);
-      }}}};
+     {"bricks",
+      "bricks:ROWS",
+      "pyramids of bricks",
+      ProfileScene::pyramids,
+      {400, 0},
+      [](int rows, int) { return brickPyramidScene(rows); }},
+     {"tower", "tower:ROWS", "towers", ProfileScene::starts, {kMaxStartRows, 0}, [](int rows, int) { return towerScene(rows); }},
+     {"uneven",
+      "uneven:ROWS",
+      "towers of uneven heights",
+      ProfileScene::starts,
+      {kMaxStartRows, 0},
+      [](int rows, int) { return unevenTower(rows); }},
+     {"tilted",
+      "tilted:ROWS",
+      "towers under tilted gravity",
+      ProfileScene::starts,
+      {kMaxStartRows, 0},
+      [](int rows, int) { return tilted(towerScene(rows), rows); }},
+     {"uneven-tilted",
+      "uneven-tilted:ROWS",
+      "uneven towers under tilted gravity",
+      ProfileScene::starts,
+      {kMaxStartRows, 0},
+      [](int rows, int) { return tilted(unevenTower(rows), rows); }},
+     {"tilted-towers",
+      "tilted-towers:TOWERS",
+      "many towers under tilted gravity",
+      ProfileScene::starts,
+      {2000, 0},
+      [](int towers, int) { return squareOf(tilted(towerScene(kManyRows), kManyRows), towers); }}}};
 
 constexpr auto kGoals = std::to_array<StackGoal>({{"wall:20x12", {0.4, kNotSet}, {0.3, kNotSet}, kNotSet},
                                                   {"wall:40x25", {3.0, kNotSet}, {2.0, kNotSet}, 0.12},
@@ -39,7 +85,13 @@ constexpr auto kGoals = std::to_array<StackGoal>({{"wall:20x12", {0.4, kNotSet},
                                                   {"bricks:40", {3.5, kNotSet}, {2.5, kNotSet}, kNotSet},
                                                   {"bricks:60", {kNotSet, kNotSet}, {kNotSet, kNotSet}, 1.0},
                                                   {"cubes:40", {4.0, kNotSet}, {1.5, kNotSet}, kNotSet},
-                                                  {"cubes:100", {16.0, 10.0}, {9.0, 5.0}, 6.0}});
+                                                  {"cubes:100", {16.0, 10.0}, {9.0, 5.0}, 6.0},
+                                                  {"tower:18", {kNotSet, kNotSet}, {kNotSet, kNotSet}, 0.005},
+                                                  {"uneven:18", {kNotSet, kNotSet}, {kNotSet, kNotSet}, 0.025},
+                                                  {"tilted:18", {kNotSet, kNotSet}, {kNotSet, kNotSet}, 0.025},
+                                                  {"uneven-tilted:18", {kNotSet, kNotSet}, {kNotSet, kNotSet}, 0.05},
+                                                  {"tilted:144", {kNotSet, kNotSet}, {kNotSet, kNotSet}, 1.0},
+                                                  {"tilted-towers:64", {kNotSet, kNotSet}, {kNotSet, kNotSet}, 1.0}});
 
 // The size after the colon: as many whole numbers as the family has, with an x between, each within its range.
 std::optional<std::array<int, 2>> sizeOf(const StackFamily& family, std::string_view stack) {
@@ -84,6 +136,11 @@ std::span<const StackGoal> stackGoals() {
 }
 
 std::vector<std::string> stacksOf(ProfileScene scene, ProfileExtent choice) {
+  if (scene == ProfileScene::starts) {
+    std::vector<std::string> starts = {"tower:18", "uneven:18", "tilted:18", "uneven-tilted:18"};
+    if (choice != ProfileExtent::quick) starts.insert(starts.end(), {"tilted:144", "tilted-towers:64"});
+    return starts;
+  }
   const bool walls = scene == ProfileScene::walls;
   if (choice == ProfileExtent::quick) {
     if (walls) return {"wall:20x12", "wall:28x18"};

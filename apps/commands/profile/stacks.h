@@ -13,8 +13,8 @@
 
 namespace springtower {
 
-// Walls and pyramids of many sizes: one wide island each, at rest and awake. What they are held to, how their cost grows with the
-// number of blocks, and what another engine makes of them.
+// Walls and pyramids of many sizes, one wide island each, and towers whose start takes a search: at rest and awake. What they are
+// held to, how their cost grows with the number of blocks, and what another engine makes of them.
 
 /// A kind of stack: its name is that of its scene in scenarios/registry.h.
 struct StackFamily {
@@ -25,7 +25,7 @@ struct StackFamily {
   std::array<int, 2> most;  ///< of the numbers of its size, each at least 1; the second is 0 where there is one number
   Scene (*make)(int first, int second);
 };
-inline constexpr std::size_t kStackFamilies = 3;
+inline constexpr std::size_t kStackFamilies = 8;
 std::span<const StackFamily> stackFamilies();
 
 /// The family of a stack, by name or by name and size. Precondition: there is one.
@@ -44,6 +44,9 @@ std::span<const StackGoal> stackGoals();
 inline constexpr double kMaxStackCreepPerMinute_mm = 0.001;
 inline constexpr double kMaxGrowthExponent = 1.25;
 inline constexpr std::size_t kGrowthLeastBlocks = 240;  ///< smaller stacks are left out of it
+
+/// Gravity of the leaning starts, as a share of the slope at which a tower of rigid blocks tips over or slides.
+inline constexpr double kStartTiltShare = 0.5;
 
 /// The stacks that are timed when none are named: in a few seconds, in some two minutes, or with the largest as well.
 std::vector<std::string> stacksOf(ProfileScene scene, ProfileExtent choice);

@@ -95,7 +95,7 @@ void printRow(const NamedRow& row, const std::vector<int>& threads) {
   const ProfileResult& result = row.first();
   std::string name = result.what.named;
   if (result.what.method != Settings{}.method) name += " " + result.methodName;
-  fmt::print("{:<14}{:>7}", name, result.blocks);
+  fmt::print("{:<17}{:>7}", name, result.blocks);
   if (!result.failure.empty()) {
     fmt::print("  {}\n", result.failure);
     return;
@@ -127,12 +127,12 @@ void printStacks(const Profile& profile) {
   if (rows.empty()) return;
   const std::vector<int> threads = threadsOf(rows);
   fmt::print(
-      "\nwalls and pyramids, at rest and awake: ms a frame (wall time, its 99th percentile, CPU time of all threads; of "
+      "\nwalls, pyramids and towers, at rest and awake: ms a frame (wall time, its 99th percentile, CPU time of all threads; of "
       "each frame\nthe minimum over the samples), required and in brackets the goal, judged by CPU time on one thread and by "
       "wall time on more;\ndepth mm (at most the tolerance), creep mm a minute (at most {:g}), equilibrium: s of CPU time "
       "(what is allowed);\nBullet: steps a frame nearest in depth, CPU time, depth, and for how long it was simulated\n",
       kMaxStackCreepPerMinute_mm);
-  fmt::print("{:<14}{:>7}", "stack", "blocks");
+  fmt::print("{:<17}{:>7}", "stack", "blocks");
   for (const int count : threads) fmt::print("  {:>8}{:>8}{:>8}", fmt::format("{} thr.", count), "p99", "cpu");
   fmt::print("  {:>16}{:>10}{:>9}  {:>11}  {:<20}  {}\n", "required (goal)", "depth", "creep", "prepare", "verdict", "Bullet");
   for (const NamedRow& row : rows) printRow(row, threads);

@@ -1,14 +1,12 @@
 #include "apps/commands/validate/frames.h"
 
 #include "apps/common/interruption.h"
-#include "solver/frame/prepare.h"
+#include "apps/common/prepare_or_end.h"
 
 namespace springtower {
 
 void stepFrameOrEnd(Simulation& simulation) {
-  endIfInterrupted();
-  prepare(simulation, {.goesOn = [](const PrepareProgress&) { return !interrupted(); }});
-  endIfInterrupted();
+  prepareOrEnd(simulation);
   stepFrame(simulation);
 }
 

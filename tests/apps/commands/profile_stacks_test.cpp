@@ -35,10 +35,11 @@ TEST(ProfileStacks, RefusesWhatItDoesNotKnowAndWritesNothing) {
   const std::vector<std::pair<std::vector<std::string>, std::string>> refused = {
       {{"--scenes", "walls,castle"},
        "--scenes: expected rest, sway, heights, pull, pull-sleep, game, collapse, "
-       "asleep, towers, pile, walls, pyramids, topple, hit, heaps, piles, rain, got 'castle'"},
+       "asleep, towers, pile, walls, pyramids, starts, topple, hit, heaps, piles, rain, got 'castle'"},
       {{"--stacks", "castle:3"},
        "--stacks: expected wall:COLUMNSxCOURSES of 1 to 4000 and 1 to 100, cubes:ROWS "
-       "of 1 to 400, bricks:ROWS of 1 to 400, got 'castle:3'"},
+       "of 1 to 400, bricks:ROWS of 1 to 400, tower:ROWS of 1 to 1000, uneven:ROWS of 1 to 1000, tilted:ROWS of 1 to 1000, "
+       "uneven-tilted:ROWS of 1 to 1000, tilted-towers:TOWERS of 1 to 2000, got 'castle:3'"},
       {{"--stacks", "wall:20"}, "--stacks: expected ..., got 'wall:20'"},
       {{"--stacks", "wall:0x5"}, "--stacks: expected ..., got 'wall:0x5'"},
       {{"--stacks", "cubes:401"}, "--stacks: expected ..., got 'cubes:401'"},
@@ -54,6 +55,29 @@ TEST(ProfileStacks, RefusesWhatItDoesNotKnowAndWritesNothing) {
     EXPECT_EQ(result.output, "");
     EXPECT_THAT(result.error, says(message));
     EXPECT_FALSE(std::filesystem::exists(scratch.file("out")));
+  }
+}
+
+// Towers whose first frame takes a search: all begin in equilibrium, leaning ones too, and many tilted ones take no longer than
+// one, as they are copies.
+TEST(ProfileStarts, TimesTheSearchForTheEquilibriumOfTowers) {
+  const ScratchFolder scratch;
+  const ProgramResult result =
+      profileOf({"--stacks", "tower:9,uneven:9,tilted:9,uneven-tilted:9,tilted-towers:4", "--threads", "1", "--samples", "1",
+                 "--frames", "5", "--settle", "0.1", "--peer-limit", "0", "--out", scratch.file("out")});
+  ASSERT_EQ(result.exitCode, 0) << result.error;
+  const std::vector<std::pair<std::string, int>> expected = {
+      {"tower:9", 27}, {"uneven:9", 27}, {"tilted:9", 27}, {"uneven-tilted:9", 27}, {"tilted-towers:4", 4 * 54}};
+  const Json cases = Json::parse(contentOf(scratch.file("out/profile.json"))).at("cases");
+  ASSERT_EQ(cases.size(), expected.size());
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    SCOPED_TRACE(cases.at(i).dump());
+    EXPECT_EQ(cases.at(i).at("stack"), expected[i].first);
+    EXPECT_EQ(cases.at(i).at("blocks"), expected[i].second);
+    EXPECT_EQ(cases.at(i).at("stands"), true);
+    EXPECT_GT(cases.at(i).at("equilibrium_s").get<double>(), 0.0);
+    EXPECT_LE(cases.at(i).at("creep_mm_per_minute").get<double>(), 0.01);
+    EXPECT_THAT(result.output, HasSubstr("\n" + expected[i].first + " "));
   }
 }
 
