@@ -20,7 +20,8 @@ struct DivergenceError : std::runtime_error {
 };
 
 /// An explicit method would need more steps for the coming frame than `kMaxExplicitSubsteps`: which block is the stiffest for its
-/// mass, when, and how many. Nothing has been stepped. To users it is a simulation that fails, as one that diverges.
+/// mass, when, and how many. Its island has not been stepped; other islands of the frame may have been, as where one diverges. To
+/// users it is a simulation that fails, as one that diverges.
 struct StepLimitError : DivergenceError {
   using DivergenceError::DivergenceError;
 };

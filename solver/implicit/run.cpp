@@ -92,7 +92,8 @@ int stepsInPart(const IslandStep& step, int steps) {
   return std::max(1, static_cast<int>(std::ceil(steps * share - 1e-9)));
 }
 
-// Upper bound of the steps a frame of the last retry. In a wide island finer steps would take seconds.
+// Upper bound of the steps a frame of the last retry. In a wide island that nothing forces, finer
+// steps would take seconds.
 int mostStepsOfRetries(const IslandStep& step, bool forced) {
   if (forced) return tuning::kMaxLedSteps;
   return step.blocks.size() >= tuning::kParallelBlocks ? tuning::kMaxFrequencySteps : tuning::kMaxStandingSteps;

@@ -16,7 +16,7 @@ namespace springtower {
 // Walls and pyramids of many sizes, one wide island each, and towers whose start takes a search: at rest and awake. What they are
 // held to, how their cost grows with the number of blocks, and what another engine makes of them.
 
-/// A kind of stack: its name is that of its scene in scenarios/registry.h.
+/// A kind of stack: its name is that of its scene in scenarios/registry.h, where that has one.
 struct StackFamily {
   std::string_view name;
   std::string_view usage;  ///< name with the letters of its size: "wall:CxR"

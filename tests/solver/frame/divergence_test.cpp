@@ -79,7 +79,7 @@ TEST(Divergence, IsNotThatOfAFastBlock) {
   }
 }
 
-// A plate of 20 kg on a block of 20 g, a thousandth of a millimetre deep at most: explicit steps would be millions a frame. They
+// A block of 39 kg on one of 20 g, a ten-thousandth of a millimetre deep at most: explicit steps would be millions a frame. They
 // are refused by the block that is too light for what it carries, before anything has moved; implicit steps carry it.
 TEST(StepLimit, OfAnExplicitMethodIsSaidBeforeTheFrame) {
   Scene scene = sceneNamed("tower:1");

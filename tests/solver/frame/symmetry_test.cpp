@@ -155,8 +155,8 @@ TEST(Symmetry, WallsAndPyramidsEndAtTheSamePlaceHoweverTheyLie) {
   }
 }
 
-// Towers near the slope at which they fall, leaning along the axis about which gravity is turned with them: the verdict is the
-// same however they lie.
+// Towers near the slope at which they fall, in any order of their blocks, and turned about the vertical together with gravity's
+// direction: the verdict is the same.
 TEST(Symmetry, VerdictsAreTheSameHoweverATowerLies) {
   constexpr int kFrames = 90;
   const auto stands = [](const Scene& scene) {

@@ -84,6 +84,7 @@ Scene unlike(Scene scene, const std::function<bool(std::size_t)>& heavy) {
   for (std::size_t b = 0; b < scene.blocks.size(); ++b) scene.blocks[b].mass *= heavy(b) ? 1e4 : 1.0;
   return scene;
 }
+
 // Masses at random, the largest up to ten thousand times the smallest.
 Scene ofManyMasses(Scene scene) {
   std::mt19937_64 random(1);
