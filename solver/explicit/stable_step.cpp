@@ -84,7 +84,7 @@ void addManifold(Simulation& simulation, const ContactView& m) {
 
 }  // namespace
 
-double spectralBound(Simulation& simulation, std::span<const std::int32_t> blocks, std::span<const std::int32_t> pairs) {
+SpectralBound spectralBound(Simulation& simulation, std::span<const std::int32_t> blocks, std::span<const std::int32_t> pairs) {
   Engine& engine = *simulation.engine;
   computeFrames(simulation.state.position, blocks, engine.memo.frames);
   for (const std::int32_t block : blocks) {
@@ -96,16 +96,20 @@ double spectralBound(Simulation& simulation, std::span<const std::int32_t> block
   }
   double springs = 0.0;
   double contacts = 0.0;
+  std::int32_t ofSprings = blocks.front();
+  std::int32_t ofContacts = blocks.front();
   for (const std::int32_t block : blocks) {
     const auto b = static_cast<std::size_t>(block);
+    if (engine.springRadius[b] > springs) ofSprings = block;
     springs = std::max(springs, engine.springRadius[b]);
     // The trace is an upper bound as well, and often shows that a block is not the largest.
     const Eigen::Matrix4d metric = metricOf(engine, b);
     if (metric.trace() <= contacts) continue;
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> solver(metric, Eigen::EigenvaluesOnly);
+    if (solver.eigenvalues()[3] > contacts) ofContacts = block;
     contacts = std::max(contacts, solver.eigenvalues()[3]);
   }
-  return springs + 2.0 * contacts;
+  return {springs + 2.0 * contacts, 2.0 * contacts > springs ? ofContacts : ofSprings};
 }
 
 double blockSpectralRadius(const BlockModel& model, Inertia inertia, std::size_t block) {

@@ -48,27 +48,18 @@ double shortening(double radius, double dampingTime_s, double damping) {
   return longest(dampingTime_s * radius + damping) / longest(dampingTime_s * radius);
 }
 
-// The block of the largest eigenvalue of M^-1 K with its neighbours held.
-std::int32_t stiffestBlock(const IslandStep& step) {
-  std::int32_t stiffest = step.blocks.front();
-  double most = 0.0;
-  for (const std::int32_t& block : step.blocks) {
-    const double radius = spectralBound(step.simulation, {&block, 1}, step.pairs);
-    if (radius <= most) continue;
-    most = radius;
-    stiffest = block;
-  }
-  return stiffest;
-}
-
 [[noreturn]] void refuseSteps(const IslandStep& step, double needed) {
-  const std::int32_t block = stiffestBlock(step);
+  const double time_s = step.simulation.time_s;
+  const std::int32_t block = spectralBound(step.simulation, step.blocks, step.pairs).block;
+  if (!std::isfinite(needed))
+    throw DivergenceError(fmt::format("block {} diverged at {:.6f} s: no step is small enough for its stiffness", block, time_s),
+                          block, time_s);
   throw StepLimitError(
       fmt::format("block {} at {:.6f} s: its springs or contacts are so stiff for its mass that method {} needs {:.3g} steps for "
                   "the next frame, allowed are {:.3g} (the methods auto and implicit do not depend on stiffness)",
-                  block, step.simulation.time_s, nameOf(step.simulation.scene.settings.method), needed,
+                  block, time_s, nameOf(step.simulation.scene.settings.method), needed,
                   static_cast<double>(tuning::kMaxExplicitSubsteps)),
-      block, step.simulation.time_s);
+      block, time_s);
 }
 
 // Chooses the number of steps of an island for this frame, and the largest stiffening of contacts made in it.
@@ -79,7 +70,7 @@ int chooseSubsteps(IslandStep& step) {
   IslandHistory& record = step.engine.memo.islandHistory[static_cast<std::size_t>(step.blocks.front())];
   const std::uint64_t signature = contactSignature(step.engine, step.pairs) ^ (step.blocks.size() << 1U);
   if (signature != record.contactSignature || record.spectralRadius == 0.0) {
-    record.spectralRadius = spectralBound(simulation, step.blocks, step.pairs);
+    record.spectralRadius = spectralBound(simulation, step.blocks, step.pairs).radius;
     record.contactSignature = signature;
   }
   const double standing = record.spectralRadius;

@@ -58,8 +58,7 @@ TEST(ProfileStacks, RefusesWhatItDoesNotKnowAndWritesNothing) {
   }
 }
 
-// Towers whose first frame takes a search: all begin in equilibrium, leaning ones too, and many tilted ones take no longer than
-// one, as they are copies.
+// Towers whose first frame takes a search: all begin in equilibrium, leaning ones too.
 TEST(ProfileStarts, TimesTheSearchForTheEquilibriumOfTowers) {
   const ScratchFolder scratch;
   const ProgramResult result =

@@ -65,6 +65,18 @@ Eigen::MatrixXd randomMatrix(const std::vector<BlockPair>& edges, BlockCholesky&
   return full;
 }
 
+constexpr std::int32_t kWideRows = 100;
+
+// The pattern of a tower of so many rows, whose matrix is eliminated in tasks.
+BlockCholesky dissectedTower(const std::vector<BlockPair>& edges) {
+  EliminationOrder order;
+  for (std::int32_t node = 0; node < 3 * kWideRows; ++node) order.centre.emplace_back(node % 3, 0.0, node / 3);
+  orderByDissection(edges, order);
+  BlockCholesky matrix;
+  EXPECT_TRUE(analyse(order.nodes, edges, kNoLimit, matrix));
+  return matrix;
+}
+
 // In float with some hundred additions an entry: 1e-5 of the largest entry of the solution.
 TEST(BlockCholesky, SolvesAsADenseFactorisationDoes) {
   const std::int32_t rows = 7;
@@ -87,13 +99,8 @@ TEST(BlockCholesky, SolvesAsADenseFactorisationDoes) {
 // A wide matrix is eliminated in tasks, with the same bits on any number of threads: a tower of 100 rows in an order that
 // dissects it, which has a top above tasks. The residual is that of float: 1e-5 of the right-hand side.
 TEST(BlockCholesky, AWideMatrixHasTheSameBitsOnAnyNumberOfThreads) {
-  constexpr std::int32_t kRows = 100;
-  const std::vector<BlockPair> edges = towerEdges(kRows);
-  EliminationOrder order;
-  for (std::int32_t node = 0; node < 3 * kRows; ++node) order.centre.emplace_back(node % 3, 0.0, node / 3);
-  orderByDissection(edges, order);
-  BlockCholesky matrix;
-  ASSERT_TRUE(analyse(order.nodes, edges, kNoLimit, matrix));
+  const std::vector<BlockPair> edges = towerEdges(kWideRows);
+  BlockCholesky matrix = dissectedTower(edges);
   EXPECT_GE(matrix.tasks.count(), 8U);
   EXPECT_GE(matrix.tasks.top.size(), 9U);
   const Eigen::MatrixXd full = randomMatrix(edges, matrix);
@@ -117,13 +124,8 @@ TEST(BlockCholesky, AWideMatrixHasTheSameBitsOnAnyNumberOfThreads) {
 // neighbours would have 1e-39, below the normal numbers of float. Such fill is zero, on any thread, and the caller computes with
 // denormal numbers as before.
 TEST(BlockCholesky, FillsInWithoutDenormalNumbers) {
-  constexpr std::int32_t kRows = 100;
-  const std::vector<BlockPair> edges = towerEdges(kRows);
-  EliminationOrder order;
-  for (std::int32_t node = 0; node < 3 * kRows; ++node) order.centre.emplace_back(node % 3, 0.0, node / 3);
-  orderByDissection(edges, order);
-  BlockCholesky matrix;
-  ASSERT_TRUE(analyse(order.nodes, edges, kNoLimit, matrix));
+  const std::vector<BlockPair> edges = towerEdges(kWideRows);
+  BlockCholesky matrix = dissectedTower(edges);
   randomMatrix(edges, matrix);
   for (float& entry : matrix.lower) entry *= 1e-13F;
   const auto isDenormal = [](float value) { return std::fpclassify(value) == FP_SUBNORMAL; };
