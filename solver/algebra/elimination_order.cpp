@@ -132,4 +132,9 @@ void orderByDissection(std::span<const BlockPair> edges, EliminationOrder& order
   dissect(order.nodes, order.centre, space);
 }
 
+void releaseSpace(EliminationOrder& order) {
+  order.centre = std::vector<Vec3>();
+  order.space = std::vector<DissectionSpace>();
+}
+
 }  // namespace springtower

@@ -35,4 +35,7 @@ void orderBottomUp(EliminationOrder& order);
 /// eliminated last. The result does not depend on the order of edges.
 void orderByDissection(std::span<const BlockPair> edges, EliminationOrder& order);
 
+/// Gives the working space back, and the centres; the order stays.
+void releaseSpace(EliminationOrder& order);
+
 }  // namespace springtower

@@ -67,7 +67,7 @@ int chooseSubsteps(IslandStep& step) {
   Simulation& simulation = step.simulation;
   const Settings& settings = simulation.scene.settings;
   const bool isReport = traitsOf(settings.method).family == MethodFamily::report;
-  IslandHistory& record = step.engine.memo.islandHistory[static_cast<std::size_t>(step.blocks.front())];
+  StepBound& record = step.engine.memo.stepBound[static_cast<std::size_t>(step.blocks.front())];
   const std::uint64_t signature = contactSignature(step.engine, step.pairs) ^ (step.blocks.size() << 1U);
   if (signature != record.contactSignature || record.spectralRadius == 0.0) {
     record.spectralRadius = spectralBound(simulation, step.blocks, step.pairs).radius;

@@ -144,7 +144,10 @@ void sizeEngine(Simulation& simulation) {
   e.scratch.contactForce.resize(count);
   const MethodFamily family = traitsOf(scene.settings.method).family;
   const bool isExplicit = family == MethodFamily::explicitSprings || family == MethodFamily::report;
-  if (isExplicit) e.springRadius.resize(count);
+  if (isExplicit) {
+    e.springRadius.resize(count);
+    e.memo.stepBound.assign(count, StepBound{});
+  }
   e.memo.previous = simulation.state.position;
   e.memo.blockHistory.assign(count, BlockHistory{});
   e.memo.islandHistory.assign(count, IslandHistory{});

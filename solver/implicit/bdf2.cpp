@@ -22,9 +22,11 @@ void predictBdf2Of(IslandStep& step, std::span<const std::int32_t> blocks, doubl
   const double mostAcceleration = 2.0 * std::max(step.simulation.scene.gravity.magnitude, 1.0);
   for (const std::int32_t block : blocks) {
     const auto b = static_cast<std::size_t>(block);
-    // The step before may have had another length: its mean acceleration gives the change of velocity in a step of this length.
+    // The step before may have had another length, or its start is no longer known: its mean acceleration gives the change of
+    // velocity in a step of this length.
     const double past_s = engine.memo.blockHistory[b].lastImplicitStep_s;
     const bool known = past_s > 0.0;
+    const bool repeats = past_s == h && engine.memo.blockHistory[b].startKnown;
     const double share = known ? h / past_s : 0.0;
     double start[3][kCorners] = {};
     if (!known) {
@@ -45,7 +47,7 @@ void predictBdf2Of(IslandStep& step, std::span<const std::int32_t> blocks, doubl
       double* target = engine.scratch.freePosition.values(a, b);
       for (std::size_t c = 0; c < kCorners; ++c) {
         const double dv = known ? share * (v[c] - vBefore[c]) : h * start[a][c];
-        const double dx = past_s == h ? x[c] - xBefore[c] : h * v[c] - 0.5 * h * dv;
+        const double dx = repeats ? x[c] - xBefore[c] : h * v[c] - 0.5 * h * dv;
         history[c] = x[c] + kThird * dx;
         target[c] = history[c] + effective_s * (v[c] + kThird * dv) + pull;
         xBefore[c] = x[c];

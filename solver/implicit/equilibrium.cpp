@@ -66,15 +66,17 @@ double lastStep_s(const IslandStep& step) {
   return tuning::kLastEquilibriumStep * step.simulation.lengths.fallTime_s;
 }
 
-// Steps with Coulomb's friction, from `effective_s` on longer and longer, until nothing moves in one of full length.
-bool settleWithFriction(IslandStep& step, double effective_s) {
+// Steps with Coulomb's friction, from `effective_s` on longer and longer, until nothing moves in one of full length. `most`: how
+// many of them may fail to converge, each of which is tried again shorter.
+bool settleWithFriction(IslandStep& step, double effective_s, int most) {
   const double last_s = lastStep_s(step);
   int retries = 0;
-  for (int i = 0; i < tuning::kMaxEquilibriumSteps; ++i) {
+  for (int i = 0; i < tuning::kMaxEquilibriumSteps && !isStopped(step.monitor); ++i) {
     const std::uint64_t failures = step.counters.newtonFailures;
     const double farthest = advance(step, effective_s, StepFromRest::coulomb);
     if (step.counters.newtonFailures != failures) {
-      if (++retries > tuning::kMaxEquilibriumRetries) return false;
+      // What falls would with every retry come nearer to a place where it lies.
+      if (++retries > (step.falls ? std::min(most, tuning::kMaxFallRetries) : most)) return false;
       effective_s /= tuning::kSlipStepGrowth * tuning::kSlipStepGrowth;
       continue;
     }
@@ -85,23 +87,45 @@ bool settleWithFriction(IslandStep& step, double effective_s) {
   return false;
 }
 
+bool settleWithFriction(IslandStep& step, double effective_s) {
+  return settleWithFriction(step, effective_s, hasUnlikeLoads(step) ? tuning::kMaxFrictionRetries : tuning::kMaxFallRetries);
+}
+
 // Whether more would slip at rest than a step of full length resolves.
 bool slipsMuch(IslandStep& step) {
   return slipAtRest(step, lastStep_s(step)) > tuning::kSlipResidual;
 }
 
 // All of the weight comes to bear at once, in a step of full length in which nothing slips: from two or three solutions with the
-// same factors, the normal forces that it makes. Then friction is cut down to what these allow. False where blocks turn or slip
-// far before they rest.
+// same factors, the normal forces that it makes. False where blocks turn or slip far before they rest. What is so supported does
+// not sway, and its diagonal may be stiffer by more than rounding from the start: then no pivot is positive by chance.
+bool bearWeight(IslandStep& step) {
+  step.leastShare = tuning::kSupportedShare;
+  return std::isfinite(advance(step, lastStep_s(step), StepFromRest::supported));
+}
+
+// Then friction is cut down to what these forces allow, unless much slips.
+bool settleBorne(IslandStep& step) {
+  return !slipsMuch(step) && settleWithFriction(step, lastStep_s(step));
+}
 bool settleAtOnce(IslandStep& step) {
-  return std::isfinite(advance(step, lastStep_s(step), StepFromRest::supported)) && !slipsMuch(step) &&
-         settleWithFriction(step, lastStep_s(step));
+  return bearWeight(step) && settleBorne(step);
+}
+
+double firstStep_s(const IslandStep& step) {
+  return tuning::kFirstEquilibriumStep * step.simulation.lengths.fallTime_s;
+}
+
+// The same where much slips then, which is followed in short steps.
+bool settleSlowly(IslandStep& step) {
+  const bool bears = bearWeight(step);
+  step.leastShare = 0.0F;
+  return bears && settleWithFriction(step, firstStep_s(step));
 }
 
 // From steps with smoothed contacts that are smoothed less and less, to steps with friction.
 bool settleAfterSmoothing(IslandStep& step) {
-  return settleWithFriction(
-      step, slipsMuch(step) ? tuning::kFirstEquilibriumStep * step.simulation.lengths.fallTime_s : lastStep_s(step));
+  return settleWithFriction(step, slipsMuch(step) ? firstStep_s(step) : lastStep_s(step));
 }
 bool settleSmoothed(IslandStep& step) {
   return approachSmoothed(step) && settleAfterSmoothing(step);
@@ -110,42 +134,52 @@ bool settleSmoothed(IslandStep& step) {
 // The search for an island's equilibrium, at any share of the tilt of gravity.
 class EquilibriumSearch {
  public:
-  explicit EquilibriumSearch(IslandStep& step) : step_(step), before_(step.counters), gravity_(step.simulation.scene.gravity) {}
+  explicit EquilibriumSearch(IslandStep& step) : step_(step), before_(step.counters), gravity_(step.simulation.scene.gravity) {
+    step.leastShare = tuning::kSupportedShare;
+  }
 
   // Moves the island into equilibrium; false, and everything as placed, where none is found. `mayFall`: whether an island that
   // falls under tilted gravity is put into an equilibrium at nearly the largest share of the tilt at which it stands.
   bool find(bool mayFall) {
     tiltTo(1.0);
-    const bool found = mayFall ? findTilted() : settles(settleAtOnce) || settles(settleSmoothed);
-    if (found && !isStopped()) return true;
+    const bool found = mayFall ? findTilted() : findUntilted();
+    if (found && !isStopped(step_.monitor)) return true;
     startAgain();
     return false;
   }
 
  private:
-  using Settle = bool (*)(IslandStep&);
-
-  [[nodiscard]] bool isStopped() const { return step_.monitor != nullptr && step_.monitor->isStopped(); }
-
   // A share of the tilt with an equilibrium near the present state.
   struct Standing {
     double share;
     SavedIsland state;
   };
 
+  // At once, or else with smoothed contacts. These do not converge for some masses of 1 : 10,000: a light block high up sways by
+  // more than the depth of its contacts while a heavy one finds its place. Without smoothing both are in place from the first
+  // step.
+  bool findUntilted() {
+    bool bears = false;
+    const auto atOnce = [&](IslandStep& step) {
+      bears = bearWeight(step);
+      return bears && settleBorne(step);
+    };
+    return settles(atOnce) || settles(settleSmoothed) || (bears && hasUnlikeLoads(step_) && settles(settleSlowly));
+  }
+
   // From level ground, where contacts stay smoothed unless all of the weight at once does, to gravity that is tilted as far as
   // the island stands: at once, or else by halving the rise.
   bool findTilted() {
     tiltTo(0.0);
     const bool level = settles(settleAtOnce);
-    if (!level && (isStopped() || !beginSmoothed(step_))) return false;
+    if (!level && (isStopped(step_.monitor) || !beginSmoothed(step_))) return false;
     std::vector<Standing> path;
     path.push_back({0.0, SavedIsland(step_)});
     tiltTo(1.0);
     if (settleSmoothed(step_)) return true;
     path.back().state.restore(step_);
     double falls = 1.0;  // the least share at which it was found to fall
-    for (int failed = 0; !isStopped(); ++failed) {
+    for (int failed = 0; !isStopped(step_.monitor); ++failed) {
       if (failed <= tuning::kMaxEquilibriumRetries) halveRise(path, falls);
       const bool isLevel = path.size() == 1;
       tiltTo(path.back().share);
@@ -160,7 +194,7 @@ class EquilibriumSearch {
 
   // Extends the path by shares at which the island stands, while more than tuning::kTiltGap lies between them and `falls`.
   void halveRise(std::vector<Standing>& path, double& falls) {
-    while (falls - path.back().share > tuning::kTiltGap && !isStopped()) {
+    while (falls - path.back().share > tuning::kTiltGap && !isStopped(step_.monitor)) {
       const double next = 0.5 * (path.back().share + falls);
       tiltTo(next);
       if (beginSmoothed(step_)) {
@@ -175,6 +209,7 @@ class EquilibriumSearch {
   void startAgain() {
     step_.counters = before_;
     step_.smoothing_j = 0.0;
+    step_.diagonalShare = 0.0F;
     restoreIsland(step_);
     for (const std::int32_t block : step_.blocks) {  // nothing has moved yet
       for (std::size_t a = 0; a < 3; ++a) {
@@ -192,8 +227,9 @@ class EquilibriumSearch {
   }
 
   // Whether the island, as placed, settles; it is left as placed where not.
-  bool settles(Settle settle) {
-    if (!isStopped() && settle(step_)) return true;
+  template <class Settle>
+  bool settles(const Settle& settle) {
+    if (!isStopped(step_.monitor) && settle(step_)) return true;
     startAgain();
     return false;
   }
@@ -331,7 +367,7 @@ bool followNewForces(IslandStep& step) {
   const ContactLaw law = step.law;
   step.law = staticLaw(law);
   step.maxStiffening = 1.0;
-  const bool rests = settleWithFriction(step, lastStep_s(step)) &&
+  const bool rests = settleWithFriction(step, lastStep_s(step), tuning::kMaxFallRetries) &&
                      farthestInFrame_m(step) <= tuning::kMaxForceStrain * step.simulation.tolerance_m;
   step.law = law;
   if (rests) return true;
@@ -357,6 +393,7 @@ bool startInEquilibrium(IslandStep& step) {
   const bool rests = restsThere || search.find(mayFall);
   if (restsThere && strained) recoverFriction(step);
   dropOpenContacts(step);
+  step.diagonalShare = step.leastShare = 0.0F;
   step.unforced = false;
   step.law = law;
   return rests;

@@ -11,6 +11,7 @@
 #include "solver/implicit/gmres.h"
 #include "solver/implicit/run.h"
 #include "solver/implicit/search_monitor.h"
+#include "solver/implicit/smoothing.h"
 #include "solver/implicit/step_count.h"
 #include "solver/implicit/system.h"
 #include "solver/world/checkpoint.h"
@@ -36,6 +37,7 @@ struct NewtonOptions {
   bool assumesSupport = false;  // in the first iteration all points push and stick
   double leastEnough = tuning::kNewtonTolerance;
   bool untilStalled = false;  // goes on while the residual gets less, as it does slowly with the rounded factors of tall towers
+  double aim = std::numeric_limits<double>::infinity();          // goes on to this residual while it gets less fast
   double mostMoved_m = std::numeric_limits<double>::infinity();  // no corner moves farther: what does is falling
 };
 
@@ -195,6 +197,7 @@ void setLastStep(IslandStep& step, double step_s) {
     for (const std::int32_t block : step.blocks.subspan(first, last - first)) {
       BlockHistory& history = step.engine.memo.blockHistory[static_cast<std::size_t>(block)];
       history.lastImplicitStep_s = step_s;
+      history.startKnown = true;
       history.explicitLast = false;
     }
   });
@@ -325,11 +328,6 @@ double farthestMoved_m(const IslandStep& step) {
   });
 }
 
-// Whether the search for the equilibrium is to end where it is.
-bool isStopped(const IslandStep& step) {
-  return step.monitor != nullptr && step.monitor->isStopped();
-}
-
 // Newton's iteration for the state at the step's end, from engine.scratch.freePosition and engine.scratch.pastPosition.
 // Precondition: engine.memo.force holds the forces at the present positions, unless `carried` (the step starts from the
 // extrapolated positions). Returns whether it converged.
@@ -345,12 +343,12 @@ bool solveStep(IslandStep& step, double effective_s, bool carried, const NewtonO
   const double enough = std::clamp(how.enough * residual, how.leastEnough, std::max(how.leastEnough, tuning::kMaxMotionResidual));
   const bool wide = step.blocks.size() > tuning::kNarrowBlocks && !island.exceedsFill;
   if (wide && !island.trialIsAhead) residual = evaluateInPlace(step, island, effective_s, clock);
-  bool converged = wide && residual <= tuning::kNewtonTolerance;
+  bool converged = wide && residual <= std::min(tuning::kNewtonTolerance, how.aim);
   int most = island.exceedsFill || converged ? 0 : tuning::kMaxNewtonIterations;
   bool slow = false;
   double lowest = residual;
   int lowestAt = 0;
-  for (int iteration = 0; iteration < most && !isStopped(step); ++iteration) {
+  for (int iteration = 0; iteration < most && !isStopped(step.monitor); ++iteration) {
     island.useConsistentTangent = residual < how.near;
     island.assumesSupport = iteration == 0 && how.assumesSupport;
     if (island.assumesSupport) island.factorised = false;
@@ -379,7 +377,11 @@ bool solveStep(IslandStep& step, double effective_s, bool carried, const NewtonO
       lowest = residual;
       lowestAt = iteration;
     }
-    if (std::isfinite(how.mostMoved_m) && farthestMoved_m(step) > how.mostMoved_m) return false;
+    if (std::isfinite(how.mostMoved_m) && farthestMoved_m(step) > how.mostMoved_m) {
+      step.falls = true;
+      return false;
+    }
+    if (converged && residual > how.aim && residual < tuning::kFastConvergence * before) continue;
     if (converged || !std::isfinite(residual) || (how.untilStalled && iteration - lowestAt >= tuning::kMaxStalledIterations))
       break;
   }
@@ -450,6 +452,7 @@ bool stepImplicit(IslandStep& step, bool canRetryFiner) {
 
 bool stepFromRest(IslandStep& step, double effective_s, StepFromRest kind) {
   step.drift_s = effective_s / kBdf2;
+  step.falls = false;
   if (kind == StepFromRest::smoothed)
     evaluateForces(step, step.simulation.state, step.simulation.state.velocity, 0.0, PointUpdate::store);
   step.sticks = kind == StepFromRest::supported || kind == StepFromRest::smoothed;
@@ -463,6 +466,8 @@ bool stepFromRest(IslandStep& step, double effective_s, StepFromRest kind) {
   how.untilStalled = true;
   how.mostMoved_m = tuning::kMaxEquilibriumDisplacement * step.simulation.lengths.blockHeight_m;
   how.assumesSupport = kind == StepFromRest::supported;
+  // A light block rests on a heavy one by less than the tolerance of the heavy one's residual.
+  if (kind == StepFromRest::coulomb && hasUnlikeLoads(step)) how.aim = tuning::kUnlikeMassesResidual;
   if (kind == StepFromRest::supported) how.leastEnough = tuning::kStickingResidual;
   if (kind == StepFromRest::smoothed) how.leastEnough = tuning::kSmoothedResidual;
   const bool converged = solveStep(step, effective_s, false, how);

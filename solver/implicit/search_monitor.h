@@ -51,4 +51,9 @@ class SearchMonitor {
   bool endedByCaller_ = false;  // and this: who has ended the search is not called again
 };
 
+/// Whether a search that this watches, if there is one, is to end where it is. `monitor` may be null.
+inline bool isStopped(const SearchMonitor* monitor) {
+  return monitor != nullptr && monitor->isStopped();
+}
+
 }  // namespace springtower

@@ -16,4 +16,10 @@ bool beginSmoothed(IslandStep& step);
 /// The others. Precondition: beginSmoothed has converged, and nothing has changed since.
 bool finishSmoothed(IslandStep& step);
 
+/// Whether blocks bear so different weights that smoothed contacts differ (BlockStiffness::loadShare). Then the search takes no
+/// stiffer diagonal than pivots need, since that would hold a light block beside a heavy one, and tries more.
+inline bool hasUnlikeLoads(const IslandStep& step) {
+  return !step.simulation.stiffness.loadShare.empty();
+}
+
 }  // namespace springtower

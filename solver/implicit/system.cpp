@@ -190,13 +190,11 @@ void addTether(const IslandStep& step, NewtonSystem& island, double step_s) {
   }
 }
 
-// Stiffens every degree of freedom by the possible rounding error of its diagonal entry. In the long steps from rest the inertia
-// is smaller than that error beside the stiff contacts of 144 rows, and rounding would decide whether the matrix is positive
-// definite: with contact laws that differed by little, the equilibrium of 144 rows took from 2 s to unbounded time.
-void stiffenByRounding(float factor, BlockCholesky& matrix) {
+// Makes every degree of freedom stiffer by this share of its diagonal entry.
+void stiffen(float share, BlockCholesky& matrix) {
   for (std::size_t j = 0; j < matrix.nodeCount(); ++j) {
     float* block = matrix.diagonal.data() + kNodeMatrix * j;
-    for (std::size_t i = 0; i < kNodeSize; ++i) block[(kNodeSize + 1) * i] *= factor;
+    for (std::size_t i = 0; i < kNodeSize; ++i) block[(kNodeSize + 1) * i] *= 1.0F + share;
   }
 }
 
@@ -379,7 +377,7 @@ void fillMatrix(IslandStep& step, NewtonSystem& island, double step_s, float sti
   });
   addManifolds(step, island, step_s);
   if (island.tether.block != kFloor) addTether(step, island, step_s);
-  if (stiffer > 0.0F) stiffenByRounding(1.0F + stiffer, island.matrix);
+  if (stiffer > 0.0F) stiffen(stiffer, island.matrix);
 }
 
 bool factoriseMatrix(IslandStep& step, NewtonSystem& island) {
@@ -398,17 +396,19 @@ bool assemble(IslandStep& step, NewtonSystem& island, double step_s) {
   island.step_s = step_s;
   island.directions = 0;
   findFactorTangents(step, island, step_s);
-  if (!step.unforced) {
-    fillMatrix(step, island, step_s, 0.0F);
-    return factoriseMatrix(step, island);
-  }
-  // Where rounding still makes a pivot negative, as in the widest pyramids and between masses of 1 : 10,000, a stiffer diagonal
-  // costs iterations at most.
-  for (float stiffer = tuning::kDiagonalRounding; stiffer <= tuning::kMaxDiagonalRounding; stiffer *= 8.0F) {
-    fillMatrix(step, island, step_s, stiffer);
+  // In the long steps from rest the inertia is smaller than the rounding error of stiff contacts, and a pivot may turn out
+  // negative, as in the widest pyramids. Then the diagonal is made stiffer, but no more than it takes. The next factorisation
+  // begins one try below what this one needed.
+  step.diagonalShare /= tuning::kDiagonalGrowth;
+  if (step.diagonalShare < tuning::kDiagonalRounding) step.diagonalShare = 0.0F;
+  step.diagonalShare = std::max(step.diagonalShare, step.leastShare);
+  for (;;) {
+    fillMatrix(step, island, step_s, step.diagonalShare);
     if (factoriseMatrix(step, island)) return true;
+    const float next = std::max(tuning::kDiagonalRounding, tuning::kDiagonalGrowth * step.diagonalShare);
+    if (!step.unforced || !(next > step.diagonalShare && next <= tuning::kMaxDiagonalRounding)) return false;
+    step.diagonalShare = next;
   }
-  return false;
 }
 
 void solve(IslandStep& step, NewtonSystem& island) {

@@ -19,6 +19,11 @@ bool hasHistory(const Simulation& simulation) {
   return isImplicit(simulation.scene.settings.method);
 }
 
+// Whether the positions with which the last implicit step began are kept: in large scenes they would be a fifth of the copies.
+bool keepsStart(const Simulation& simulation) {
+  return hasHistory(simulation) && simulation.model.blockCount() < tuning::kParallelBlocks;
+}
+
 FrameStartIn& startOf(Engine& engine, std::int32_t block) {
   return engine.checkpoint.in[static_cast<std::size_t>(engine.memo.islands.islandOf[static_cast<std::size_t>(block)])];
 }
@@ -54,7 +59,11 @@ void rewindBlock(Simulation& simulation, std::size_t b, FrameStartIn in) {
   engine.memo.blockHistory[b] = engine.checkpoint.history[b];
   engine.memo.islandHistory[b] = engine.checkpoint.islandHistory[b];
   if (!hasHistory(simulation)) return;
-  copyBlock(engine.checkpoint.previous, b, engine.memo.previous);
+  if (keepsStart(simulation)) {
+    copyBlock(engine.checkpoint.previous, b, engine.memo.previous);
+  } else {
+    engine.memo.blockHistory[b].startKnown = false;
+  }
   copyBlock(engine.checkpoint.previousVelocity, b, engine.memo.previousVelocity);
 }
 
@@ -79,7 +88,15 @@ void rewindPair(Engine& engine, std::size_t at, FrameStartIn in) {
   }
 }
 
-// Copies take as much as most of a wide island's other working space, and it needs none once it is at rest.
+// What the elimination orders of wide islands were found with.
+void releaseOrders(Engine& engine) {
+  for (NewtonSystem& island : engine.memo.newtonSystems.all()) {
+    if (island.order.nodes.size() > tuning::kNarrowBlocks) releaseSpace(island.order);
+  }
+}
+
+// Copies take as much as most of a wide island's other working space, and it needs none once it is at rest; nor what its
+// elimination order was found with.
 void releaseUnused(Engine& engine) {
   FrameStart& start = engine.checkpoint;
   const bool copied = std::any_of(start.in.begin(), start.in.end(), [](FrameStartIn in) { return in == FrameStartIn::copy; });
@@ -88,6 +105,7 @@ void releaseUnused(Engine& engine) {
   if (!engine.contacts.isWide() || start.framesWithoutCopy < tuning::kFramesUntilRelease) return;
   start.savedBlocks = PagePool<SavedBlocks>();
   engine.contacts.releaseSaved();
+  releaseOrders(engine);
 }
 
 }  // namespace
@@ -99,10 +117,8 @@ void prepareFrameStart(Simulation& simulation) {
     engine.checkpoint.islandHistory.resize(simulation.model.blockCount());
     engine.checkpoint.stepTravel.resize(simulation.model.blockCount());
     engine.checkpoint.savedBlock.resize(simulation.model.blockCount());
-    if (hasHistory(simulation)) {
-      engine.checkpoint.previous.resize(simulation.model.blockCount());
-      engine.checkpoint.previousVelocity.resize(simulation.model.blockCount());
-    }
+    if (keepsStart(simulation)) engine.checkpoint.previous.resize(simulation.model.blockCount());
+    if (hasHistory(simulation)) engine.checkpoint.previousVelocity.resize(simulation.model.blockCount());
   }
   engine.checkpoint.reportContacts = engine.report.contacts;
   releaseUnused(engine);
@@ -121,9 +137,8 @@ void saveFrameStart(IslandStep& step) {
       const auto b = static_cast<std::size_t>(block);
       engine.checkpoint.history[b] = engine.memo.blockHistory[b];
       engine.checkpoint.islandHistory[b] = engine.memo.islandHistory[b];
-      if (!hasHistory(step.simulation)) continue;
-      copyBlock(engine.memo.previous, b, engine.checkpoint.previous);
-      copyBlock(engine.memo.previousVelocity, b, engine.checkpoint.previousVelocity);
+      if (keepsStart(step.simulation)) copyBlock(engine.memo.previous, b, engine.checkpoint.previous);
+      if (hasHistory(step.simulation)) copyBlock(engine.memo.previousVelocity, b, engine.checkpoint.previousVelocity);
     }
   });
 }
@@ -178,6 +193,7 @@ void releaseFrameStart(Engine& engine) {
   engine.checkpoint.savedBlocks = PagePool<SavedBlocks>();
   engine.checkpoint.savedPairs = PagePool<SavedPairs>();
   engine.contacts.releaseSaved();
+  releaseOrders(engine);
 }
 
 void savePair(Engine& engine, std::size_t at) {

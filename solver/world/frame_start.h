@@ -41,8 +41,8 @@ struct FrameStart {
   int framesWithoutCopy = 0;     ///< runs of frames since an island copied its start, up to tuning::kFramesUntilRelease
   std::vector<BlockHistory> history;
   std::vector<IslandHistory> islandHistory;
-  ParticleArray previous;                ///< m, memo.previous: start positions of the last implicit step
-  ParticleArray previousVelocity;        ///< m/s
+  ParticleArray previous;                ///< m, memo.previous: start positions of the last implicit step; empty in large scenes
+  ParticleArray previousVelocity;        ///< m/s, memo.previousVelocity: at the start of the last implicit step
   std::vector<double> stepTravel;        ///< m, of each block as a rigid step began
   std::vector<std::int32_t> savedBlock;  ///< [blocks]: index of its saved row, where it is copied
   PagePool<SavedBlocks> savedBlocks;

@@ -10,12 +10,10 @@ namespace springtower {
 /// What an island did in the frames before. Every block holds a copy of that of the island it was in last, since islands have no
 /// identity of their own: they merge and split as blocks touch and part.
 struct IslandHistory {
-  std::int32_t rigidFrames = 0;        ///< frames for which implicit steps are not tried again
-  std::int32_t implicitSteps = 0;      ///< steps of a frame that its vibration needed last
-  bool forced = false;                 ///< whether a user's force or the hand acted on it, as of the last frame begun
-  bool rigid = false;                  ///< whether rigid steps carried it in the last frame begun
-  double spectralRadius = 0.0;         ///< 1/s2; bound of the largest eigenvalue of its M^-1 K
-  std::uint64_t contactSignature = 0;  ///< what that bound was computed for
+  std::int32_t rigidFrames = 0;    ///< frames for which implicit steps are not tried again
+  std::int32_t implicitSteps = 0;  ///< steps of a frame that its vibration needed last
+  bool forced = false;             ///< whether a user's force or the hand acted on it, as of the last frame begun
+  bool rigid = false;              ///< whether rigid steps carried it in the last frame begun
 };
 
 /// What counts where islands have merged. `histories`: [blocks of the scene]; `blocks`: those of the island, ascending. Frames

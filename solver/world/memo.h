@@ -21,11 +21,18 @@ namespace springtower {
 struct BlockHistory {
   double lastExplicitStep_s = 0.0;  ///< s; the last explicit step of the block's positions; 0 after an implicit one
   double lastImplicitStep_s = 0.0;  ///< s; the implicit step from memo.previous to the present positions, 0 if there was none
+  bool startKnown = false;          ///< whether memo.previous holds its start: not where it has been put back to a frame's start
   bool explicitLast = false;        ///< whether the last step was an explicit or a rigid one
   bool hasFallen = false;           ///< whether it has fallen since it slept last
   double jerk = 0.0;    ///< kg m2/s6; mass times the squared rate of change of its corners' acceleration, mean over some frames
   double motion = 0.0;  ///< kg m2/s2; mass times the squared velocity of its corners, same mean
   double travel = 0.0;  ///< m; path length of the block's fastest corner, monotonic
+};
+
+/// What explicit steps of an island found for its contacts, kept with its first block.
+struct StepBound {
+  double spectralRadius = 0.0;         ///< 1/s2; bound of the largest eigenvalue of its M^-1 K; 0: not yet known
+  std::uint64_t contactSignature = 0;  ///< of the contacts for which it was computed
 };
 
 /// What a frame depends on beside the state that is hashed: histories, factors, clearances that persist between frames. In
@@ -46,6 +53,7 @@ struct Memo {
   std::vector<std::int32_t> blockPairs;
   std::vector<BlockHistory> blockHistory;    ///< [blocks]
   std::vector<IslandHistory> islandHistory;  ///< [blocks]: of the island that each block was in last
+  std::vector<StepBound> stepBound;          ///< [blocks]; of explicit methods alone
   ParticleArray previous;                    ///< m, positions at the start of the step, [blocks][8]
   ParticleArray previousVelocity;            ///< m/s, at the start of the step; for implicit steps
   ParticleArray carried;                     ///< m/s, mean velocity of the last step of a multi-stage method

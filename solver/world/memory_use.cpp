@@ -77,8 +77,8 @@ std::size_t ofNewton(const NewtonSystem& island) {
 // Without what is counted by pair.
 std::size_t ofMemo(const Memo& memo) {
   std::size_t sum = sumOf(memo.travelAtSweep, memo.sweepMargin, memo.pairStart, memo.blockPairStart, memo.blockPairs,
-                          memo.blockHistory, memo.islandHistory, memo.previous, memo.previousVelocity, memo.carried, memo.force,
-                          memo.frames, memo.motion, memo.carriedMotion, memo.forcesBefore);
+                          memo.blockHistory, memo.islandHistory, memo.stepBound, memo.previous, memo.previousVelocity,
+                          memo.carried, memo.force, memo.frames, memo.motion, memo.carriedMotion, memo.forcesBefore);
   sum += sumOf(memo.sweep.order, memo.sweep.place, memo.sweep.columns, memo.sweep.awake, memo.sweep.renewed, memo.sweep.ascending,
                memo.sweep.outOfOrder);
   for (const SortAndSweep::Found& found : memo.sweep.found) sum += sumOf(found.ascending, found.outOfOrder);

@@ -189,6 +189,10 @@ void checkFits(const Snapshot& snapshot, const Simulation& simulation, std::stri
     if (found != blocks)
       throw InputError(fmt::format("{}: expected the state of {} blocks, got that of {}", source, blocks, found));
   }
+  const std::size_t bounds = simulation.engine->memo.stepBound.size();
+  if (memo.stepBound.size() != bounds)
+    throw InputError(
+        fmt::format("{}: expected bounds of the steps of {} blocks, got those of {}", source, bounds, memo.stepBound.size()));
 }
 
 }  // namespace springtower

@@ -136,14 +136,20 @@ void fieldsOf(Stream& stream, Islands& islands) {
 
 template <class Stream>
 void fieldsOf(Stream& stream, BlockHistory& history) {
-  auto& [lastExplicitStep_s, lastImplicitStep_s, explicitLast, hasFallen, jerk, motion, travel] = history;
-  stream(lastExplicitStep_s, lastImplicitStep_s, explicitLast, hasFallen, jerk, motion, travel);
+  auto& [lastExplicitStep_s, lastImplicitStep_s, startKnown, explicitLast, hasFallen, jerk, motion, travel] = history;
+  stream(lastExplicitStep_s, lastImplicitStep_s, startKnown, explicitLast, hasFallen, jerk, motion, travel);
 }
 
 template <class Stream>
 void fieldsOf(Stream& stream, IslandHistory& history) {
-  auto& [rigidFrames, implicitSteps, forced, rigid, spectralRadius, contactSignature] = history;
-  stream(rigidFrames, implicitSteps, forced, rigid, spectralRadius, contactSignature);
+  auto& [rigidFrames, implicitSteps, forced, rigid] = history;
+  stream(rigidFrames, implicitSteps, forced, rigid);
+}
+
+template <class Stream>
+void fieldsOf(Stream& stream, StepBound& bound) {
+  auto& [spectralRadius, contactSignature] = bound;
+  stream(spectralRadius, contactSignature);
 }
 
 template <class Stream>
@@ -275,11 +281,11 @@ void fieldsOf(Stream& stream, ByIsland<Record>& records) {
 template <class Stream>
 void fieldsOf(Stream& stream, Memo& memo) {
   auto& [sweep, boxes, travelAtSweep, sweepMargin, prepared, swept, sweptPairs, islands, topologyChanged, pairStart, islandPairs,
-         blockPairStart, blockPairs, blockHistory, islandHistory, previous, previousVelocity, carried, force, frames, motion,
-         carriedMotion, newtonSystems, sparseFactors, forcesBefore, tetherForce] = memo;
+         blockPairStart, blockPairs, blockHistory, islandHistory, stepBound, previous, previousVelocity, carried, force, frames,
+         motion, carriedMotion, newtonSystems, sparseFactors, forcesBefore, tetherForce] = memo;
   stream(sweep, boxes, travelAtSweep, sweepMargin, prepared, swept, sweptPairs, islands, topologyChanged, pairStart, islandPairs,
-         blockPairStart, blockPairs, blockHistory, islandHistory, previous, previousVelocity, carried, force, frames, motion,
-         carriedMotion, newtonSystems, sparseFactors, forcesBefore, tetherForce);
+         blockPairStart, blockPairs, blockHistory, islandHistory, stepBound, previous, previousVelocity, carried, force, frames,
+         motion, carriedMotion, newtonSystems, sparseFactors, forcesBefore, tetherForce);
 }
 
 template <class Stream>

@@ -42,7 +42,7 @@ Scene sceneOf(Method method, int rows, double tolerance_m, int steps) {
 
 double largestOmega(const Simulation& simulation) {
   double squared = 0.0;
-  for (const IslandHistory& history : simulation.engine->memo.islandHistory) squared = std::max(squared, history.spectralRadius);
+  for (const StepBound& bound : simulation.engine->memo.stepBound) squared = std::max(squared, bound.spectralRadius);
   return std::sqrt(squared);
 }
 
