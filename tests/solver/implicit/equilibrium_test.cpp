@@ -147,7 +147,7 @@ TEST(Start, OneHeavyBlockIsInBalanceWhereverItLies) {
     expectRest(wallScene(10, 8), heavy, "wall, brick ");
 }
 
-// The retries of a search between unlike masses lead nothing that falls to a place where it lies: the upper block's centre is a
+// Between unlike masses the search tries more, and still finds no equilibrium where there is none: the upper block's centre is a
 // millimetre outside the lower one.
 TEST(Start, AHeavyBlockBeyondTheEdgeIsNotInBalance) {
   for (const double factor : {1.0, 1e2, 1e4}) {
