@@ -79,6 +79,21 @@ bool sharesOutline(const Separation& separation, double face, const CornerView& 
          (face > separation.edge - slack && deepest.depth > -separation.edge - slack);
 }
 
+// Whether the edges that separate best may touch where no faces do: they cross. Edges that lie along one another to within a
+// tolerance have the common normal of any two lines in space, which turns over when a block deforms by nanometres. Blocks that
+// overlap by more than a tolerance touch in any case.
+bool mayTouch(const Simulation& simulation, const Separation& separation, const CornerView& a, const CornerView& b) {
+  if (!std::isfinite(separation.edge)) return false;
+  if (separation.best() < -simulation.tolerance_m) return true;
+  const auto along = [](const CornerView& block, int edge) {
+    const auto& corners = kEdgeCorners[static_cast<std::size_t>(edge)];
+    return Vec3(block.at(corners[1]) - block.at(corners[0]));
+  };
+  const Vec3 edgeA = along(a, separation.edgeOfA);
+  const Vec3 edgeB = along(b, separation.edgeOfB);
+  return edgeA.cross(edgeB).norm() > simulation.tolerance_m * std::max(edgeA.norm(), edgeB.norm());
+}
+
 // The touching faces or edges, from the best separating directions. The reference face changes only if the other is clearly
 // better. Faces are preferred to edges that separate better, if they touch as well. If the outlines do not overlap, the next best
 // direction is taken.
@@ -100,12 +115,13 @@ void chooseManifold(const Simulation& simulation, const Separation& apart, const
   faceManifold(separation, a, b, limits, pair, referenceIsB, fresh);
   const bool upperIsA = fresh.upper == pair.a;
   const double shallower = tuning::kEdgeDepthSlack * simulation.tolerance_m;
-  if (crossed && !sharesOutline(separation, face, upperIsA ? a : b, upperIsA ? b : a, edgeSlack, shallower, fresh)) {
+  const bool edgesTouch = crossed && (fresh.count > 0 || mayTouch(simulation, separation, a, b));
+  if (edgesTouch && !sharesOutline(separation, face, upperIsA ? a : b, upperIsA ? b : a, edgeSlack, shallower, fresh)) {
     edgeManifold(separation, pair, fresh);
     return;
   }
   if (fresh.count == 0) faceManifold(separation, a, b, limits, pair, !referenceIsB, fresh);
-  if (fresh.count == 0 && std::isfinite(separation.edge)) edgeManifold(separation, pair, fresh);
+  if (fresh.count == 0 && mayTouch(simulation, separation, a, b)) edgeManifold(separation, pair, fresh);
 }
 
 // The contact remains the pair's until the frame ends: the frame may be run again, or the blocks may touch again.

@@ -6,7 +6,8 @@ namespace springtower {
 
 /// Checks a separated pair (its position in engine.pairs) whose clearance is used up, after a step. A direction that separates
 /// the blocks throughout the step gives a new clearance; otherwise the cubic tests decide, and if features meet, a contact is
-/// created. The time of the cubic tests is added to `times`.
+/// created, unless all that they have in common are edges that are nearly parallel. The time of the cubic tests is added to
+/// `times`.
 void updateSeparated(IslandStep& step, std::size_t at, Counters& counters, StageTimes& times);
 
 /// Makes a separated pair no farther apart than `reach_m` a contact, of points that do not touch.

@@ -88,7 +88,7 @@ bool settleWithFriction(IslandStep& step, double effective_s, int most) {
 }
 
 bool settleWithFriction(IslandStep& step, double effective_s) {
-  return settleWithFriction(step, effective_s, hasUnlikeLoads(step) ? tuning::kMaxFrictionRetries : tuning::kMaxFallRetries);
+  return settleWithFriction(step, effective_s, tuning::kMaxFrictionRetries);
 }
 
 // Whether more would slip at rest than a step of full length resolves.
@@ -97,10 +97,8 @@ bool slipsMuch(IslandStep& step) {
 }
 
 // All of the weight comes to bear at once, in a step of full length in which nothing slips: from two or three solutions with the
-// same factors, the normal forces that it makes. False where blocks turn or slip far before they rest. What is so supported does
-// not sway, and its diagonal may be stiffer by more than rounding from the start: then no pivot is positive by chance.
+// same factors, the normal forces that it makes. False where blocks turn or slip far before they rest.
 bool bearWeight(IslandStep& step) {
-  step.leastShare = tuning::kSupportedShare;
   return std::isfinite(advance(step, lastStep_s(step), StepFromRest::supported));
 }
 
@@ -118,9 +116,7 @@ double firstStep_s(const IslandStep& step) {
 
 // The same where much slips then, which is followed in short steps.
 bool settleSlowly(IslandStep& step) {
-  const bool bears = bearWeight(step);
-  step.leastShare = 0.0F;
-  return bears && settleWithFriction(step, firstStep_s(step));
+  return bearWeight(step) && settleWithFriction(step, firstStep_s(step));
 }
 
 // From steps with smoothed contacts that are smoothed less and less, to steps with friction.
@@ -134,9 +130,7 @@ bool settleSmoothed(IslandStep& step) {
 // The search for an island's equilibrium, at any share of the tilt of gravity.
 class EquilibriumSearch {
  public:
-  explicit EquilibriumSearch(IslandStep& step) : step_(step), before_(step.counters), gravity_(step.simulation.scene.gravity) {
-    step.leastShare = tuning::kSupportedShare;
-  }
+  explicit EquilibriumSearch(IslandStep& step) : step_(step), before_(step.counters), gravity_(step.simulation.scene.gravity) {}
 
   // Moves the island into equilibrium; false, and everything as placed, where none is found. `mayFall`: whether an island that
   // falls under tilted gravity is put into an equilibrium at nearly the largest share of the tilt at which it stands.
@@ -393,7 +387,7 @@ bool startInEquilibrium(IslandStep& step) {
   const bool rests = restsThere || search.find(mayFall);
   if (restsThere && strained) recoverFriction(step);
   dropOpenContacts(step);
-  step.diagonalShare = step.leastShare = 0.0F;
+  step.diagonalShare = 0.0F;
   step.unforced = false;
   step.law = law;
   return rests;

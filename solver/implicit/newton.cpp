@@ -36,7 +36,9 @@ struct NewtonOptions {
   double enough;                // relative tolerance, of the initial residual
   bool assumesSupport = false;  // in the first iteration all points push and stick
   double leastEnough = tuning::kNewtonTolerance;
-  bool untilStalled = false;  // goes on while the residual gets less, as it does slowly with the rounded factors of tall towers
+  // Goes on while the residual gets less within so many iterations, as it does slowly with the rounded factors of tall towers; 0:
+  // while the active set changes.
+  int mostStalled = 0;
   double aim = std::numeric_limits<double>::infinity();          // goes on to this residual while it gets less fast
   double mostMoved_m = std::numeric_limits<double>::infinity();  // no corner moves farther: what does is falling
 };
@@ -224,18 +226,31 @@ double evaluateResidual(IslandStep& step, NewtonSystem& island, double effective
   return findResidual(step, island, effective_s);
 }
 
+// The least residual of an iteration so far.
+struct LeastResidual {
+  double value;
+  int iteration = 0;
+  void note(double residual, int at) {
+    if (residual < value) *this = {residual, at};
+  }
+};
+
+struct LineSearch {
+  double residual;  // reached
+  double share;     // of the Newton direction
+};
+
 // Line search (Nocedal & Wright 2006): shortens the step along the Newton direction until the directional derivative is small.
 // Where contacts open or friction reverses on the way, the full step would overshoot, and the next iteration would return.
-// Returns the residual reached.
-double searchLine(IslandStep& step, NewtonSystem& island, double effective_s, double enough, StageClock& clock) {
+LineSearch searchLine(IslandStep& step, NewtonSystem& island, double effective_s, double enough, StageClock& clock) {
   const double work = directionalDerivative(step, island);
   island.trialIsAhead = true;
   double share = 1.0;
   applyStep(step, island, 1.0, effective_s);
   double residual = evaluateResidual(step, island, effective_s, clock);
-  if (!std::isfinite(residual) || residual <= enough) return residual;
+  if (!std::isfinite(residual) || residual <= enough) return {residual, share};
   double far = directionalDerivative(step, island);
-  if (far >= -tuning::kCurvatureCondition * work) return residual;
+  if (far >= -tuning::kCurvatureCondition * work) return {residual, share};
   double least = 0.0;  // shares with a positive and a negative derivative
   double most = 1.0;
   double near = work;
@@ -249,7 +264,7 @@ double searchLine(IslandStep& step, NewtonSystem& island, double effective_s, do
     (here > 0.0 ? least : most) = share;
     (here > 0.0 ? near : far) = here;
   }
-  return residual;
+  return {residual, share};
 }
 
 // Moves these blocks to the positions extrapolated from velocities and accelerations.
@@ -346,14 +361,13 @@ bool solveStep(IslandStep& step, double effective_s, bool carried, const NewtonO
   bool converged = wide && residual <= std::min(tuning::kNewtonTolerance, how.aim);
   int most = island.exceedsFill || converged ? 0 : tuning::kMaxNewtonIterations;
   bool slow = false;
-  double lowest = residual;
-  int lowestAt = 0;
+  LeastResidual least{residual};
   for (int iteration = 0; iteration < most && !isStopped(step.monitor); ++iteration) {
     island.useConsistentTangent = residual < how.near;
     island.assumesSupport = iteration == 0 && how.assumesSupport;
     if (island.assumesSupport) island.factorised = false;
     const ActiveSet now = activeSetNow(step, island);
-    if (now.changed || how.untilStalled) most = std::min(how.mostContactIterations, iteration + tuning::kMaxNewtonIterations);
+    if (now.changed || how.mostStalled > 0) most = std::min(how.mostContactIterations, iteration + tuning::kMaxNewtonIterations);
     const bool old =
         iteration == 0 && island.directions >= tuning::kRefactorDirectionShare * static_cast<double>(mostDirections(island));
     const bool stale = (slow || old) && (now.changed || now.slides || now.limited);
@@ -368,22 +382,25 @@ bool solveStep(IslandStep& step, double effective_s, bool carried, const NewtonO
       findCorrection(step, island, effective_s, tuning::kGmresAbsoluteTolerance * tuning::kNewtonResidual, differs);
     }
     island.assumesSupport = false;
-    residual = searchLine(step, island, effective_s, enough, clock);
+    const LineSearch line = searchLine(step, island, effective_s, enough, clock);
+    residual = line.residual;
+    // The direction is long where hardly anything resists, and its line soon meets what does (Levenberg 1944; Marquardt 1963).
+    if (step.smoothing_j > 0.0 && line.share < tuning::kShortLineSearch && !hasUnlikeLoads(step)) stiffenDiagonal(step);
     slow = residual > tuning::kSlowConvergence * before;
     ++step.counters.implicitIterations;
     if (step.monitor != nullptr) step.monitor->iterationDone();
     converged = residual <= enough;
-    if (residual < lowest) {
-      lowest = residual;
-      lowestAt = iteration;
-    }
+    least.note(residual, iteration);
     if (std::isfinite(how.mostMoved_m) && farthestMoved_m(step) > how.mostMoved_m) {
       step.falls = true;
       return false;
     }
     if (converged && residual > how.aim && residual < tuning::kFastConvergence * before) continue;
-    if (converged || !std::isfinite(residual) || (how.untilStalled && iteration - lowestAt >= tuning::kMaxStalledIterations))
-      break;
+    const bool stalled = how.mostStalled > 0 && iteration - least.iteration >= how.mostStalled;
+    // What the rounded factors of towers of a thousand rows leave is no more than a step in motion may leave. (Between unlike
+    // loads, which have an aim, so much of a heavy block is the weight of a light one.)
+    converged = converged || (stalled && !std::isfinite(how.aim) && residual <= tuning::kMaxMotionResidual);
+    if (converged || stalled || !std::isfinite(residual)) break;
   }
   clock.lap(Stage::integration);
   return converged;
@@ -463,7 +480,9 @@ bool stepFromRest(IslandStep& step, double effective_s, StepFromRest kind) {
                         ? std::max(tuning::kMaxActiveSetIterations, static_cast<int>(step.blocks.size()))
                         : tuning::kMaxActiveSetIterations,
                     tuning::kConsistentTangentResidual, 0.0};
-  how.untilStalled = true;
+  // Smoothed contacts have an energy, which should get less in each iteration; the residual need not, so these have all
+  // iterations.
+  how.mostStalled = kind == StepFromRest::smoothed ? how.mostContactIterations : tuning::kMaxStalledIterations;
   how.mostMoved_m = tuning::kMaxEquilibriumDisplacement * step.simulation.lengths.blockHeight_m;
   how.assumesSupport = kind == StepFromRest::supported;
   // A light block rests on a heavy one by less than the tolerance of the heavy one's residual.

@@ -76,13 +76,11 @@ bool approachSmoothed(IslandStep& step) {
 }
 
 bool beginSmoothed(IslandStep& step) {
-  step.leastShare = hasUnlikeLoads(step) ? 0.0F : tuning::kSupportedShare;
   findAhead(step);
   return approach(step, tuning::kFirstSmoothing, tuning::kFirstSmoothing);
 }
 
 bool finishSmoothed(IslandStep& step) {
-  step.leastShare = hasUnlikeLoads(step) ? 0.0F : tuning::kSupportedShare;
   const bool converged = approach(step, tuning::kFirstSmoothing * tuning::kSmoothingReduction, tuning::kLastSmoothing);
   removeSmoothing(step);
   return converged;

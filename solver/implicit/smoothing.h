@@ -17,7 +17,7 @@ bool beginSmoothed(IslandStep& step);
 bool finishSmoothed(IslandStep& step);
 
 /// Whether blocks bear so different weights that smoothed contacts differ (BlockStiffness::loadShare). Then the search takes no
-/// stiffer diagonal than pivots need, since that would hold a light block beside a heavy one, and tries more.
+/// stiffer diagonal than pivots need, not even after a short line search, since that would hold a light block beside a heavy one.
 inline bool hasUnlikeLoads(const IslandStep& step) {
   return !step.simulation.stiffness.loadShare.empty();
 }

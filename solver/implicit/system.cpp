@@ -388,6 +388,11 @@ bool factoriseMatrix(IslandStep& step, NewtonSystem& island) {
   return island.factorised;
 }
 
+// The share by which the diagonal is stiffer at the next try.
+float nextShare(const IslandStep& step) {
+  return std::max(tuning::kDiagonalRounding, tuning::kDiagonalGrowth * step.diagonalShare);
+}
+
 }  // namespace
 
 bool assemble(IslandStep& step, NewtonSystem& island, double step_s) {
@@ -397,18 +402,23 @@ bool assemble(IslandStep& step, NewtonSystem& island, double step_s) {
   island.directions = 0;
   findFactorTangents(step, island, step_s);
   // In the long steps from rest the inertia is smaller than the rounding error of stiff contacts, and a pivot may turn out
-  // negative, as in the widest pyramids. Then the diagonal is made stiffer, but no more than it takes. The next factorisation
+  // negative, as in the widest pyramids. Then the diagonal is made stiffer, by the least share that helps. The next factorisation
   // begins one try below what this one needed.
   step.diagonalShare /= tuning::kDiagonalGrowth;
   if (step.diagonalShare < tuning::kDiagonalRounding) step.diagonalShare = 0.0F;
-  step.diagonalShare = std::max(step.diagonalShare, step.leastShare);
   for (;;) {
     fillMatrix(step, island, step_s, step.diagonalShare);
     if (factoriseMatrix(step, island)) return true;
-    const float next = std::max(tuning::kDiagonalRounding, tuning::kDiagonalGrowth * step.diagonalShare);
-    if (!step.unforced || !(next > step.diagonalShare && next <= tuning::kMaxDiagonalRounding)) return false;
+    const float next = nextShare(step);
+    if (!step.unforced || next > tuning::kMaxDiagonalRounding) return false;
     step.diagonalShare = next;
   }
+}
+
+void stiffenDiagonal(IslandStep& step) {
+  if (step.diagonalShare > tuning::kMaxShortLineShare) return;
+  step.diagonalShare =
+      tuning::kDiagonalGrowth * std::min(nextShare(step), tuning::kMaxShortLineShare);  // assemble() divides by the growth first
 }
 
 void solve(IslandStep& step, NewtonSystem& island) {

@@ -28,6 +28,10 @@ bool isTetherLimited(const IslandStep& step);
 /// false where the matrix is not positive definite.
 bool assemble(IslandStep& step, NewtonSystem& island, double step_s);
 
+/// In the search for an equilibrium: the next factors are of a matrix whose diagonal is stiffer by the next larger share than
+/// that of the present ones, up to tuning::kMaxShortLineShare.
+void stiffenDiagonal(IslandStep& step);
+
 /// Solves for island.affine in place with the present factors: forces (N) in, displacements (m) out, in the world's frame, by
 /// node. Precondition: island.factorised.
 void solve(IslandStep& step, NewtonSystem& island);

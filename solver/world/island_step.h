@@ -40,9 +40,8 @@ struct IslandStep {
   bool sticks = false;                       ///< points that push stick, where there is friction at all
   double smoothing_j = 0.0;                  ///< of ContactStep
   SearchMonitor* monitor = nullptr;          ///< of the search for the equilibrium, or null
-  float leastShare = 0.0F;     ///< by which the search for the equilibrium makes the diagonal of its factors stiffer at least
-  float diagonalShare = 0.0F;  ///< and by which it did last; both 0 in other steps
-  bool falls = false;          ///< whether its last step failed because a block moved too far
+  float diagonalShare = 0.0F;           ///< by which the search last made the diagonal of its factors stiffer; 0 in other steps
+  bool falls = false;                   ///< whether its last step failed because a block moved too far
   std::span<const BlockPair> driven{};  ///< fixed blocks near it that drives move in this frame, as the second of each
   bool unforced = false;                ///< neither user forces nor the hand act: the equilibrium before the first frame
 };

@@ -61,7 +61,7 @@ std::string describe(ProfileScene scene) {
     case ProfileScene::game:
       return "a recorded game: two blocks are drawn out and laid on top, with a third the tower falls";
     case ProfileScene::collapse:
-      return "gravity tilted by 14.5 degrees";
+      return "gravity tilted so far that the tower falls";
     case ProfileScene::asleep:
       return "tower asleep";
     case ProfileScene::towers:

@@ -44,11 +44,11 @@ An interrupted run with --out resumes where it was.
 scenes: rest (settled, awake), sway (gravity sways by 0.1 degree), heights (varying by 0.2 mm), pull (a block at 4 cm/s, all
 awake), pull-sleep (the same with sleep), game (a recorded game on 18 rows, whole, as the viewer plays it, with sleep: a hand
 that hesitates draws out two blocks, lifts them and lays them on top; with a third the tower falls), collapse (gravity tilted by
-14.5 degrees), asleep, towers (many of 18 rows, awake), pile (a connected stack of 108 blocks a row, dropped from 10 cm: its
-first frames on the floor), walls (running bond, half blocks at the ends), pyramids (cubes of 20 mm; bricks laid across), starts
-(towers: equal, uneven, under gravity tilted by half of what tips them over, many); of these three: the search for the
-equilibrium, depth, creep, what is required of some, Bullet with the steps that come nearest in depth, and the growth of cost
-with blocks; on one thread and two; some 2 minutes
+14.5 degrees; fewer than 18 rows by a little more than they stand at, 30 at most), asleep, towers (many of 18 rows,
+awake), pile (a connected stack of 108 blocks a row, dropped from 10 cm: its first frames on the floor), walls (running bond,
+half blocks at the ends), pyramids (cubes of 20 mm; bricks laid across), starts (towers: equal, uneven, under gravity tilted by
+half of what tips them over, many); of these three: the search for the equilibrium, depth, creep, what is required of some,
+Bullet with the steps that come nearest in depth, and the growth of cost with blocks; on one thread and two; some 2 minutes
 falls, each timed whole, awake, on one thread and two, with depth, energy, memory, what is required, and Bullet beside: topple
 (towers under gravity tilted by 14.5 degrees), hit (a block at 5 m/s), heaps, piles, rain; some 5 minutes
 

@@ -23,7 +23,7 @@ enum class ProfileScene {
   pull,       ///< a block is pulled out of the middle row at 4 cm/s, all blocks awake
   pullSleep,  ///< the same with sleep on
   game,       ///< the recorded game (scenarios/recorded/recorded_game.h), whole, as the viewer plays it
-  collapse,   ///< gravity leans by 14.5 degrees from the start
+  collapse,   ///< gravity leans by 14.5 degrees from the start, for fewer than 18 rows by more than they stand at
   asleep,     ///< all blocks asleep
   towers,     ///< many towers side by side at rest, awake
   pile,       ///< one wide stack of 108 blocks a row that lands after a fall of 10 cm

@@ -11,6 +11,7 @@
 #include "scenarios/walls.h"
 #include "solver/hand/played_frame.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cstddef>
 #include <fmt/format.h>
@@ -104,7 +105,8 @@ Scene blocksOf(const ProfileCase& what) {
     scene.name = fmt::format("{} towers of {} rows", what.towers, what.rows);
   }
   if (what.scene == ProfileScene::pile) layPile(what.rows, scene);
-  if (what.scene == ProfileScene::collapse) scene = leaning(std::move(scene), kTopplingTilt_deg);
+  if (what.scene == ProfileScene::collapse)
+    scene = leaning(std::move(scene), std::max(kTopplingTilt_deg, collapseTilt_deg(what.rows)));
   if (what.scene == ProfileScene::sway) scene = swaying(std::move(scene), kSway_deg, kSway_hz);
   return scene;
 }

@@ -112,6 +112,21 @@ TEST(WideIsland, IsEliminatedInTheOrderThatFillsInLess) {
   EXPECT_FALSE(fromBelow(awake(wallScene(20, 12))));
 }
 
+// Where a block lies beside one of the next tower a row below, their edges are parallel to 1e-5. The common normal of such edges
+// is that of any two lines in space, and turned over within a nanometre of way: steps of these frames then had no solution.
+TEST(WideIsland, EveryStepOfTouchingTowersThatSwayConverges) {
+  struct Swing {
+    double deg;
+    double hz;
+  };
+  for (const Swing& sway : {Swing{0.05, 1.5}, Swing{0.05, 2.5}, Swing{0.06, 1.5}, Swing{0.06, 2.0}, Swing{0.06, 2.5}}) {
+    Simulation simulation(swaying(awake(touchingTowersScene(5)), sway.deg, sway.hz));
+    for (int frame = 0; frame < 20; ++frame) prepareAndStep(simulation);
+    EXPECT_GT(simulation.counters.implicitIterations, simulation.counters.frames) << "they had something to solve";
+    EXPECT_EQ(simulation.counters.newtonFailures, 0U) << sway.deg << " degrees, " << sway.hz << " Hz";
+  }
+}
+
 TEST(WideIsland, HasTheSameBitsOnAnyNumberOfThreads) {
   std::uint64_t hashes[2] = {};
   for (const std::size_t threads : {1U, 4U}) {
