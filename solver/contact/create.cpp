@@ -133,9 +133,11 @@ void markSeparated(PairTable& pairs, std::size_t at, const Vec3& axis, double cl
 
 void storeContact(Engine& engine, std::size_t at, const Manifold& manifold) {
   std::int32_t& contact = engine.pairs.contact[at];
+  const bool parted = contact >= 0 && engine.pairs.phase[at] == PairPhase::separated;
   if (contact < 0) contact = engine.contacts.take();
   engine.pairs.phase[at] = manifold.phase;
   engine.contacts.store(contact, engine.pairs[at], manifold);
+  if (parted) engine.contacts.setSticking(contact);  // how it slipped before is that of another face
 }
 
 // Largest distance of a block's corners from its affine part, m. Separating axes are exact for the affine parts, from

@@ -1,6 +1,7 @@
 #include "solver/contact/slip.h"
 
 #include "core/tuning.h"
+#include "solver/world/driven_blocks.h"
 #include "solver/world/over_island.h"
 #include "solver/world/scales.h"
 
@@ -90,8 +91,8 @@ ContactNow contactNow(const IslandStep& step, const ContactView& manifold) {
   const auto upper = static_cast<std::size_t>(manifold.upper);
   const auto lower = static_cast<std::size_t>(floor ? manifold.upper : manifold.lower);
   const BlockFrame frames[2] = {blockFrame(state.position, upper), blockFrame(state.position, lower)};
-  const AffineField motion[2] = {affineField(state.velocity, upper),
-                                 floor || sleeps(step.simulation, manifold.lower) ? kStill : affineField(state.velocity, lower)};
+  const bool still = floor || (sleeps(step.simulation, manifold.lower) && !isDriven(step, manifold.lower));
+  const AffineField motion[2] = {affineField(state.velocity, upper), still ? kStill : affineField(state.velocity, lower)};
   ContactNow now;
   now.points = pointForces(manifold, {&frames[0], &kStill, &kStill}, {&frames[1], &kStill, &kStill}, step.law);
   const PointForces& points = now.points;

@@ -304,6 +304,21 @@ void refreshContacts(IslandStep& step, const RefreshTravel& renewal) {
   clock.lap(Stage::candidates);
 }
 
+namespace {
+
+// What was done for a range of pairs. Wide islands are run side by side, so these are no buffers of the engine.
+struct Looked {
+  Counters counters;
+  StageTimes times;  // s of one thread each
+};
+Looked addLooked(Looked a, const Looked& b) {
+  a.counters += b.counters;
+  a.times += b.times;
+  return a;
+}
+
+}  // namespace
+
 bool updateContacts(IslandStep& step, const RefreshTravel& renewal) {
   StageClock clock(step.times);
   double& candidates_s = step.times.seconds[static_cast<std::size_t>(Stage::candidates)];
@@ -325,35 +340,24 @@ bool updateContacts(IslandStep& step, const RefreshTravel& renewal) {
     return inside;
   }
 
-  const std::size_t chunks = (step.activePairs.size() + tuning::kPairChunk - 1) / tuning::kPairChunk;
-  std::vector<Counters>& counted = step.engine.scratch.chunkCounters;
-  std::vector<StageTimes>& timed = step.engine.scratch.chunkTimes;
-  if (counted.size() < chunks) counted.resize(chunks);
-  if (timed.size() < chunks) timed.resize(chunks);
-  forRanges(chunks, 1, true, [&](std::size_t firstChunk, std::size_t lastChunk) {
-    for (std::size_t chunk = firstChunk; chunk < lastChunk; ++chunk) {
-      counted[chunk] = Counters{};
-      timed[chunk] = StageTimes{};
-      StageClock all(timed[chunk]);
-      const std::size_t last = std::min(step.activePairs.size(), (chunk + 1) * tuning::kPairChunk);
-      for (std::size_t i = chunk * tuning::kPairChunk; i < last; ++i) {
-        const auto at = static_cast<std::size_t>(step.activePairs[i]);
-        if (!isCovered(step, at) && isDue(step.engine, at, least)) updatePair(step, at, renewal, counted[chunk], timed[chunk]);
-      }
-      all.lap(Stage::candidates);
+  const auto updateRange = [&](std::size_t first, std::size_t last) {
+    Looked looked;
+    StageClock all(looked.times);
+    for (std::size_t i = first; i < last; ++i) {
+      const auto at = static_cast<std::size_t>(step.activePairs[i]);
+      if (!isCovered(step, at) && isDue(step.engine, at, least)) updatePair(step, at, renewal, looked.counters, looked.times);
     }
-  });
-  StageTimes sum;
-  for (std::size_t chunk = 0; chunk < chunks; ++chunk) {
-    step.counters += counted[chunk];
-    sum += timed[chunk];
-  }
+    all.lap(Stage::candidates);
+    return looked;
+  };
+  const Looked looked = mergeRanges(step.activePairs.size(), tuning::kPairChunk, true, Looked{}, updateRange, addLooked);
+  step.counters += looked.counters;
   if (list) listActivePairs(step);
   // On many threads the cubic tests get their share of the elapsed time.
   const double before_s = candidates_s;
   clock.lap(Stage::candidates);
-  const double all_s = sum.seconds[static_cast<std::size_t>(Stage::candidates)];
-  const double share = all_s > 0.0 ? sum.seconds[static_cast<std::size_t>(Stage::cubicTests)] / all_s : 0.0;
+  const double all_s = looked.times.seconds[static_cast<std::size_t>(Stage::candidates)];
+  const double share = all_s > 0.0 ? looked.times.seconds[static_cast<std::size_t>(Stage::cubicTests)] / all_s : 0.0;
   cubicTests_s += share * (candidates_s - before_s);
   candidates_s -= share * (candidates_s - before_s);
   return inside;

@@ -180,6 +180,7 @@ void setMode(IslandStep& step, IslandMode mode) {
       if (!step.engine.pairs.touches(at) || step.engine.contacts.shape(contact).kind != kind) continue;
       savePair(step.engine, at);
       change(step, contact, contactOf(step.engine, at));
+      step.modeChanged = true;
     }
   };
   const bool all = std::all_of(step.blocks.begin(), step.blocks.end(),
@@ -209,6 +210,7 @@ IslandOutcome runRigidMode(IslandStep& step, double begin_s, bool stands) {
   // A block that rocks is slow for a moment at each turn.
   const bool moving = isFasterThan(step, speedOf(step, tuning::kRigidExitSpeed)) &&
                       step.engine.scratch.rigidIslands.of(step.blocks.front()).rebounds;
+  const bool forced = isWorkedOn(step);
   const std::int32_t least = moving ? framesOf(simulation, tuning::kRigidRestTime) : 0;
   for (const std::int32_t block : step.blocks) {
     BlockHistory& history = step.engine.memo.blockHistory[static_cast<std::size_t>(block)];
@@ -216,6 +218,8 @@ IslandOutcome runRigidMode(IslandStep& step, double begin_s, bool stands) {
     history.lastImplicitStep_s = 0.0;
     history.explicitLast = true;
     IslandHistory& island = step.engine.memo.islandHistory[static_cast<std::size_t>(block)];
+    island.implicitSteps = std::min(island.implicitSteps, tuning::kMaxFrequencySteps);  // those after a kick are done with
+    island.forced = forced;
     if (step.part.begin_s == 0.0) island.rigidFrames = std::max(0, island.rigidFrames - 1);
     island.rigidFrames = stands ? 0 : std::max(history.hasFallen ? least : 0, island.rigidFrames);
   }

@@ -127,6 +127,8 @@ std::int32_t islandOf(const Engine& engine, const BlockPair& pair) {
 void listIslandPairs(Simulation& simulation) {
   Engine& engine = *simulation.engine;
   engine.memo.newtonSystems.assign(engine.memo.islands);
+  // What sweeps of earlier parts of the frame have merged may have been at other times.
+  for (NewtonSystem& island : engine.memo.newtonSystems.all()) island.forcesKnown = false;
   engine.memo.sparseFactors.assign(engine.memo.islands);
   const std::size_t islands = engine.memo.islands.count();
   engine.memo.pairStart.assign(islands + 1, 0);

@@ -127,7 +127,10 @@ void runPart(Simulation& simulation, Who who) {
   const auto sweep = who == Who::inParts ? sweepPart : findNearPairs;
   while (true) {
     if (wakeOnImpact(simulation)) sweep(simulation);
-    if (!selectIslands(simulation, who)) return;
+    if (!selectIslands(simulation, who)) {
+      wakeFailedSupports(simulation);  // lists anew what wakes after the frame
+      return;
+    }
     if (isReport) prepareReportFrame(simulation);
     const bool inside = overIslands(simulation, advanceIsland);
     const bool failed = inside && wakeFailedSupports(simulation);

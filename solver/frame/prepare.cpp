@@ -88,8 +88,10 @@ PrepareResult prepare(Simulation& simulation, const PrepareOptions& options) {
   PrepareResult result;
   Engine& engine = *simulation.engine;
   if (engine.memo.prepared) return result;
-  engine.memo.prepared = true;
-  if (traitsOf(simulation.scene.settings.method).family == MethodFamily::report) return result;
+  if (traitsOf(simulation.scene.settings.method).family == MethodFamily::report) {
+    engine.memo.prepared = true;
+    return result;
+  }
   const StageTimes before = simulation.stageTimes;
   const double processorStart_s = processorTime_s();
   SearchMonitor monitor(engine.sleep.awakeCount, options.budget_s, options.goesOn);
@@ -121,6 +123,7 @@ PrepareResult prepare(Simulation& simulation, const PrepareOptions& options) {
   releaseFrameStart(engine);  // the search has changed all pairs
   simulation.substeps = 0;
   simulation.stageTimes = before;  // of frames
+  engine.memo.prepared = true;
   if (monitor.isStopped()) result.end = monitor.isOutOfTime() ? PrepareEnd::outOfTime : PrepareEnd::cancelled;
   result.wall_s = monitor.elapsed_s();
   result.processor_s = processorTime_s() - processorStart_s;

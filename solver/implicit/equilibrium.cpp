@@ -201,7 +201,6 @@ class EquilibriumSearch {
   }
 
   void startAgain() {
-    step_.counters = before_;
     step_.smoothing_j = 0.0;
     step_.diagonalShare = 0.0F;
     restoreIsland(step_);
@@ -212,6 +211,7 @@ class EquilibriumSearch {
       }
     }
     findTouching(step_);
+    step_.counters = before_;  // they have the contacts that are found here
   }
 
   void tiltTo(double share) {
@@ -315,6 +315,9 @@ void dropOpenContacts(IslandStep& step) {
   }
 }
 
+// Times that differ by less than this share of a frame are the same: the end of a frame is rounded.
+constexpr double kSameTime = 1e-6;
+
 // Whether a constant force begins to act on the island at the frame's start, and all that act are constant and go on through it.
 bool forcesBegin(const IslandStep& step) {
   const double frame_s = step.simulation.scene.settings.frame_s;
@@ -323,7 +326,9 @@ bool forcesBegin(const IslandStep& step) {
   bool begin = false;
   for (const UserForce& user : step.simulation.scene.forces) {
     if (islandOf[static_cast<std::size_t>(user.block)] != own || !user.actsWithin(step.time_s, step.time_s + frame_s)) continue;
-    if (user.start_s > step.time_s || user.end_s < step.time_s + frame_s || user.forceAtEnd || user.torqueAtEnd) return false;
+    if (user.start_s > step.time_s || user.end_s < step.time_s + (1.0 - kSameTime) * frame_s || user.forceAtEnd ||
+        user.torqueAtEnd)
+      return false;
     begin = begin || user.start_s > step.time_s - 0.5 * frame_s;
   }
   return begin;
@@ -352,7 +357,7 @@ double farthestInFrame_m(const IslandStep& step) {
 bool followNewForces(IslandStep& step) {
   step.time_s = step.simulation.time_s;
   step.gravity = step.simulation.scene.gravity.at(step.time_s);
-  if (!forcesBegin(step) || holdsTether(step) || !isStill(step)) return false;
+  if (step.modeChanged || !forcesBegin(step) || holdsTether(step) || !isStill(step)) return false;
   copyFrameStart(step);
   step.pushedFrom_s = step.time_s;
   step.pushedUntil_s = step.time_s + step.simulation.scene.settings.frame_s;

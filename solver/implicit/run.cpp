@@ -148,12 +148,14 @@ double turningSpeed(const AffineField& place, const AffineField& motion) {
   return std::sqrt(fastest);
 }
 
-// Counts down the frames until implicit steps are tried again, and notes whether this one is forced.
-void noteFrame(IslandStep& step, bool forced) {
+// Counts down the frames until implicit steps are tried again, and notes whether this one is forced and how many steps it is to
+// have.
+void noteFrame(IslandStep& step, bool forced, int steps) {
   for (const std::int32_t block : step.blocks) {
     IslandHistory& history = step.engine.memo.islandHistory[static_cast<std::size_t>(block)];
     if (step.part.begin_s == 0.0) history.rigidFrames = std::max(0, history.rigidFrames - 1);
     history.forced = forced;
+    history.implicitSteps = steps;
   }
 }
 
@@ -257,14 +259,15 @@ IslandOutcome runImplicitSteps(IslandStep& step, bool mostlyFallen, double& reac
   const bool forced = isWorkedOn(step);
   const bool wasForced = engine.memo.islandHistory[static_cast<std::size_t>(step.blocks.front())].forced;
   if (wasForced && !forced) resetHistory(step);
-  int steps = fittingSteps(step, implicitSteps(step, forced, forced == wasForced, mostlyFallen), forced, mostlyFallen);
-  noteFrame(step, forced);
+  const int wanted = implicitSteps(step, forced, forced == wasForced, mostlyFallen);
+  int steps = fittingSteps(step, wanted, forced, mostlyFallen);
   // If pairs, islands and forces are unchanged, the forces are those at the end of the last frame.
   const bool known = island.forcesKnown && !engine.memo.topologyChanged && !wasForced && !forced;
   island.forcesKnown = false;
   if (steps == 0) return outcome;
   bool begins = true;  // with steps of this length
   if (forced && !wasForced && reached_s == 0.0) followNewForces(step);
+  noteFrame(step, forced, wanted);  // a search that has failed has put back what was noted before
   const auto takeSteps = [&](int count) {
     steps = count;
     if (count > 1) copyFrameStart(step);

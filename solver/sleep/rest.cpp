@@ -104,8 +104,10 @@ void fallAsleep(Simulation& simulation, std::size_t b) {
   simulation.asleep[b] = 1;
   engine.sleep.checkedLoads.clear();
   engine.memo.blockHistory[b].hasFallen = false;
-  engine.memo.islandHistory[b].rigid = false;
-  engine.memo.islandHistory[b].rigidFrames = 0;
+  IslandHistory& history = engine.memo.islandHistory[b];
+  history.rigid = history.forced = false;
+  history.rigidFrames = 0;
+  history.implicitSteps = std::min(history.implicitSteps, tuning::kMaxFrequencySteps);
   --engine.sleep.awakeCount;
   for (std::size_t a = 0; a < 3; ++a) std::fill_n(simulation.state.velocity.values(a, b), kCorners, 0.0);
   engine.memo.frames[b] = blockFrame(simulation.state.position, b);

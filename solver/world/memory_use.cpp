@@ -91,13 +91,12 @@ std::size_t ofMemo(const Memo& memo) {
 }
 
 std::size_t ofScratch(const Scratch& s) {
-  std::size_t sum =
-      sumOf(s.awakeBlocks, s.reach, s.cursor, s.path, s.assumedPath, s.newContactCount, s.nodeOf, s.contactForce, s.pastPosition,
-            s.freePosition, s.lostNeighbours, s.toWake, s.wakeRoots, s.pushed, s.loadChange, s.support.start, s.support.pairs,
-            s.support.blocks, s.support.parent, s.support.open, s.support.groups, s.support.beneath, s.support.supports,
-            s.touchingEdges, s.restless, s.parent, s.touched, s.joined, s.chunkCounters, s.chunkTimes, s.islandCounters,
-            s.islandTimes, s.islandOutcome, s.inParts, s.takesPart, s.byDuration, s.islandEdges, s.covered, s.drivenNow,
-            s.sweepAsleep, s.nearDriven, s.drivenOfIslands, s.drivenMean);
+  std::size_t sum = sumOf(s.awakeBlocks, s.reach, s.cursor, s.path, s.assumedPath, s.newContactCount, s.nodeOf, s.contactForce,
+                          s.pastPosition, s.freePosition, s.lostNeighbours, s.toWake, s.wakeRoots, s.pushed, s.loadChange,
+                          s.support.start, s.support.pairs, s.support.blocks, s.support.parent, s.support.open, s.support.groups,
+                          s.support.beneath, s.support.supports, s.touchingEdges, s.restless, s.parent, s.touched, s.joined,
+                          s.islandCounters, s.islandTimes, s.islandOutcome, s.inParts, s.takesPart, s.byDuration, s.islandEdges,
+                          s.covered, s.drivenNow, s.sweepAsleep, s.nearDriven, s.drivenOfIslands, s.drivenMean);
   for (const MotionState& stage : s.stage) sum += bytesOf(stage);
   for (const ParticleArray& acceleration : s.stageAcceleration) sum += bytesOf(acceleration);
   sum += s.rigidIslands.indexBytes();

@@ -106,9 +106,7 @@ struct Scratch {
   std::vector<std::uint8_t> touched;  ///< 1 where a block is connected to one of toWake by contacts
   std::vector<std::uint8_t> joined;   ///< 1 where a block is connected to a block that is not at rest by contacts
 
-  // Results of islands, and of ranges of pairs in a wide island, before they are summed in order.
-  std::vector<Counters> chunkCounters;
-  std::vector<StageTimes> chunkTimes;  ///< s of one thread each
+  // Results of islands, before they are summed in order.
   std::vector<Counters> islandCounters;
   std::vector<StageTimes> islandTimes;
   std::vector<int> islandOutcome;  ///< steps of each island, -1 where a block left its swept box

@@ -9,6 +9,7 @@
 #include "solver/frame/prepare.h"
 #include "solver/world/engine.h"
 #include "solver/world/simulation.h"
+#include "tests/support/two_walls.h"
 #include "tests/support/uneven_tower.h"
 
 #include <algorithm>
@@ -57,6 +58,7 @@ std::vector<ThreadScene> threadScenes() {
       {"wall", 12, awake(wallScene(24, 16))},
       {"wall-sleeps", 45, wallScene(24, 16)},
       {"wall-sways", 6, awake(swaying(wallScene(24, 16), 0.3, 2.0))},
+      {"walls-sway", 6, awake(swaying(twoWalls(), 0.3, 2.0))},
       {"wall-explicit", 1, with(awake(wallScene(24, 12)), Method::semiImplicitEuler)},
       {"pyramid", 12, awake(cubePyramidScene(24))},
       {"bricks", 6, awake(brickPyramidScene(24))},

@@ -143,6 +143,34 @@ TEST_P(DrivenBlocks, DragABlockAlong) {
   EXPECT_NEAR(behind_m, theory_m - early_m, 0.02 * theory_m);
 }
 
+// A wall without friction holds a block on a conveyor. It slips against the conveyor, not against the ground: kinetic friction
+// presses it on the wall, with half of what static friction would.
+TEST_P(DrivenBlocksThatHold, SlideBelowABlockThatAWallHolds) {
+  BlockSpec wall;
+  wall.dimensions = {0.02, 0.2, 0.1};
+  wall.centre = {0.5 * (kBlockLength_m + 0.02), 0.0, kTableTop_m + 0.06};
+  wall.fixed = true;
+  wall.friction = Friction{0.0, 0.0};
+  Drive conveyor;
+  conveyor.velocity.x() = 0.1;
+  Scene scene = tableScene(GetParam(), {conveyor}, {restingAt(0.0, kTableTop_m), wall});
+  scene.kineticFriction = 0.5 * kTableFriction;
+  scene.staticFriction = kTableFriction;
+  Simulation simulation(scene);
+  stepFor(simulation, 0.5);
+  double pressed_n = 0.0;
+  const int frames = 60;
+  for (int frame = 0; frame < frames; ++frame) {
+    prepareAndStep(simulation);
+    for (const ContactForce& contact : contactForces(simulation)) {
+      if (index(contact.upper) == 2 || (contact.lower != kFloor && index(contact.lower) == 2))
+        pressed_n += contact.normalForce / frames;
+    }
+  }
+  const double kinetic_n = 0.5 * kTableFriction * kBlockMass_kg * kStandardGravity_m_s2;
+  EXPECT_NEAR(pressed_n, kinetic_n, 0.03 * kinetic_n);
+}
+
 // The pusher begins at once: a rebounding block is caught up with, as friction stops it.
 TEST_P(DrivenBlocks, PushABlockAlongTheFloor) {
   Scene scene = tableScene(GetParam(), {}, {restingAt(0.0, 0.0)});

@@ -2,8 +2,11 @@
 #include "solver/frame/inputs.h"
 
 #include "core/error.h"
+#include "core/tuning.h"
 #include "scenarios/loose.h"
+#include "scenarios/towers.h"
 #include "solver/hand/grip.h"
+#include "solver/world/engine.h"
 #include "tests/support/block_scenes.h"
 #include "tests/support/prepare_and_step.h"
 #include "tests/support/says.h"
@@ -35,6 +38,27 @@ TEST(Inputs, BlocksThatAreNotThereAreRefused) {
     EXPECT_THAT([&] { handOn(simulation, blockId(block)); }, message);
     EXPECT_THAT([&] { drawingFrom(simulation, blockId(block), Vec3::UnitX(), 0.04); }, message);
   }
+}
+
+// The frame of a kick may take 128 implicit steps. Where it ends in rigid steps, and blocks sleep or go back to implicit ones
+// later, these are no more than after any other fall.
+TEST(Inputs, AKickThatEndsInRigidStepsLeavesNoMoreStepsThanAFall) {
+  Scene scene = towerScene(3);
+  scene.settings.sleep = Sleep::off;
+  Simulation simulation(scene);
+  stepFor(simulation, 0.1);
+  kick(simulation, 8, Vec3(0.0, 4.0, 1.0));
+  bool wasRigid = false;
+  for (int frame = 0; frame < 60; ++frame) {
+    prepareAndStep(simulation);
+    const Memo& memo = simulation.engine->memo;
+    for (std::size_t b = 0; b < scene.blocks.size(); ++b) {
+      if (!memo.blockHistory[b].explicitLast) continue;
+      wasRigid = true;
+      EXPECT_LE(memo.islandHistory[b].implicitSteps, tuning::kMaxFrequencySteps) << "block " << b << ", frame " << frame;
+    }
+  }
+  EXPECT_TRUE(wasRigid);
 }
 
 TEST(Inputs, AForceForOneFrameActsInThatFrameAlone) {

@@ -4,6 +4,7 @@
 #include "scenarios/walls.h"
 #include "solver/frame/prepare.h"
 #include "solver/world/simulation.h"
+#include "tests/support/two_walls.h"
 #include "tests/support/uneven_tower.h"
 
 #include <cstdint>
@@ -22,6 +23,7 @@ constexpr int kFramesOnThreads = 6;
 
 struct Timed {
   std::uint64_t hash = 0;
+  std::uint64_t looked = 0;  // contacts created and manifolds looked for again
   double processor_s = 0.0;  // of all frames, on all threads
 };
 
@@ -38,13 +40,15 @@ Timed timedOn(const Scene& scene, int threads) {
     for (int frame = 0; frame < kFramesOnThreads; ++frame) stepFrame(simulation);
     timed.processor_s = processorTime_s() - before_s;
     timed.hash = stateHash(simulation);
+    timed.looked = simulation.counters.contactsCreated + simulation.counters.manifoldRefreshes;
     return timed;
   });
 }
 
-// A wide island that sways, whose kernels take ranges, and towers that fall, each an island of its own.
+// A wide island that sways, two of them, and towers that fall, each an island of its own.
 std::vector<std::pair<std::string, Scene>> wideAndMany() {
   return {{"wall that sways", awake(swaying(wallScene(24, 16), 0.3, 2.0))},
+          {"two walls that sway", awake(swaying(twoWalls(), 0.3, 2.0))},
           {"towers that fall", awake(leaning(grid(unevenTower(4), 4, 2, kTowerSpacing_m), 30.0))}};
 }
 
@@ -57,6 +61,7 @@ TEST(ManyThreads, SixtyFourAreAsGoodAsOne) {
     for (const int threads : kThreadCounts) {
       const Timed many = timedOn(scene, threads);
       EXPECT_EQ(many.hash, one.hash) << name << ", " << threads << " threads";
+      EXPECT_EQ(many.looked, one.looked) << name << ", " << threads << " threads";
       EXPECT_LT(many.processor_s, kMostSlower * one.processor_s) << name << ", " << threads << " threads";
     }
   }

@@ -237,6 +237,30 @@ TEST(Start, IsTheSameInAnyOrderOfTheBlocks) {
   }
 }
 
+// Friction at the start is that of normal forces which the load has made. The search begins with all points that touch pushing
+// and sticking; between two walls that press nothing a block still falls freely, also where gravity leans along them.
+TEST(Start, ABlockBetweenWallsThatNothingPressesFalls) {
+  for (const double tilt_deg : {0.0, 1.0}) {
+    Scene scene;
+    scene.gravity.tilt_deg = tilt_deg;
+    BlockSpec block;
+    block.centre = Vec3(0.0, 0.0, 0.6);
+    BlockSpec wall = block;
+    wall.fixed = true;
+    wall.dimensions = Vec3(0.1, 0.02, 0.4);
+    for (const double side : {-1.0, 1.0}) {
+      wall.centre.y() = side * 0.5 * (block.dimensions.y() + wall.dimensions.y());
+      scene.blocks.push_back(wall);
+    }
+    scene.blocks.push_back(block);
+    Simulation simulation(awake(scene));
+    const double fall_s = 0.1;
+    stepFor(simulation, fall_s);
+    const double free_m = 0.5 * kStandardGravity_m_s2 * fall_s * fall_s;
+    EXPECT_NEAR(0.6 - centre(simulation.state.position, 2).z(), free_m, 0.002 * free_m) << tilt_deg << " degrees";
+  }
+}
+
 // f01: one of two flush bricks is a tenth of a millimetre taller. The other counted as its support, by an overlap of rounding,
 // and it diverged in the first step.
 TEST(Start, TwoFlushBricksOfUnequalHeightStand) {
