@@ -153,6 +153,7 @@ void listIslandPairs(Simulation& simulation) {
   const std::size_t blocks = simulation.model.blockCount();
   engine.memo.blockPairStart.assign(blocks + 1, 0);
   const auto forEachAwake = [&](const BlockPair& pair, const auto& visit) {
+    if (islandOf(engine, pair) < 0) return;  // of blocks at different times of the frame: no island evaluates its force
     if (simulation.asleep[static_cast<std::size_t>(pair.a)] == 0) visit(static_cast<std::size_t>(pair.a));
     if (pair.b >= 0 && simulation.asleep[static_cast<std::size_t>(pair.b)] == 0) visit(static_cast<std::size_t>(pair.b));
   };
