@@ -307,11 +307,11 @@ void refreshContacts(IslandStep& step, const RefreshTravel& renewal) {
 namespace {
 
 // What was done for a range of pairs. Wide islands are run side by side, so these are no buffers of the engine.
-struct Looked {
+struct UpdateStatistics {
   Counters counters;
   StageTimes times;  // s of one thread each
 };
-Looked addLooked(Looked a, const Looked& b) {
+UpdateStatistics mergeStatistics(UpdateStatistics a, const UpdateStatistics& b) {
   a.counters += b.counters;
   a.times += b.times;
   return a;
@@ -341,23 +341,24 @@ bool updateContacts(IslandStep& step, const RefreshTravel& renewal) {
   }
 
   const auto updateRange = [&](std::size_t first, std::size_t last) {
-    Looked looked;
-    StageClock all(looked.times);
+    UpdateStatistics done;
+    StageClock all(done.times);
     for (std::size_t i = first; i < last; ++i) {
       const auto at = static_cast<std::size_t>(step.activePairs[i]);
-      if (!isCovered(step, at) && isDue(step.engine, at, least)) updatePair(step, at, renewal, looked.counters, looked.times);
+      if (!isCovered(step, at) && isDue(step.engine, at, least)) updatePair(step, at, renewal, done.counters, done.times);
     }
     all.lap(Stage::candidates);
-    return looked;
+    return done;
   };
-  const Looked looked = mergeRanges(step.activePairs.size(), tuning::kPairChunk, true, Looked{}, updateRange, addLooked);
-  step.counters += looked.counters;
+  const UpdateStatistics total =
+      mergeRanges(step.activePairs.size(), tuning::kPairChunk, true, UpdateStatistics{}, updateRange, mergeStatistics);
+  step.counters += total.counters;
   if (list) listActivePairs(step);
   // On many threads the cubic tests get their share of the elapsed time.
   const double before_s = candidates_s;
   clock.lap(Stage::candidates);
-  const double all_s = looked.times.seconds[static_cast<std::size_t>(Stage::candidates)];
-  const double share = all_s > 0.0 ? looked.times.seconds[static_cast<std::size_t>(Stage::cubicTests)] / all_s : 0.0;
+  const double all_s = total.times.seconds[static_cast<std::size_t>(Stage::candidates)];
+  const double share = all_s > 0.0 ? total.times.seconds[static_cast<std::size_t>(Stage::cubicTests)] / all_s : 0.0;
   cubicTests_s += share * (candidates_s - before_s);
   candidates_s -= share * (candidates_s - before_s);
   return inside;
