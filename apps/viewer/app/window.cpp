@@ -321,22 +321,31 @@ struct ImGuiUse {
   }
 };
 
-// A window whose context is current, with four samples a pixel unless the processor has to draw them.
+// A hidden window whose context is current; null where there is none with so many samples a pixel.
+GLFWwindow* hiddenWindow(const Viewport& size, int samples) {
+  glfwWindowHint(GLFW_SAMPLES, samples);
+  GLFWwindow* window = glfwCreateWindow(size.width, size.height, "springtower-viewer", nullptr, nullptr);
+  if (window != nullptr) glfwMakeContextCurrent(window);
+  return window;
+}
+
+// A window whose context is current, with four samples a pixel unless the processor has to draw them. Whether it has to is known
+// once there is a window: the plain one comes first, as a second one takes a tenth of a second where the processor draws.
 GLFWwindow* openedWindow(const Viewport& size) {
   glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
   glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
   glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
   glfwWindowHint(GLFW_VISIBLE, GLFW_FALSE);
-  for (const int samples : {4, 0}) {
-    glfwWindowHint(GLFW_SAMPLES, samples);
-    GLFWwindow* window = glfwCreateWindow(size.width, size.height, "springtower-viewer", nullptr, nullptr);
-    if (window == nullptr) continue;
-    glfwMakeContextCurrent(window);
-    if (samples == 0 || !drawsInSoftware()) {
-      glfwShowWindow(window);
-      return window;
+  GLFWwindow* window = hiddenWindow(size, 0);
+  if (window != nullptr && !drawsInSoftware()) {
+    if (GLFWwindow* smooth = hiddenWindow(size, 4); smooth != nullptr) {
+      glfwDestroyWindow(window);
+      window = smooth;
     }
-    glfwDestroyWindow(window);
+  }
+  if (window != nullptr) {
+    glfwShowWindow(window);
+    return window;
   }
   const char* why = nullptr;
   glfwGetError(&why);
