@@ -22,13 +22,11 @@ struct PairBodies {
   std::int32_t pair;
   std::array<std::int32_t, 2> block;
   std::array<std::int32_t, 2> body;
-  double restitution = 0.0;
 };
 
 PairBodies bodiesOf(const IslandStep& step, const RigidIsland& island, std::int32_t pair) {
   const BlockPair& key = step.engine.pairs.key[static_cast<std::size_t>(pair)];
   PairBodies of{pair, {key.a, key.b}, {}};
-  of.restitution = restitutionOf(step.simulation, key);
   for (std::size_t s = 0; s < 2; ++s) {
     const std::int32_t block = of.block[s];
     const bool moves = !sleeps(step.simulation, block) || isDriven(step, block);
@@ -48,15 +46,29 @@ Vec3 relativeVelocity(const RigidIsland& island, const PairBodies& of) {
   return velocity;
 }
 
-// How far any point of one block may get against the other in a time, m, as they move now and fall.
+// How far any point of one block may get against the other in a time, m, as they move now and fall: along straight paths, or
+// against a block that turns, in whose axes blocks that move as one are at rest. Points and normals are kept in these axes.
 double relativeMotion(const IslandStep& step, const RigidIsland& island, const PairBodies& of, double time_s) {
-  double turning = 0.0;
-  for (const std::int32_t at : of.body) {
-    if (at == unmovedBody(island)) continue;
-    const RigidBody& body = island.bodies[static_cast<std::size_t>(at)];
-    turning += body.spin.norm() * body.radius_m;
+  const Vec3 velocity = relativeVelocity(island, of);
+  double straight = velocity.norm();
+  std::array<const RigidBody*, 2> body{};
+  for (std::size_t s = 0; s < 2; ++s) {
+    if (of.body[s] == unmovedBody(island)) continue;
+    body[s] = &island.bodies[static_cast<std::size_t>(of.body[s])];
+    straight += body[s]->spin.norm() * body[s]->radius_m;
   }
-  return (relativeVelocity(island, of).norm() + turning + step.simulation.scene.gravity.magnitude * time_s) * time_s;
+  double least = straight;
+  if (body[0] != nullptr && body[1] != nullptr) {
+    const Vec3 apart = body[0]->place - body[1]->place;
+    const double turning = (body[0]->spin - body[1]->spin).norm();
+    for (std::size_t s = 0; s < 2; ++s) {
+      const Vec3& spin = body[s]->spin;
+      // A centre that moves on straight leaves the circle about the other: half of spin^2 times their distance in a time squared.
+      const double leaving = 0.5 * spin.squaredNorm() * apart.norm() * time_s;
+      least = std::min(least, (velocity - spin.cross(apart)).norm() + turning * body[1 - s]->radius_m + leaving);
+    }
+  }
+  return (least + step.simulation.scene.gravity.magnitude * time_s) * time_s;
 }
 
 // The point in the axes of its bodies.
@@ -84,7 +96,6 @@ void addConstraint(const RigidIsland& island, const PairBodies& of, const NearPo
     toLanes(island.bodies[static_cast<std::size_t>(turning)].axes.transpose() * near.normal, p.ownNormal);
   }
   p.gap = near.normal.dot(near.onA - near.onB);
-  p.restitution = of.restitution;
 }
 
 // A pair that is farther apart than the points looked for is separated, and is not looked at before its blocks have moved by
@@ -98,43 +109,59 @@ void setSeparated(IslandStep& step, std::size_t at, double gap, const Vec3& axis
   pairs.setAxis(at, axis);
 }
 
-// Finds the points of a pair within `reach` at the present positions. `separates`: one that has none is separated.
-void findPoints(IslandStep& step, const RigidIsland& island, const PairBodies& of, double reach, bool separates,
-                NearPoints& near) {
+// How far two blocks may come nearer along a direction (unit, towards the first) in a time, m, as they move now and fall.
+double closingAlong(const IslandStep& step, const RigidIsland& island, const PairBodies& of, const Vec3& direction,
+                    double time_s) {
+  double speed = std::max(0.0, -relativeVelocity(island, of).dot(direction));
+  for (const std::int32_t at : of.body) {
+    if (at == unmovedBody(island)) continue;
+    const RigidBody& body = island.bodies[static_cast<std::size_t>(at)];
+    speed += body.spin.norm() * body.radius_m;
+  }
+  return (speed + step.simulation.scene.gravity.magnitude * time_s) * time_s;
+}
+
+// Finds the points of a pair within `reach` at the present positions, and returns up to which relative motion they hold: where
+// there are none, the blocks' gap. `separates`: such a pair is separated.
+double findPoints(IslandStep& step, const RigidIsland& island, const PairBodies& of, double reach, bool separates,
+                  NearPoints& near) {
   const auto at = static_cast<std::size_t>(of.pair);
   const ParticleArray& x = step.simulation.state.position;
   const CornerView a = cornersOf(x, static_cast<std::size_t>(of.block[0]));
   near.count = 0;
   near.grazes = false;
+  const auto none = [&](double gap, const Vec3& axis) {
+    if (separates) setSeparated(step, at, gap, axis);
+    return gap;
+  };
   if (of.block[1] < 0) {
     findNearFloorPoints(a, reach, near);
-    if (near.count == 0 && separates) setSeparated(step, at, *std::min_element(a.z, a.z + kCorners), Vec3::UnitZ());
-    return;
+    return near.count > 0 ? reach : none(*std::min_element(a.z, a.z + kCorners), Vec3::UnitZ());
   }
   const CornerView b = cornersOf(x, static_cast<std::size_t>(of.block[1]));
   if (!step.engine.pairs.touches(at)) {
     const Vec3 axis = step.engine.pairs.axisOf(at);
     const double gap = gapAlong(axis, a, b);
-    if (gap > reach) {
-      if (separates) setSeparated(step, at, gap, axis);
-      return;
-    }
+    const double margin = tuning::kNearPointMargin * step.simulation.lengths.blockHeight_m;
+    if (gap > margin && gap > margin + closingAlong(step, island, of, axis, step.drift_s)) return none(gap, axis);
   }
   const Separation apart = findSeparation(a, b);
-  if (apart.best() > reach) {
-    if (separates) setSeparated(step, at, apart.best(), apart.bestNormal());
-    return;
-  }
+  if (apart.best() > reach) return none(apart.best(), apart.bestNormal());
   near.grazes = grazes(apart, grazingLimits(step.simulation), relativeVelocity(island, of));
   findNearPoints(a, b, near.grazes ? alongLevel(apart) : apart, reach,
                  tuning::kMergeRadius * step.simulation.lengths.blockHeight_m, near);
+  return reach;
 }
 
 // Appends a pair's points to a list.
-void addGroup(const RigidIsland& island, const PairBodies& of, const NearPoints& near, double reach, double moved,
-              PointList& list) {
+void addGroup(const IslandStep& step, const RigidIsland& island, const PairBodies& of, const NearPoints& near, double reach,
+              double moved, PointList& list) {
   const auto first = static_cast<std::int32_t>(list.points.size());
-  for (std::size_t i = 0; i < near.count; ++i) addConstraint(island, of, near.point[i], list.points);
+  const double restitution = restitutionOf(step.simulation, {of.block[0], of.block[1]});
+  for (std::size_t i = 0; i < near.count; ++i) {
+    addConstraint(island, of, near.point[i], list.points);
+    list.points.back().restitution = restitution;
+  }
   list.groups.push_back({of.pair, first, static_cast<std::int32_t>(near.count), reach, moved});
 }
 
@@ -197,6 +224,54 @@ void removeFastFromSteady(RigidIsland& island) {
   }
 }
 
+// Marks the bodies whose velocity has changed since the step began by more than its margin allows for; returns whether any has.
+bool markOutrunning(const IslandStep& step, RigidIsland& island, double step_s) {
+  const double most = 0.5 * tuning::kNearPointMargin * step.simulation.lengths.blockHeight_m / step_s;
+  bool any = false;
+  for (RigidBody& body : island.bodies) {
+    const double change = (body.velocity - body.before.velocity).norm() + (body.spin - body.before.spin).norm() * body.radius_m;
+    body.outruns = change > most;
+    any = any || body.outruns;
+  }
+  return any;
+}
+
+// Whether a pair with such a body may move farther against one another in the step than its points, or that it has none, hold:
+// as if it had had its present speed from the start. What it may move more counts for the points in the steps to come.
+bool isOutrun(const IslandStep& step, const RigidIsland& island, double step_s, ListedPair& listed, PointGroup* points) {
+  const PairBodies of = bodiesOf(step, island, listed.pair);
+  const bool changed = std::any_of(of.body.begin(), of.body.end(), [&](std::int32_t body) {
+    return body != unmovedBody(island) && island.bodies[static_cast<std::size_t>(body)].outruns;
+  });
+  if (!changed) return false;
+  const double motion = relativeMotion(step, island, of, step_s);
+  if (motion > listed.reach_m) return true;
+  const double more = std::max(0.0, motion - listed.motion_m);
+  listed.motion_m += more;
+  if (points != nullptr) points->moved_m += more;
+  return false;
+}
+
+// An upper bound of the speed of a body's points, m/s.
+double fastestPoint(const RigidIsland& island, std::int32_t body) {
+  return body == unmovedBody(island) ? 0.0 : island.bodies[static_cast<std::size_t>(body)].fastestPoint_m_s;
+}
+
+// Whether two blocks do not touch, and cannot in the step, as they move now and fall: most near pairs of a heap that flies.
+bool isFarApart(const IslandStep& step, const RigidIsland& island, const PairBodies& of, ListedPair& listed) {
+  const auto at = static_cast<std::size_t>(of.pair);
+  const PairTable& pairs = step.engine.pairs;
+  if (pairs.touches(at)) return false;
+  const double speed = fastestPoint(island, of.body[0]) + fastestPoint(island, of.body[1]);
+  const double motion = (speed + step.simulation.scene.gravity.magnitude * step.drift_s) * step.drift_s;
+  const double gap = pairs.clearance[at] - (travelOf(step.engine, at) - pairs.travelAtCheck[at]);
+  if (gap <= motion + tuning::kNearPointMargin * step.simulation.lengths.blockHeight_m) return false;
+  step.engine.scratch.covered[at] = 0;
+  listed.motion_m = motion;
+  listed.reach_m = gap;
+  return true;
+}
+
 // The path of both blocks in the attempt just rejected, m.
 double pathOf(const IslandStep& step, const PairBodies& of) {
   double path = 0.0;
@@ -215,20 +290,27 @@ void listPoints(IslandStep& step, RigidIsland& island, double substep_s, bool ag
   clear(island.steady);
   clear(island.fast);
   island.fastPairs.clear();
-  island.listedPairs.assign(step.activePairs.begin(), step.activePairs.end());
+  island.listedPairs.clear();
+  for (const std::int32_t pair : step.activePairs) island.listedPairs.push_back({pair});
+  for (RigidBody& body : island.bodies) body.fastestPoint_m_s = body.velocity.norm() + body.spin.norm() * body.radius_m;
   KnownPoints known(island.steadyKnown, island.fastKnown);
   NearPoints near;
-  for (const std::int32_t pair : island.listedPairs) {
+  for (ListedPair& listed : island.listedPairs) {
+    const std::int32_t pair = listed.pair;
     const auto at = static_cast<std::size_t>(pair);
     const PairBodies of = bodiesOf(step, island, pair);
+    if (isFarApart(step, island, of, listed)) continue;
     const KnownGroup before = known.find(pair);
     const double motion = relativeMotion(step, island, of, step.drift_s);
+    listed.motion_m = motion;
     engine.scratch.covered[at] = 1;
     if (!again && isStillListed(before, motion, tuning::kMaxListedMotion * h)) {
+      listed.reach_m = std::min(tuning::kMaxListedMotion * h, before.group->reach_m) - before.group->moved_m;
       takeOver(before, motion, island.steady);
       continue;
     }
     double reach = motion + tuning::kNearPointMargin * h;
+    listed.reach_m = reach;
     engine.scratch.covered[at] = 0;
     const bool touches = engine.pairs.touches(at);
     if (!touches && !step.simulation.scene.settings.continuousTests) continue;  // no contact begins
@@ -239,10 +321,10 @@ void listPoints(IslandStep& step, RigidIsland& island, double substep_s, bool ag
       island.fastPairs.push_back(pair);
       continue;
     }
-    findPoints(step, island, of, reach, true, near);
+    listed.reach_m = findPoints(step, island, of, reach, true, near);
     if (near.count > 0 || near.grazes) engine.scratch.covered[at] = 1;
     if (near.count == 0) continue;
-    addGroup(island, of, near, reach, motion, island.steady);
+    addGroup(step, island, of, near, reach, motion, island.steady);
     warmStartLast(step, island, before, substep_s, island.steady);
   }
   packPoints(step, island, island.steady);
@@ -250,28 +332,20 @@ void listPoints(IslandStep& step, RigidIsland& island, double substep_s, bool ag
 }
 
 void addOutrun(IslandStep& step, RigidIsland& island, double step_s) {
-  const double most = 0.5 * tuning::kNearPointMargin * step.simulation.lengths.blockHeight_m / step_s;
-  bool any = false;
-  for (RigidBody& body : island.bodies) {
-    const double change = (body.velocity - body.before.velocity).norm() + (body.spin - body.before.spin).norm() * body.radius_m;
-    body.outruns = change > most;
-    any = any || body.outruns;
-  }
-  if (!any) return;
-  const auto outruns = [&](std::int32_t body) {
-    return body != unmovedBody(island) && island.bodies[static_cast<std::size_t>(body)].outruns;
-  };
+  if (!markOutrunning(step, island, step_s)) return;
   std::swap(island.fastPairs, island.fastPairsBefore);
   island.fastPairs.clear();
   auto fast = island.fastPairsBefore.begin();
-  for (const std::int32_t pair : island.listedPairs) {
-    const bool isFast = fast != island.fastPairsBefore.end() && *fast == pair;
+  auto group = island.steady.groups.begin();
+  for (ListedPair& listed : island.listedPairs) {
+    const bool isFast = fast != island.fastPairsBefore.end() && *fast == listed.pair;
     if (isFast) ++fast;
-    const PairBodies of = bodiesOf(step, island, pair);
-    if (!isFast && !outruns(of.body[0]) && !outruns(of.body[1])) continue;
-    std::uint8_t& covered = step.engine.scratch.covered[static_cast<std::size_t>(pair)];
+    while (group != island.steady.groups.end() && group->pair < listed.pair) ++group;
+    PointGroup* points = group != island.steady.groups.end() && group->pair == listed.pair ? &*group : nullptr;
+    if (!isFast && !isOutrun(step, island, step_s, listed, points)) continue;
+    std::uint8_t& covered = step.engine.scratch.covered[static_cast<std::size_t>(listed.pair)];
     covered = std::max<std::uint8_t>(covered, 1);
-    island.fastPairs.push_back(pair);
+    island.fastPairs.push_back(listed.pair);
   }
 }
 
@@ -291,7 +365,7 @@ void listFastPoints(IslandStep& step, RigidIsland& island, bool firstSubstep) {
     const double reach = motion + tuning::kNearPointMargin * h;
     findPoints(step, island, of, reach, false, near);
     if (near.count == 0) continue;
-    addGroup(island, of, near, reach, motion, island.fast);
+    addGroup(step, island, of, near, reach, motion, island.fast);
     warmStartLast(step, island, before, step.drift_s, island.fast);
   }
   removeFastFromSteady(island);
@@ -335,8 +409,8 @@ void keepPoints(IslandStep& step, RigidIsland& island) {
       if (pushes) step.engine.scratch.covered[static_cast<std::size_t>(group.pair)] = kCoveredAndMet;
     }
   }
-  for (const std::int32_t pair : island.listedPairs) {
-    const auto at = static_cast<std::size_t>(pair);
+  for (const ListedPair& listed : island.listedPairs) {
+    const auto at = static_cast<std::size_t>(listed.pair);
     if (step.engine.scratch.covered[at] != kCoveredAndMet || step.engine.pairs.touches(at)) continue;
     savePair(step.engine, at);
     createTouching(step, at);

@@ -151,11 +151,12 @@ void stepThroughSubsteps(IslandStep& step, double begin_s, int substeps, bool ag
   RigidIsland& island = rigidIslandOf(step);
   const double step_s = step.drift_s;
   const double substep_s = step_s / substeps;
+  const bool sways = step.simulation.scene.gravity.sway_deg != 0.0;
   listPoints(step, island, substep_s, again);
   step.drift_s = substep_s;
   for (int i = 0; i < substeps; ++i) {
     step.time_s = begin_s + i * substep_s;
-    step.gravity = step.simulation.scene.gravity.at(step.time_s);
+    if (sways) step.gravity = step.simulation.scene.gravity.at(step.time_s);
     driveBodies(step, step.time_s, substep_s);
     if (i > 0) placeDriven(step, begin_s, step.time_s);
     if (i > 0) addOutrun(step, island, step_s);

@@ -39,6 +39,7 @@ struct RigidBody : RigidPose {
   Vec3 moved = Vec3::Zero();                                 ///< m, displacement so far in the step
   Vec3 turned = Vec3::Zero();                                ///< rad, rotation so far in the step, to first order
   bool pushed = false;                                       ///< whether a contact pushes it in this step
+  double fastestPoint_m_s = 0.0;                             ///< upper bound of the speed of its points at the start of the step
   bool outruns = false;  ///< whether its velocity has changed since the step began by more than the points listed allow for
 };
 
@@ -96,6 +97,13 @@ struct PointGroup {
   std::int32_t lane = 0;
 };
 
+/// A pair that was looked at before a step.
+struct ListedPair {
+  std::int32_t pair;      ///< position in engine.pairs
+  double motion_m = 0.0;  ///< upper bound of its relative motion in the step, at the speeds so far
+  double reach_m = 0.0;   ///< its points listed, or that it has none, hold up to this relative motion in the step
+};
+
 /// What scratch.covered says of a pair whose blocks have met in the step.
 inline constexpr std::uint8_t kCoveredAndMet = 2;
 
@@ -144,7 +152,7 @@ struct RigidIsland {
   PointList steadyKnown;                      ///< the same of the step before,
   PointList fastKnown;                        ///< of its last substep,
   PointList fastBefore;                       ///< and of the substep before
-  std::vector<std::int32_t> listedPairs;      ///< looked at for the step
+  std::vector<ListedPair> listedPairs;        ///< looked at for the step, ascending
   std::vector<std::int32_t> fastPairs;        ///< of these, whose points are found before a substep
   std::vector<std::int32_t> fastPairsBefore;  ///< working space
   bool knowsManifolds = false;                ///< points start with the forces of manifolds where no others are known

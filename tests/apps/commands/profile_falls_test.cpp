@@ -95,7 +95,8 @@ TEST_F(FallFiles, AreTimedWholeOnOneThreadAndTwo) {
 TEST_F(FallFiles, StandBesideBulletWithItsSteps) {
   ASSERT_TRUE(std::filesystem::exists(std::filesystem::path(SPRINGTOWER_BINARY_DIR) / "bin" / "peers_bullet"));
   int steps = 2;
-  for (const Json& peer : json().at("cases").at(0).at("peers")) {
+  const Json report = json();
+  for (const Json& peer : report.at("cases").at(0).at("peers")) {
     SCOPED_TRACE(peer.dump());
     EXPECT_EQ(peer.at("engine"), "bullet");
     EXPECT_EQ(peer.at("substeps").get<int>(), steps *= 2);
