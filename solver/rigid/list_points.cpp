@@ -72,7 +72,7 @@ double relativeMotion(const IslandStep& step, const RigidIsland& island, const P
 }
 
 // The point in the axes of its bodies.
-void addConstraint(const RigidIsland& island, const PairBodies& of, const NearPoint& near,
+void addConstraint(const RigidIsland& island, const PairBodies& of, const NearPoint& near, double restitution,
                    std::vector<ContactConstraint>& points) {
   points.emplace_back();
   ContactConstraint& p = points.back();
@@ -96,6 +96,7 @@ void addConstraint(const RigidIsland& island, const PairBodies& of, const NearPo
     toLanes(island.bodies[static_cast<std::size_t>(turning)].axes.transpose() * near.normal, p.ownNormal);
   }
   p.gap = near.normal.dot(near.onA - near.onB);
+  p.restitution = restitution;
 }
 
 // A pair that is farther apart than the points looked for is separated, and is not looked at before its blocks have moved by
@@ -158,10 +159,7 @@ void addGroup(const IslandStep& step, const RigidIsland& island, const PairBodie
               double moved, PointList& list) {
   const auto first = static_cast<std::int32_t>(list.points.size());
   const double restitution = restitutionOf(step.simulation, {of.block[0], of.block[1]});
-  for (std::size_t i = 0; i < near.count; ++i) {
-    addConstraint(island, of, near.point[i], list.points);
-    list.points.back().restitution = restitution;
-  }
+  for (std::size_t i = 0; i < near.count; ++i) addConstraint(island, of, near.point[i], restitution, list.points);
   list.groups.push_back({of.pair, first, static_cast<std::int32_t>(near.count), reach, moved});
 }
 
@@ -185,9 +183,12 @@ class KnownPoints {
   std::array<std::size_t, 2> at_{};
 };
 
-// Whether points listed before still are all that may touch: neither have the blocks moved far since, nor will they now.
-bool isStillListed(const KnownGroup& known, double motion, double most) {
-  return known.isSteady && known.group->moved_m + motion < std::min(most, known.group->reach_m);
+// By how much blocks may still move against one another before points listed before are no longer all that may touch, m; none
+// where they were fast.
+double reachLeft(const IslandStep& step, const KnownGroup& known) {
+  if (!known.isSteady) return 0.0;
+  const double most = tuning::kMaxListedMotion * step.simulation.lengths.blockHeight_m;
+  return std::min(most, known.group->reach_m) - known.group->moved_m;
 }
 
 void takeOver(const KnownGroup& known, double motion, PointList& list) {
@@ -236,9 +237,9 @@ bool markOutrunning(const IslandStep& step, RigidIsland& island, double step_s) 
   return any;
 }
 
-// Whether a pair with such a body may move farther against one another in the step than its points, or that it has none, hold:
-// as if it had had its present speed from the start. What it may move more counts for the points in the steps to come.
-bool isOutrun(const IslandStep& step, const RigidIsland& island, double step_s, ListedPair& listed, PointGroup* points) {
+// Bounds the motion of a pair with such a body again, as if it had had its present speed from the start of the step: what it may
+// move more counts for its points in the steps to come. Returns whether it may move farther than they, or that it has none, hold.
+bool boundAgain(const IslandStep& step, const RigidIsland& island, double step_s, ListedPair& listed, PointGroup* points) {
   const PairBodies of = bodiesOf(step, island, listed.pair);
   const bool changed = std::any_of(of.body.begin(), of.body.end(), [&](std::int32_t body) {
     return body != unmovedBody(island) && island.bodies[static_cast<std::size_t>(body)].outruns;
@@ -252,6 +253,12 @@ bool isOutrun(const IslandStep& step, const RigidIsland& island, double step_s, 
   return false;
 }
 
+// How far two blocks that do not touch are apart at least, m.
+double gapOf(const IslandStep& step, std::size_t pair) {
+  const PairTable& pairs = step.engine.pairs;
+  return pairs.clearance[pair] - (travelOf(step.engine, pair) - pairs.travelAtCheck[pair]);
+}
+
 // An upper bound of the speed of a body's points, m/s.
 double fastestPoint(const RigidIsland& island, std::int32_t body) {
   return body == unmovedBody(island) ? 0.0 : island.bodies[static_cast<std::size_t>(body)].fastestPoint_m_s;
@@ -260,11 +267,10 @@ double fastestPoint(const RigidIsland& island, std::int32_t body) {
 // Whether two blocks do not touch, and cannot in the step, as they move now and fall: most near pairs of a heap that flies.
 bool isFarApart(const IslandStep& step, const RigidIsland& island, const PairBodies& of, ListedPair& listed) {
   const auto at = static_cast<std::size_t>(of.pair);
-  const PairTable& pairs = step.engine.pairs;
-  if (pairs.touches(at)) return false;
+  if (step.engine.pairs.touches(at)) return false;
   const double speed = fastestPoint(island, of.body[0]) + fastestPoint(island, of.body[1]);
   const double motion = (speed + step.simulation.scene.gravity.magnitude * step.drift_s) * step.drift_s;
-  const double gap = pairs.clearance[at] - (travelOf(step.engine, at) - pairs.travelAtCheck[at]);
+  const double gap = gapOf(step, at);
   if (gap <= motion + tuning::kNearPointMargin * step.simulation.lengths.blockHeight_m) return false;
   step.engine.scratch.covered[at] = 0;
   listed.motion_m = motion;
@@ -304,8 +310,8 @@ void listPoints(IslandStep& step, RigidIsland& island, double substep_s, bool ag
     const double motion = relativeMotion(step, island, of, step.drift_s);
     listed.motion_m = motion;
     engine.scratch.covered[at] = 1;
-    if (!again && isStillListed(before, motion, tuning::kMaxListedMotion * h)) {
-      listed.reach_m = std::min(tuning::kMaxListedMotion * h, before.group->reach_m) - before.group->moved_m;
+    listed.reach_m = reachLeft(step, before);
+    if (!again && motion < listed.reach_m) {
       takeOver(before, motion, island.steady);
       continue;
     }
@@ -314,7 +320,7 @@ void listPoints(IslandStep& step, RigidIsland& island, double substep_s, bool ag
     engine.scratch.covered[at] = 0;
     const bool touches = engine.pairs.touches(at);
     if (!touches && !step.simulation.scene.settings.continuousTests) continue;  // no contact begins
-    if (!touches && engine.pairs.clearance[at] - (travelOf(engine, at) - engine.pairs.travelAtCheck[at]) > reach) continue;
+    if (!touches && gapOf(step, at) > reach) continue;
     if (again && touches) reach = std::max(reach, pathOf(step, of));
     if (motion > tuning::kMaxSteadyMotion * h) {
       engine.scratch.covered[at] = 1;
@@ -342,7 +348,7 @@ void addOutrun(IslandStep& step, RigidIsland& island, double step_s) {
     if (isFast) ++fast;
     while (group != island.steady.groups.end() && group->pair < listed.pair) ++group;
     PointGroup* points = group != island.steady.groups.end() && group->pair == listed.pair ? &*group : nullptr;
-    if (!isFast && !isOutrun(step, island, step_s, listed, points)) continue;
+    if (!isFast && !boundAgain(step, island, step_s, listed, points)) continue;
     std::uint8_t& covered = step.engine.scratch.covered[static_cast<std::size_t>(listed.pair)];
     covered = std::max<std::uint8_t>(covered, 1);
     island.fastPairs.push_back(listed.pair);

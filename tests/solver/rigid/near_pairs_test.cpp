@@ -29,7 +29,7 @@ Scene turningPair() {
 }
 
 // Nothing holds the blocks on their circles: in a frame of t = 1/60 s each leaves its own by (w t)^2 / 2 of its radius, 26
-// micrometres, so both move 52 against one another. Their fastest corners move by 6 mm in space, which no list would outlast.
+// micrometres, so both move 52 against one another. Their speeds in space would add up to 8 mm, half a millimetre in each step.
 TEST(NearPairs, OfBlocksThatTurnAsOneAreListedOnce) {
   Simulation simulation(turningPair());
   prepareAndStep(simulation);
