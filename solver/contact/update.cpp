@@ -20,13 +20,13 @@ namespace {
 
 // Motion of a block in a step.
 struct BlockTravel {
-  double path;      // m, of its fastest corner
-  double deformed;  // m2, squared displacements of the corners relative to their mean, summed
+  double path;    // m, of its fastest corner
+  double spread;  // m2, squared displacements of the corners relative to their mean, summed
 };
 
 SPRINGTOWER_INLINE BlockTravel blockTravel(const ParticleArray& now, const ParticleArray& before, std::size_t b) {
   Lanes squared[2] = {};
-  Lanes deformed = {};
+  Lanes spread = {};
   for (std::size_t a = 0; a < 3; ++a) {
     Lanes moved[2];
     for (std::size_t half = 0; half < 2; ++half) {
@@ -37,10 +37,24 @@ SPRINGTOWER_INLINE BlockTravel blockTravel(const ParticleArray& now, const Parti
       squared[half] += moved[half] * moved[half];
     }
     const double mean = sum(moved[0] + moved[1]) / static_cast<double>(kCorners);
-    for (const Lanes& corners : moved) deformed += (corners - mean) * (corners - mean);
+    for (const Lanes& corners : moved) spread += (corners - mean) * (corners - mean);
   }
   const Lanes most = squared[0] > squared[1] ? squared[0] : squared[1];
-  return {std::sqrt(std::max(std::max(most[0], most[1]), std::max(most[2], most[3]))), sum(deformed)};
+  return {std::sqrt(std::max(std::max(most[0], most[1]), std::max(most[2], most[3]))), sum(spread)};
+}
+
+// Change of a block's shape in a step, m2: squared changes of the distances between its corners, summed over pairs, over the
+// number of corners. Rotation changes none; what else spreads the corners is at most BlockTravel::spread (the sum of squares
+// about the mean is that over pairs over their number).
+double shapeChange(const ParticleArray& now, const ParticleArray& before, std::size_t b) {
+  double squared = 0.0;
+  for (std::size_t c = 0; c < kCorners; ++c) {
+    for (std::size_t d = 0; d < c; ++d) {
+      const double change = (now.at(b, c) - now.at(b, d)).norm() - (before.at(b, c) - before.at(b, d)).norm();
+      squared += change * change;
+    }
+  }
+  return squared / static_cast<double>(kCorners);
 }
 
 // A path longer than the margin of the box does not necessarily lead out of it.
@@ -61,21 +75,23 @@ struct Paths {
   bool asAssumed = true;  // none has a longer path than the list of active pairs assumes
 };
 
-// Adds the path of each block's fastest corner. A block of springs has diverged when its corners move relative to one another by
-// half its least side in one step (a rigid block may have any spin), and every block has when it is faster than
-// tuning::kMaxSpeed, as larger swept boxes would be tried without end. The condition is written so that NaN, which fails every
-// comparison, counts as diverged.
+// Adds the path of each block's fastest corner. A block of springs has diverged when its shape changes by half its least side in
+// one step, and every block has when it is faster than tuning::kMaxSpeed, as larger swept boxes would be tried without end. A
+// thin block that turns spreads its corners by more than that without any change of shape, which is looked at only then.
+// Conditions are written so that NaN, which fails every comparison, counts as diverged.
 SPRINGTOWER_KERNEL
 Paths addPathsOf(IslandStep& step, std::span<const std::int32_t> blocks) {
   Paths paths;
   const double farthest_m = tuning::kMaxSpeed * step.drift_s;
   for (const std::int32_t block : blocks) {
     const auto b = static_cast<std::size_t>(block);
-    const auto [path, deformed] = blockTravel(step.simulation.state.position, step.engine.memo.previous, b);
+    const ParticleArray& now = step.simulation.state.position;
+    const auto [path, spread] = blockTravel(now, step.engine.memo.previous, b);
     const double most = tuning::kMaxDeformationPerStep * step.simulation.model.dimensions[b].minCoeff();
     const double limit = step.pointKind == PointKind::penalty ? static_cast<double>(kCorners) * most * most
                                                               : std::numeric_limits<double>::infinity();
-    if (!(deformed < limit && path < farthest_m)) paths.diverged = std::min(paths.diverged, block);
+    const bool keepsShape = spread < limit || shapeChange(now, step.engine.memo.previous, b) < limit;
+    if (!(keepsShape && path < farthest_m)) paths.diverged = std::min(paths.diverged, block);
     BlockHistory& history = step.engine.memo.blockHistory[b];
     history.travel += path;
     step.engine.scratch.path[b] = path;
@@ -102,15 +118,17 @@ bool addTravel(IslandStep& step) {
   if (!paths.asAssumed) step.activeListSteps = 0;
   const std::int32_t diverged = paths.diverged;
   if (diverged == Paths{}.diverged) return paths.inside;
-  const auto [path, deformed] =
-      blockTravel(step.simulation.state.position, step.engine.memo.previous, static_cast<std::size_t>(diverged));
+  const ParticleArray& now = step.simulation.state.position;
+  const auto block = static_cast<std::size_t>(diverged);
+  const double path = blockTravel(now, step.engine.memo.previous, block).path;
+  const double change = shapeChange(now, step.engine.memo.previous, block);
   const double time = step.time_s + step.drift_s;
   std::string cause = "its positions are no longer finite";
-  if (std::isfinite(deformed) && path >= tuning::kMaxSpeed * step.drift_s) {
+  if (std::isfinite(change) && path >= tuning::kMaxSpeed * step.drift_s) {
     cause = fmt::format("it moved by {:.3g} m in one step of {:.3g} s", path, step.drift_s);
-  } else if (std::isfinite(deformed)) {
+  } else if (std::isfinite(change)) {
     cause = fmt::format("its corners moved apart by {:.3g} m in one step of {:.3g} s",
-                        std::sqrt(deformed / static_cast<double>(kCorners)), step.drift_s);
+                        std::sqrt(change / static_cast<double>(kCorners)), step.drift_s);
   }
   throw DivergenceError(fmt::format("block {} diverged at {:.6f} s: {}", diverged, time, cause), diverged, time);
 }
