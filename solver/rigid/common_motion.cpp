@@ -71,16 +71,12 @@ void restoreAngularMomentum(const Vec3& momentum, RigidIsland& island) {
   }
 }
 
-void removeAddedEnergy(bool isolated, double added_j, RigidIsland& island) {
+void removeAddedEnergy(double added_j, RigidIsland& island) {
   if (added_j <= 0.0) return;
-  Momenta common;
-  Vec3 spin = Vec3::Zero();
-  double relative_j = kineticEnergy(island.bodies);
-  if (isolated) {
-    common = momentaOf(island);
-    spin = common.moment.inverse() * common.angular;
-    relative_j -= 0.5 * (common.mass * common.velocity.squaredNorm() + spin.dot(common.angular));
-  }
+  const Momenta common = momentaOf(island);
+  const Vec3 spin = common.moment.inverse() * common.angular;
+  const double relative_j =
+      kineticEnergy(island.bodies) - 0.5 * (common.mass * common.velocity.squaredNorm() + spin.dot(common.angular));
   if (!(relative_j > 0.0)) return;
   const double left = std::sqrt(std::max(0.0, 1.0 - added_j / relative_j));
   for (RigidBody& body : island.bodies) {

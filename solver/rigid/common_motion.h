@@ -17,8 +17,8 @@ Vec3 angularMomentum(const RigidIsland& island);
 /// than they keep, and friction acts on two blocks as far apart as they overlap: by that much it is off after a substep.
 void restoreAngularMomentum(const Vec3& momentum, RigidIsland& island);
 
-/// Where push-out or unconverged passes have raised the kinetic energy by `added_j` (J) beyond the work of gravity: scales the
-/// velocities down by the excess. Of an isolated island, only the motion relative to that of the whole is scaled.
-void removeAddedEnergy(bool isolated, double added_j, RigidIsland& island);
+/// Where push-out or unconverged passes have raised the kinetic energy of an isolated island by `added_j` (J) beyond the work of
+/// gravity: scales the motion relative to that of the whole down by the excess.
+void removeAddedEnergy(double added_j, RigidIsland& island);
 
 }  // namespace springtower

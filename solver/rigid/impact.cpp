@@ -110,6 +110,10 @@ bool markPushedByPoints(const IslandStep& step, RigidIsland& island) {
   return any;
 }
 
+double kineticEnergy(const RigidBody& body) {
+  return 0.5 * twiceKinetic(body, body.velocity, body.spin, body.velocity, body.spin);
+}
+
 double kineticEnergy(const std::vector<RigidBody>& bodies) {
   double twice = 0.0;
   for (const RigidBody& body : bodies) {

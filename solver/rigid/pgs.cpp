@@ -1,5 +1,6 @@
 #include "core/tuning.h"
 #include "solver/contact/evaluate_forces.h"
+#include "solver/rigid/added_energy.h"
 #include "solver/rigid/common_motion.h"
 #include "solver/rigid/constraints.h"
 #include "solver/rigid/impact.h"
@@ -254,8 +255,10 @@ void stepImpulses(IslandStep& step, RigidIsland& island) {
   if (isolated) restoreAngularMomentum(momentum, island);
   // Not in the rigid methods: there, blocks of a stack move by such slow pushes only, and the clamp would suppress them.
   // Nor with a driven block, which does work.
-  if (rigidMode && island.touches && step.driven.empty())
-    removeAddedEnergy(isolated, kineticEnergy(island.bodies) - island.energyBefore_j, island);
+  if (rigidMode && island.touches && step.driven.empty()) {
+    const double added_j = kineticEnergy(island.bodies) - island.energyBefore_j;
+    isolated ? removeAddedEnergy(added_j, island) : takeGivenEnergy(added_j, step.drift_s, island);
+  }
   if (rigidMode) {
     if (!isolated) lowerUnpaid(step, island);
     island.gained_j += kineticEnergy(island.bodies) - island.energyBefore_j;
