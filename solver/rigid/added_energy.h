@@ -13,7 +13,7 @@ namespace springtower {
 /// proportion to the difference of their masses over the sum, through tuning::kHandOnSweeps blocks: a light block hands on what
 /// it gets. The rest of `added_j` (J, of the island, beyond the work of gravity) is that of the springs, which lift the blocks
 /// that they carry: to take it from the velocities of all would brake what moves elsewhere, and a block that tips slowly on a
-/// wall of forty would stand still (docs/adr/0019-energy-of-contacts.md).
+/// wall of 240 would stand still (docs/adr/0019-energy-of-contacts.md).
 void takeGivenEnergy(double added_j, double step_s, RigidIsland& island);
 
 }  // namespace springtower
