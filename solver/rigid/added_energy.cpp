@@ -5,15 +5,17 @@
 #include "solver/rigid/packs.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 
 namespace springtower {
 
 namespace {
 
-// Energy of a point's springs at a gap, J: as far as what lasts of its force compresses them they are linear, beyond that the
-// force is that.
+// Energy of a point's springs at a gap, J: linear up to the overlap that what lasts of their force makes, of that force beyond
+// it.
 SPRINGTOWER_INLINE void findStored(const PackedPoint& p, const Lanes& gap, double step_s, Lanes& stored) {
   const Lanes zero = {0.0, 0.0, 0.0, 0.0};
   Lanes overlap, linear;
@@ -51,50 +53,50 @@ bool pushes(const PackedPoints& packed, const PackedPair& pair, int lane) {
   return std::ranges::any_of(pointsOf(packed, pair), [&](const PackedPoint& p) { return p.push[lane] > 0.0; });
 }
 
-// A body that impulses move, or none.
-RigidBody* movedBody(RigidIsland& island, std::int32_t at) {
-  if (at == unmovedBody(island)) return nullptr;
-  RigidBody& body = island.bodies[static_cast<std::size_t>(at)];
-  return body.inverseMass > 0.0 ? &body : nullptr;
+// The upper and the lower body of a pair; none where impulses do not move it, and in a lane without a pair.
+std::array<RigidBody*, 2> movedBodies(RigidIsland& island, const PackedPair& pair, std::size_t lane) {
+  const auto at = [&](std::uint8_t moves, std::int32_t body) {
+    return (moves >> lane & 1) != 0 ? &island.bodies[static_cast<std::size_t>(body)] : nullptr;
+  };
+  return {at(pair.movesUpper, pair.upper[lane]), at(pair.movesLower, pair.lower[lane])};
 }
 
-// Runs visit(packed, pair, lane, upper, lower) for each pair that has points.
-template <class Visit>
-void overPairsOf(RigidIsland& island, const Visit& visit) {
+void findGiven(RigidIsland& island, double step_s) {
+  for (RigidBody& body : island.bodies) body.given_j = body.handedOn_j = 0.0;
   for (const PackedPoints* packed : packsOf(island)) {
     for (const PackedPair& pair : packed->pairs) {
+      Lanes given;
+      findGivenBy(island, *packed, pair, step_s, given);
       for (std::size_t lane = 0; lane < kPackedPairs; ++lane) {
-        if (pair.group[lane] < 0) continue;
-        visit(*packed, pair, static_cast<int>(lane), movedBody(island, pair.upper[lane]), movedBody(island, pair.lower[lane]));
+        for (RigidBody* body : movedBodies(island, pair, lane)) {
+          if (body != nullptr) body->given_j += given[static_cast<int>(lane)];
+        }
       }
     }
   }
 }
 
-void findGiven(RigidIsland& island, double step_s) {
-  for (RigidBody& body : island.bodies) body.given_j = body.handedOn_j = 0.0;
-  const PackedPair* last = nullptr;
-  Lanes given{};
-  overPairsOf(island, [&](const PackedPoints& packed, const PackedPair& pair, int lane, RigidBody* upper, RigidBody* lower) {
-    if (&pair != last) findGivenBy(island, packed, pair, step_s, given);
-    last = &pair;
-    if (upper != nullptr) upper->given_j += given[lane];
-    if (lower != nullptr) lower->given_j += given[lane];
-  });
+// From the lighter to the heavier of two blocks, by what the lighter one has been given and handed on so far.
+void handOnWithin(RigidIsland& island, const PackedPoints& packed, const PackedPair& pair, std::size_t lane) {
+  const auto [upper, lower] = movedBodies(island, pair, lane);
+  if (upper == nullptr || lower == nullptr || upper->inverseMass == lower->inverseMass) return;
+  if (!pushes(packed, pair, static_cast<int>(lane))) return;
+  const bool up = lower->inverseMass > upper->inverseMass;
+  const RigidBody& light = up ? *lower : *upper;
+  RigidBody& heavy = up ? *upper : *lower;
+  heavy.handedOn_j += light.mostGiven_j * (light.inverseMass - heavy.inverseMass) / (light.inverseMass + heavy.inverseMass);
 }
 
-// Energy that lighter blocks hand on, by what these have been given and handed on themselves so far.
 void handOn(RigidIsland& island) {
   for (RigidBody& body : island.bodies) {
     body.mostGiven_j = body.given_j + body.handedOn_j;
     body.handedOn_j = 0.0;
   }
-  overPairsOf(island, [&](const PackedPoints& packed, const PackedPair& pair, int lane, RigidBody* upper, RigidBody* lower) {
-    if (upper == nullptr || lower == nullptr || upper->inverseMass == lower->inverseMass || !pushes(packed, pair, lane)) return;
-    RigidBody& light = upper->inverseMass > lower->inverseMass ? *upper : *lower;
-    RigidBody& heavy = &light == upper ? *lower : *upper;
-    heavy.handedOn_j += light.mostGiven_j * (light.inverseMass - heavy.inverseMass) / (light.inverseMass + heavy.inverseMass);
-  });
+  for (const PackedPoints* packed : packsOf(island)) {
+    for (const PackedPair& pair : packed->pairs) {
+      for (std::size_t lane = 0; lane < kPackedPairs; ++lane) handOnWithin(island, *packed, pair, lane);
+    }
+  }
 }
 
 }  // namespace

@@ -254,12 +254,11 @@ void stepImpulses(IslandStep& step, RigidIsland& island) {
   relaxAndRebound(step, island, scene.settings.iterations);
   if (isolated) restoreAngularMomentum(momentum, island);
   // Not in the rigid methods: there, blocks of a stack move by such slow pushes only, and the clamp would suppress them.
-  // Nor with a driven block, which does work.
-  if (rigidMode && island.touches && step.driven.empty()) {
-    const double added_j = kineticEnergy(island.bodies) - island.energyBefore_j;
-    isolated ? removeAddedEnergy(added_j, island) : takeGivenEnergy(added_j, step.drift_s, island);
-  }
   if (rigidMode) {
+    const double added_j = kineticEnergy(island.bodies) - island.energyBefore_j;
+    const bool worksAlone = island.touches && step.driven.empty();  // a driven block does work
+    if (worksAlone && isolated) removeAddedEnergy(added_j, island);
+    if (worksAlone && !isolated) takeGivenEnergy(added_j, step.drift_s, island);
     if (!isolated) lowerUnpaid(step, island);
     island.gained_j += kineticEnergy(island.bodies) - island.energyBefore_j;
   }

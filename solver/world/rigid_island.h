@@ -39,8 +39,8 @@ struct RigidBody : RigidPose {
   Vec3 moved = Vec3::Zero();                                 ///< m, displacement so far in the step
   Vec3 turned = Vec3::Zero();                                ///< rad, rotation so far in the step, to first order
   double given_j = 0.0;                                      ///< J, most that contacts have added to its motion in the substep
-  double mostGiven_j = 0.0;                                  ///< J, both, one sweep earlier
   double handedOn_j = 0.0;                                   ///< J, likewise through a lighter block that pushes on it
+  double mostGiven_j = 0.0;                                  ///< J, both together, one sweep before
   bool pushed = false;                                       ///< whether a contact pushes it in this step
   double fastestPoint_m_s = 0.0;                             ///< upper bound of the speed of its points at the start of the step
   bool outruns = false;  ///< whether its velocity has changed since the step began by more than the points listed allow for
