@@ -32,8 +32,8 @@ bool isAboutToRebound(const IslandStep& step);
 enum class FirstContact { none, added, impact };
 
 /// Looks for first contacts in the implicit step just computed. The start of the step is not sufficient for this: within a step a
-/// hand may change the direction of its block. Overlapping blocks get their manifolds; the step then has to be solved again with
-/// them, from its start. Precondition: the trial points are those of the step's end.
+/// hand may change the direction of its block. Overlapping blocks get their manifolds; the step then has to be solved on with
+/// them. Precondition: the trial points are those of the step's end.
 FirstContact findFirstContacts(IslandStep& step);
 
 }  // namespace springtower

@@ -38,7 +38,7 @@ bool actsNearer(const ManifoldShape& contact) {
 // Tangents of a touching pair with this active set: one for every four points, and another for their friction where it acts
 // elsewhere.
 std::size_t tangentCount(const IslandStep& step, const NewtonSystem& island, std::size_t at, ActiveSetBits mask) {
-  if ((mask & 0xFFU) == 0) return 0;
+  if ((mask & kAllPoints) == 0) return 0;
   const std::int32_t contact = step.engine.pairs.contact[static_cast<std::size_t>(island.touching[at])];
   const auto pair = static_cast<std::size_t>(island.touching[at]);
   const bool nearer = step.engine.contacts.shape(contact).slips && actsNearer(contactOf(step.engine, pair));
@@ -65,7 +65,7 @@ void setPair(const IslandStep& step, const ContactView& m, const Vec3& normal, C
 // Writes a pair's tangents; returns the place behind them.
 ContactTangent* putPair(const IslandStep& step, const NewtonSystem& island, std::size_t at, ActiveSetBits mask, Part part,
                         double step_s, ContactTangent* to) {
-  if ((mask & 0xFFU) == 0) return to;
+  if ((mask & kAllPoints) == 0) return to;
   const Engine& engine = step.engine;
   const auto pair = static_cast<std::size_t>(island.touching[at]);
   const ContactView m = contactOf(engine, pair);
@@ -89,7 +89,7 @@ ContactTangent* putPair(const IslandStep& step, const NewtonSystem& island, std:
       across.followsPush = true;
     }
     for (std::size_t i = first; i < std::min(first + 4, static_cast<std::size_t>(m.count)); ++i) {
-      if ((mask >> i & 1U) == 0) continue;
+      if ((mask & kPushBit << i) == 0) continue;
       const std::size_t lane = i - first;
       const PointStiffness resists = pointStiffness(step, m, trial, mask, i, step_s);
       setWeights(engine.memo.frames[upper], points.place[i], lane, tangent.upperWeight);
@@ -106,7 +106,7 @@ ContactTangent* putPair(const IslandStep& step, const NewtonSystem& island, std:
       for (std::size_t k = 0; k < 3; ++k)
         tangent.slip[k][lane] = across.slip[k][lane] = resists.slip[static_cast<Eigen::Index>(k)];
       across.alongSlip[lane] = -sign * resists.tangential;
-      const bool slides = (mask >> (8 + i) & 1U) != 0;
+      const bool slides = (mask & kSlideBit << i) != 0;
       if (part == Part::factors || !slides) continue;
       across.coupling[lane] = friction * resists.normal;
       const double push = pushOf(step.law, trial, i, stiffness, points.depth[i]);
@@ -149,6 +149,17 @@ void appendTangents(const IslandStep& step, NewtonSystem& island, const Count& c
   });
 }
 
+// Whether the Maxwell branch of a point that pushes has nothing left to release: its relaxed depth is at the bound that follows
+// the elastic depth, so that only the damping resists.
+SPRINGTOWER_INLINE bool isSpent(const IslandStep& step, const PenaltyRow& before, const PenaltyRow& now, std::size_t lane) {
+  const ContactLaw& law = step.law;
+  const double relaxed = now.maxwellDepth[lane];
+  if (!(relaxed < before.maxwellDepth[lane]) || !(law.maxwellRatio > 0.0) || now.touching[lane] != 1.0) return false;
+  const double elastic = relaxed / (1.0 + 1.0 / law.maxwellRatio);  // if it is at the bound
+  const double lag = before.maxwellDepth[lane] - elastic;
+  return elastic + lag * law.maxwellTime_s / (law.maxwellTime_s + step.drift_s) >= relaxed;
+}
+
 // Adds sign * [sum f, sums f times weight] to one block's forces.
 SPRINGTOWER_INLINE void addSums(const Lanes (&f)[3], const Lanes (&weight)[3], double sign, double* force) {
   for (std::size_t k = 0; k < 3; ++k) {
@@ -167,21 +178,23 @@ ActiveSetBits activeSetBits(const IslandStep& step, const NewtonSystem& island, 
   const ContactPool& contacts = step.engine.contacts;
   const std::int32_t contact = step.engine.pairs.contact[static_cast<std::size_t>(island.touching[at])];
   const ConstPointRows trial = contacts.trial(contact);
-  const ConstPointRows slid = island.trialIsAhead ? trial : contacts.points(contact);
+  const ConstPointRows before = contacts.points(contact);
+  const ConstPointRows& slid = island.trialIsAhead ? trial : before;
   const auto count = static_cast<std::size_t>(contacts.shape(contact).count);
   if (island.assumesSupport) return allPush(count);
   const double least = island.useConsistentTangent ? 1.0 : kTouchingWithoutForce;
-  unsigned mask = 0;
+  ActiveSetBits mask = 0;
   for (std::size_t first = 0; first < count; first += kRowPoints) {
-    const FourValues& touching = trial[rowOf(first)]->penalty.touching;
+    const PenaltyRow& now = trial[rowOf(first)]->penalty;
     const FourValues& slipRatio = slid[rowOf(first)]->penalty.slipRatio;
     for (std::size_t lane = 0; lane < kRowPoints && first + lane < count; ++lane) {
-      if (touching[lane] < least) continue;
-      mask |= 1U << (first + lane);
-      if (slipRatio[lane] != 0.0) mask |= 0x100U << (first + lane);
+      if (now.touching[lane] < least) continue;
+      mask |= kPushBit << (first + lane);
+      if (slipRatio[lane] != 0.0) mask |= kSlideBit << (first + lane);
+      if (isSpent(step, before[rowOf(first)]->penalty, now, lane)) mask |= kSpentBit << (first + lane);
     }
   }
-  return static_cast<ActiveSetBits>(mask);
+  return mask;
 }
 
 PointStiffness pointStiffness(const IslandStep& step, const ContactView& manifold, const ContactView& trial, ActiveSetBits mask,
@@ -199,10 +212,11 @@ PointStiffness pointStiffness(const IslandStep& step, const ContactView& manifol
   const bool smoothed = step.smoothing_j > 0.0;
   const double k = stiffness * (smoothed ? row.stiffening[lane] : std::max(1.0, row.stiffening[lane]));
   const double held = smoothed ? stiffness * stiffestOf(manifold.penalty(i)) : k;
+  const double spring = (mask & kSpentBit << i) != 0 ? 0.0 : 1.0 + relaxing;
   PointStiffness result;
-  result.normal = k * (1.0 + relaxing + (pushedBefore ? damping : law.dampingTime_s / step.drift_s));
+  result.normal = k * (spring + (pushedBefore ? damping : law.dampingTime_s / step.drift_s));
   result.tangential = held * (law.tangentialRatio * (1.0 + damping));
-  if ((mask >> (8 + i) & 1U) != 0) {
+  if ((mask & kSlideBit << i) != 0) {
     // Before the first displacement the slip of the step before applies.
     result.tangential *= row.slipRatio[lane] > 0.0 ? row.slipRatio[lane] : manifold.penalty(i).slipRatio[lane];
     result.slip = vectorAt(row.displacement, i).normalized();
@@ -212,9 +226,10 @@ PointStiffness pointStiffness(const IslandStep& step, const ContactView& manifol
 
 void findFactorTangents(const IslandStep& step, NewtonSystem& island, double step_s) {
   island.factorTangents.clear();
-  if (std::none_of(island.mask.begin(), island.mask.end(), [](ActiveSetBits mask) { return mask > 0xFFU; })) return;
+  if (std::none_of(island.mask.begin(), island.mask.end(), anySlides)) return;
   appendTangents(
-      step, island, [&](std::size_t at) { return island.mask[at] > 0xFFU ? tangentCount(step, island, at, island.mask[at]) : 0; },
+      step, island,
+      [&](std::size_t at) { return anySlides(island.mask[at]) ? tangentCount(step, island, at, island.mask[at]) : 0; },
       [&](std::size_t at, ContactTangent* to) { putPair(step, island, at, island.mask[at], Part::factors, step_s, to); },
       island.factorTangents);
 }
@@ -222,15 +237,15 @@ void findFactorTangents(const IslandStep& step, NewtonSystem& island, double ste
 void findTangents(const IslandStep& step, NewtonSystem& island, double step_s) {
   island.tangents = island.factorTangents;
   // The part in the factors, unless factorTangents has it already, and that of the present contacts.
-  const auto differs = [&](std::size_t at, ActiveSetBits mask) { return mask != island.mask[at] || mask > 0xFFU; };
+  const auto differs = [&](std::size_t at, ActiveSetBits mask) { return mask != island.mask[at] || anySlides(mask); };
   const auto count = [&](std::size_t at) {
     const ActiveSetBits mask = activeSetBits(step, island, at);
     if (!differs(at, mask)) return std::size_t{0};
-    const std::size_t known = island.mask[at] > 0xFFU ? 0 : tangentCount(step, island, at, island.mask[at]);
+    const std::size_t known = anySlides(island.mask[at]) ? 0 : tangentCount(step, island, at, island.mask[at]);
     return known + tangentCount(step, island, at, mask);
   };
   const auto put = [&](std::size_t at, ContactTangent* to) {
-    if (island.mask[at] <= 0xFFU) to = putPair(step, island, at, island.mask[at], Part::factors, step_s, to);
+    if (!anySlides(island.mask[at])) to = putPair(step, island, at, island.mask[at], Part::factors, step_s, to);
     putPair(step, island, at, activeSetBits(step, island, at), Part::contacts, step_s, to);
   };
   appendTangents(step, island, count, put, island.tangents);

@@ -66,7 +66,7 @@ ActiveSet activeSetNow(const IslandStep& step, const NewtonSystem& island) {
     for (std::size_t i = first; i < last; ++i) {
       const ActiveSetBits mask = activeSetBits(step, island, i);
       set.changed = set.changed || mask != island.mask[i];
-      set.slides = set.slides || mask > 0xFFU;
+      set.slides = set.slides || anySlides(mask);
     }
     return set;
   };
@@ -343,18 +343,33 @@ double farthestMoved_m(const IslandStep& step) {
   });
 }
 
+// What Newton's iteration begins with.
+enum class Begin {
+  resting,  // the present positions, or the extrapolated ones where forces are not in equilibrium
+  carried,  // the extrapolated positions
+  placed,   // the present positions and velocities, those of another solution of the step
+};
+
+// Places the blocks where the iteration begins. Returns the residual there.
+double beginStep(IslandStep& step, NewtonSystem& island, double effective_s, Begin begin, const NewtonOptions& how,
+                 StageClock& clock) {
+  island.trialIsAhead = begin == Begin::placed;
+  if (begin == Begin::placed) return evaluateResidual(step, island, effective_s, clock);
+  const double residual = begin == Begin::carried ? 0.0 : findResidual(step, island, effective_s);
+  if (begin == Begin::resting && !(residual > tuning::kPredictorResidual)) return residual;
+  return beginPredicted(step, island, effective_s, how, clock);
+}
+
 // Newton's iteration for the state at the step's end, from engine.scratch.freePosition and engine.scratch.pastPosition.
-// Precondition: engine.memo.force holds the forces at the present positions, unless `carried` (the step starts from the
-// extrapolated positions). Returns whether it converged.
-bool solveStep(IslandStep& step, double effective_s, bool carried, const NewtonOptions& how) {
+// Precondition: engine.memo.force holds the forces at the present positions, if the step begins `resting`. Returns whether it
+// converged.
+bool solveStep(IslandStep& step, double effective_s, Begin begin, const NewtonOptions& how) {
   NewtonSystem& island = islandOf(step);
   StageClock clock(step.times);
   layOut(step, island);
   island.trialIsAhead = false;
   if (island.step_s != effective_s || tetherStiffness(step, effective_s) != island.tether) island.factorised = false;
-  double residual = island.exceedsFill || carried ? 0.0 : findResidual(step, island, effective_s);
-  if (!island.exceedsFill && (carried || residual > tuning::kPredictorResidual))
-    residual = beginPredicted(step, island, effective_s, how, clock);
+  double residual = island.exceedsFill ? 0.0 : beginStep(step, island, effective_s, begin, how, clock);
   const double enough = std::clamp(how.enough * residual, how.leastEnough, std::max(how.leastEnough, tuning::kMaxMotionResidual));
   const bool wide = step.blocks.size() > tuning::kNarrowBlocks && !island.exceedsFill;
   if (wide && !island.trialIsAhead) residual = evaluateInPlace(step, island, effective_s, clock);
@@ -447,18 +462,15 @@ bool stepImplicit(IslandStep& step, bool canRetryFiner) {
   step.twoStep ? predictBdf2(step, effective_s) : predictEuler(step, effective_s);
   const NewtonOptions& how = canRetryFiner ? kBeforeFiner : kInMotion;
   placeDriven(step, step.time_s, end_s);
-  bool converged = solveStep(step, effective_s, carried || drives, how);
+  bool converged = solveStep(step, effective_s, carried || drives ? Begin::carried : Begin::resting, how);
   for (int trial = 0; converged && trial < tuning::kMaxNewContactSolves; ++trial) {
     StageClock clock(step.times);
     const FirstContact met = findFirstContacts(step);
     clock.lap(Stage::candidates);
     if (met == FirstContact::impact) return finishStep(step, false);
     if (met == FirstContact::none) break;
-    restoreStep(step);
-    placeDriven(step, step.time_s, step.time_s);
-    evaluateForces(step, step.simulation.state, step.simulation.state.velocity, 0.0, PointUpdate::trial);
-    placeDriven(step, step.time_s, end_s);
-    converged = solveStep(step, effective_s, drives, how);
+    // Only what the new contacts push away is wrong in what has been found.
+    converged = solveStep(step, effective_s, Begin::placed, how);
   }
   // At the start of a frame a force or the hand may jump; that is no vibration.
   const bool jumps = step.engine.memo.islandHistory[static_cast<std::size_t>(step.blocks.front())].forced &&
@@ -489,7 +501,7 @@ bool stepFromRest(IslandStep& step, double effective_s, StepFromRest kind) {
   if (kind == StepFromRest::coulomb && hasUnlikeLoads(step)) how.aim = tuning::kUnlikeMassesResidual;
   if (kind == StepFromRest::supported) how.leastEnough = tuning::kStickingResidual;
   if (kind == StepFromRest::smoothed) how.leastEnough = tuning::kSmoothedResidual;
-  const bool converged = solveStep(step, effective_s, false, how);
+  const bool converged = solveStep(step, effective_s, Begin::resting, how);
   step.sticks = false;
   return finishStep(step, converged);
 }

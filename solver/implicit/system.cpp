@@ -110,7 +110,7 @@ void addManifold(const IslandStep& step, NewtonSystem& island, std::size_t at, d
   const auto pair = static_cast<std::size_t>(island.touching[at]);
   const ContactView m = contactOf(engine, pair);
   const ActiveSetBits mask = island.mask[at];
-  if ((mask & 0xFFU) == 0) return;
+  if ((mask & kAllPoints) == 0) return;
   const auto upper = static_cast<std::size_t>(m.upper);
   const BlockFrame& frameUpper = engine.memo.frames[upper];
   const BlockFrame* frameLower = m.lower < 0 ? nullptr : &engine.memo.frames[static_cast<std::size_t>(m.lower)];
@@ -133,9 +133,9 @@ void addManifold(const IslandStep& step, NewtonSystem& island, std::size_t at, d
 
   Coupling upperNormal{}, upperTangential{}, lowerNormal{}, lowerTangential{}, crossNormal{}, crossTangential{};
   for (std::size_t i = 0; i < static_cast<std::size_t>(m.count); ++i) {
-    if ((mask >> i & 1U) == 0) continue;
+    if ((mask & kPushBit << i) == 0) continue;
     const auto [normal, tangential, along] = pointStiffness(step, m, trial, mask, i, step_s);
-    const bool slides = (mask >> (8 + i) & 1U) != 0;
+    const bool slides = (mask & kSlideBit << i) != 0;
     const Weights wu = weightsAt(frameUpper, points.place[i]);
     const Weights su = m.slips ? weightsAt(frameUpper, points.slipPlace[i]) : wu;  // where friction acts
     if (slides && ofUpper != nullptr) takeAlong(tangential, su, su, along, ofUpper);

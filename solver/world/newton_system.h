@@ -12,8 +12,13 @@
 
 namespace springtower {
 
-/// Which points of a pair's manifold push (low byte) and which of them slide (high byte).
-using ActiveSetBits = std::uint16_t;
+/// Which points of a pair's manifold push (first byte), which of them slide (second), and which push by their damping alone, as
+/// their springs are spent (third).
+using ActiveSetBits = std::uint32_t;
+constexpr ActiveSetBits kPushBit = 0x1U;  ///< of point 0; that of point i is i places further
+constexpr ActiveSetBits kSlideBit = 0x100U;
+constexpr ActiveSetBits kSpentBit = 0x10000U;
+constexpr ActiveSetBits kAllPoints = 0xFFU;  ///< times one of these: of all eight points
 
 /// Linearised contact: how the forces of up to four points of a pair on upper change with the displacement g of upper against
 /// lower at each of them: isotropic g + n alongNormal (n . g) + s (alongSlip (s . g) + coupling (n . g)), n the normal and s the
@@ -108,6 +113,11 @@ inline void reset(NewtonSystem& island) {
   island.jacobianStep_s = 0.0;
   island.blockClassOf.clear();
   island.directions = 0;
+}
+
+/// Whether any point slides.
+inline bool anySlides(ActiveSetBits mask) {
+  return (mask & kAllPoints * kSlideBit) != 0;
 }
 
 /// The active set of a manifold of `count` points that all push and stick.
