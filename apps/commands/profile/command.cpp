@@ -50,7 +50,7 @@ half blocks at the ends), pyramids (cubes of 20 mm; bricks laid across), starts 
 half of what tips them over, many); of these three: the search for the equilibrium, depth, creep, what is required of some,
 Bullet with the steps that come nearest in depth, and the growth of cost with blocks; on one thread and two; some 2 minutes
 falls, each timed whole, awake, on one thread and two, with depth, energy, memory, what is required, and Bullet beside: topple
-(towers under gravity tilted by 14.5 degrees), hit (a block at 5 m/s), heaps, piles, rain; some 5 minutes
+(towers under gravity tilted by 14.5 degrees), hit (a block at 5 m/s), heaps, piles, rain; some 20 minutes
 
 examples:
   springtower profile --quick                                     a look at rest and collapse in a few seconds
