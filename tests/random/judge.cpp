@@ -38,7 +38,8 @@ double energyScale_j(const Simulation& simulation, const Energy& start) {
 }
 
 // What the hand and the scene's forces do to their blocks: the work of a frame is the mean of their forces at both ends times the
-// way.
+// way. The hand's force follows its block: where a blow changes it within a frame, the work is known to half of the change times
+// the way only.
 class Work {
  public:
   void beforeFrame(const Simulation& simulation) {
@@ -53,12 +54,15 @@ class Work {
 
   void afterFrame(const Simulation& simulation) {
     double done_j = 0.0;
+    doubt_j = 0.0;
     if (simulation.tether.block != kFloor) {
       const std::size_t b = index(simulation.tether.block);
       const GripForce now = gripForce(simulation);
       const Eigen::AngleAxisd turned(orientationOf(simulation.state.position, b) * turn_.conjugate());
       done_j += 0.5 * (hand_.force + now.force).dot(centre(simulation.state.position, b) - place_);
       done_j += 0.5 * (hand_.torque + now.torque).dot(turned.axis() * turned.angle());
+      doubt_j += 0.5 * (now.force - hand_.force).norm() * (centre(simulation.state.position, b) - place_).norm();
+      doubt_j += 0.5 * (now.torque - hand_.torque).norm() * std::abs(turned.angle());
     }
     const double frame_s = simulation.scene.settings.frame_s;
     for (std::size_t f = 0; f < simulation.scene.forces.size(); ++f) {
@@ -71,7 +75,8 @@ class Work {
   }
 
   double sum_j = 0.0;
-  double put_j = 0.0;  // without signs
+  double put_j = 0.0;    // without signs
+  double doubt_j = 0.0;  // by how much the work of the last frame may be wrong
 
  private:
   static Vec3 placeOf(const Simulation& simulation, const UserForce& force) {
@@ -84,7 +89,7 @@ class Work {
   std::vector<Vec3> places_;
 };
 
-// Largest rise of the energy above its least value before, less work.
+// Largest rise of the energy above its least value before, less work. It is watched anew after a frame whose work is not known.
 class EnergyWatch {
  public:
   void atStart(const Simulation& simulation) {
@@ -96,8 +101,11 @@ class EnergyWatch {
     work_.afterFrame(simulation);
     Energy now = energy(simulation);
     const double rise_j = energyRise(least_, now) - (work_.sum_j - workAtLeast_j_);
-    most_j_ = largerOrNan(most_j_, std::isfinite(rise_j) ? rise_j : std::numeric_limits<double>::quiet_NaN());
-    if (!(rise_j < 0.0)) return;
+    const bool known = !(work_.doubt_j > kMaxEnergyGain * (scale_j_ + work_.put_j));
+    if (known || !std::isfinite(rise_j)) {
+      most_j_ = largerOrNan(most_j_, std::isfinite(rise_j) ? rise_j : std::numeric_limits<double>::quiet_NaN());
+    }
+    if (known && !(rise_j < 0.0)) return;
     least_ = std::move(now);
     workAtLeast_j_ = work_.sum_j;
   }
