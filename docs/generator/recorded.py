@@ -135,7 +135,7 @@ def stacks(recorded, peers):
             f"`{stack}`", one["blocks"], number(one["cpu_ms_median"]) + (f" ({one['required_ms']})" if one["required_ms"] else ""),
             number(two["wall_ms_median"]) if two else "", number(one["penetration_mm"], 1), number(one["equilibrium_s"]),
             f"{float(other['substeps']):g}, {number(other['cpu_ms_median'])}, {number(other['penetration_mm'])}" if other else "",
-            f"{number(theirs['median_ms'])}, {number(theirs['penetration_end_mm'])}, {theirs['verdict']}" if theirs else ""))
+            f"{number(theirs['median_ms'])}, {number(theirs['penetration_end_mm'])}, {theirs['verdict'].split('@')[0]}" if theirs else ""))
     return table(["`--stacks`", "blocks", "ms, one thread (required)", "two threads", "penetration, mm", "equilibrium, s",
                   "Bullet: substeps, ms, penetration", "Box3D, 32 substeps: ms, penetration, verdict"], lines)
 
