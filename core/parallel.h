@@ -6,6 +6,7 @@
 #include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/parallel_reduce.h>
+#include <oneapi/tbb/partitioner.h>
 #include <oneapi/tbb/task_arena.h>
 
 #ifdef SPRINGTOWER_PLAIN_THREADS  // of CMake: std::thread instead of oneTBB, whose library ThreadSanitizer cannot see into
@@ -37,6 +38,23 @@ void forRanges(std::size_t count, std::size_t grain, bool parallel, const Kernel
 #else
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain),
                     [&](const tbb::blocked_range<std::size_t>& range) { kernel(range.begin(), range.end()); });
+#endif
+}
+
+/// The same, in as many ranges as there are threads, each on the same thread in every call, as far as they are free: what one
+/// call leaves in a core's cache the next one finds there.
+template <class Kernel>
+void forEqualRanges(std::size_t count, std::size_t grain, bool parallel, const Kernel& kernel) {
+#ifdef SPRINGTOWER_PLAIN_THREADS
+  forRanges(count, grain, parallel, kernel);
+#else
+  if (!parallel || threadsNow() == 1) {
+    kernel(std::size_t{0}, count);
+    return;
+  }
+  tbb::parallel_for(
+      tbb::blocked_range<std::size_t>(0, count, grain),
+      [&](const tbb::blocked_range<std::size_t>& range) { kernel(range.begin(), range.end()); }, tbb::static_partitioner());
 #endif
 }
 

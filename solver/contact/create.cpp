@@ -309,8 +309,8 @@ void createAhead(IslandStep& step, std::size_t at, double reach_m) {
   storeManifoldNow(step, at);
 }
 
-void createTouching(IslandStep& step, std::size_t at) {
-  if (storeManifoldNow(step, at)) ++step.counters.contactsCreated;
+void createTouching(IslandStep& step, std::size_t at, Counters& counters) {
+  if (storeManifoldNow(step, at)) ++counters.contactsCreated;
 }
 
 double clearanceNow(const Simulation& simulation, std::size_t at) {

@@ -14,7 +14,7 @@ void updateSeparated(IslandStep& step, std::size_t at, Counters& counters, Stage
 void createAhead(IslandStep& step, std::size_t at, double reach_m);
 
 /// Makes a separated pair a contact at the present positions.
-void createTouching(IslandStep& step, std::size_t at);
+void createTouching(IslandStep& step, std::size_t at, Counters& counters);
 
 /// Present gap (m) of a separated pair along its stored axis, at least 0.
 double clearanceNow(const Simulation& simulation, std::size_t at);

@@ -312,16 +312,6 @@ void recomputeClearances(IslandStep& step) {
   if (step.activeListSteps > 0) --step.activeListSteps;  // the start is one step away from the pose of the list
 }
 
-void refreshContacts(IslandStep& step, const RefreshTravel& renewal) {
-  StageClock clock(step.times);
-  const double least = minRefreshTravel(renewal);
-  for (const std::int32_t pair : step.activePairs) {
-    const auto at = static_cast<std::size_t>(pair);
-    if (step.engine.pairs.touches(at) && isDue(step.engine, at, least)) updatePair(step, at, renewal, step.counters, step.times);
-  }
-  clock.lap(Stage::candidates);
-}
-
 namespace {
 
 // What was done for a range of pairs. Wide islands are run side by side, so these are no buffers of the engine.
@@ -336,6 +326,24 @@ UpdateStatistics mergeStatistics(UpdateStatistics a, const UpdateStatistics& b) 
 }
 
 }  // namespace
+
+void refreshContacts(IslandStep& step, const RefreshTravel& renewal) {
+  StageClock clock(step.times);
+  const double least = minRefreshTravel(renewal);
+  const auto refreshRange = [&](std::size_t first, std::size_t last) {
+    UpdateStatistics done;
+    for (const std::int32_t pair : step.activePairs.subspan(first, last - first)) {
+      const auto at = static_cast<std::size_t>(pair);
+      if (step.engine.pairs.touches(at) && isDue(step.engine, at, least))
+        updatePair(step, at, renewal, done.counters, done.times);
+    }
+    return done;
+  };
+  const UpdateStatistics total =
+      mergeRanges(step.activePairs.size(), tuning::kPairChunk, isWide(step), UpdateStatistics{}, refreshRange, mergeStatistics);
+  step.counters += total.counters;
+  clock.lap(Stage::candidates);
+}
 
 bool updateContacts(IslandStep& step, const RefreshTravel& renewal) {
   StageClock clock(step.times);

@@ -1,6 +1,7 @@
 #include "solver/rigid/constraints.h"
 
 #include "core/tuning.h"
+#include "solver/rigid/over_bodies.h"
 #include "solver/rigid/packs.h"
 
 #include <limits>
@@ -201,10 +202,10 @@ void placeConstraints(const RigidIsland& island, const Springs& springs, PackedP
 }
 
 void moveGaps(RigidIsland& island) {
-  for (std::size_t i = 0; i < island.bodies.size(); ++i) {
+  overBodies(island, [&](std::size_t i) {
     toLanes(island.bodies[i].moved, island.motions[i].linear);
     toLanes(island.bodies[i].turned, island.motions[i].angular);
-  }
+  });
   for (ActingPoints* list : {&island.steady, &island.fast}) {
     PackedPoints& packed = list->packed;
     overPacks(packed, [&](std::size_t first, std::size_t last) { moveGapsOf(island.motions.data(), packed, first, last); });
@@ -215,7 +216,7 @@ void readBodies(RigidIsland& island) {
   const Lanes zero = {0.0, 0.0, 0.0, 0.0};
   island.places.resize(island.bodies.size() + 1);
   island.motions.resize(island.bodies.size() + 1);
-  for (std::size_t i = 0; i < island.bodies.size(); ++i) {
+  overBodies(island, [&](std::size_t i) {
     const RigidBody& body = island.bodies[i];
     BodyPlace& place = island.places[i];
     toLanes(body.place, place.centre);
@@ -225,7 +226,7 @@ void readBodies(RigidIsland& island) {
     }
     place.inverseMass = body.inverseMass;
     place.flies = body.pushed || body.inverseMass == 0.0 ? 0.0 : 1.0;
-  }
+  });
   BodyPlace& still = island.places.back();
   still = BodyPlace{};
   still.centre = zero;
@@ -238,17 +239,17 @@ void readBodies(RigidIsland& island) {
 }
 
 void readVelocities(RigidIsland& island) {
-  for (std::size_t i = 0; i < island.bodies.size(); ++i) {
+  overBodies(island, [&](std::size_t i) {
     toLanes(island.bodies[i].velocity, island.motions[i].linear);
     toLanes(island.bodies[i].spin, island.motions[i].angular);
-  }
+  });
 }
 
 void writeBodies(RigidIsland& island) {
-  for (std::size_t i = 0; i < island.bodies.size(); ++i) {
+  overBodies(island, [&](std::size_t i) {
     fromLanes(island.motions[i].linear, island.bodies[i].velocity);
     fromLanes(island.motions[i].angular, island.bodies[i].spin);
-  }
+  });
 }
 
 }  // namespace springtower

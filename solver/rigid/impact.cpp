@@ -1,15 +1,19 @@
 #include "solver/rigid/impact.h"
 
+#include "core/parallel.h"
 #include "core/tuning.h"
 #include "solver/contact/rigid_contacts.h"
 #include "solver/rigid/constraints.h"
+#include "solver/rigid/over_bodies.h"
 #include "solver/rigid/packs.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <span>
 
 namespace springtower {
 
@@ -66,46 +70,55 @@ void setImpacts(const IslandStep& step, RigidIsland& island) {
 }
 
 double fastestImpact(const RigidIsland& island) {
+  const Lanes zero = {0.0, 0.0, 0.0, 0.0};
   double fastest = 0.0;
   for (const PackedPoints* packed : packsOf(island)) {
-    for (const std::int32_t i : packed->active) {
-      const PackedPair& pair = packed->pairs[static_cast<std::size_t>(i)];
-      for (const PackedPoint& p : pointsOf(*packed, pair)) {
-        for (int lane = 0; lane < kPackedPairs; ++lane)
-          if (p.push[lane] > 0.0) fastest = std::max(fastest, p.impact[lane]);
+    const auto fastestOf = [&](std::size_t first, std::size_t last) {
+      Lanes most = zero;
+      for (std::size_t i = first; i < last; ++i) {
+        for (const PackedPoint& p : pointsOf(*packed, packed->pairs[static_cast<std::size_t>(packed->active[i])])) {
+          const Lanes impact = p.push > zero ? p.impact : zero;
+          largerOf(impact, most, most);
+        }
       }
-    }
+      return std::max(std::max(most[0], most[1]), std::max(most[2], most[3]));
+    };
+    const std::size_t count = packed->active.size();
+    fastest = mergeRanges(count, tuning::kPairGrain, count >= 2 * tuning::kPairGrain, fastest, fastestOf,
+                          [](double x, double y) { return std::max(x, y); });
   }
   return fastest;
 }
 
 bool markPushedByPoints(const IslandStep& step, RigidIsland& island) {
   const double least_m_s = tuning::kRoundingPush * step.simulation.scene.gravity.magnitude * step.drift_s;
-  for (RigidBody& body : island.bodies) body.pushed = false;
-  bool any = false;
+  overBodies(island, [&](std::size_t i) { island.bodies[i].pushed = false; });
+  std::atomic<bool> any = false;
   const auto mark = [&](std::int32_t at, double push) {
     if (at == unmovedBody(island)) return;
     RigidBody& body = island.bodies[static_cast<std::size_t>(at)];
     if (!(push * body.inverseMass > least_m_s)) return;
     body.pushed = true;
-    any = true;
+    any.store(true, std::memory_order_relaxed);
   };
   const Lanes zero = {0.0, 0.0, 0.0, 0.0};
   for (PackedPoints* packed : packsOf(island)) {
-    for (const std::int32_t i : packed->active) {
-      const PackedPair& pair = packed->pairs[static_cast<std::size_t>(i)];
-      Lanes most = zero;
-      for (PackedPoint& p : pointsOf(*packed, pair)) {
-        const LaneMask pushes = p.push > zero;
-        p.impact = pushes ? p.impact : zero;
-        p.rebound = pushes ? p.rebound : zero + std::numeric_limits<double>::lowest();
-        largerOf(p.push, most, most);
+    overColours(packed->activeStart, [&](std::size_t first, std::size_t last) {
+      for (std::size_t i = first; i < last; ++i) {
+        const PackedPair& pair = packed->pairs[static_cast<std::size_t>(packed->active[i])];
+        Lanes most = zero;
+        for (PackedPoint& p : pointsOf(*packed, pair)) {
+          const LaneMask pushes = p.push > zero;
+          p.impact = pushes ? p.impact : zero;
+          p.rebound = pushes ? p.rebound : zero + std::numeric_limits<double>::lowest();
+          largerOf(p.push, most, most);
+        }
+        for (std::size_t lane = 0; lane < kPackedPairs; ++lane) {
+          mark(pair.upper[lane], most[static_cast<int>(lane)]);
+          mark(pair.lower[lane], most[static_cast<int>(lane)]);
+        }
       }
-      for (std::size_t lane = 0; lane < kPackedPairs; ++lane) {
-        mark(pair.upper[lane], most[static_cast<int>(lane)]);
-        mark(pair.lower[lane], most[static_cast<int>(lane)]);
-      }
-    }
+    });
   }
   return any;
 }
@@ -115,11 +128,14 @@ double kineticEnergy(const RigidBody& body) {
 }
 
 double kineticEnergy(const std::vector<RigidBody>& bodies) {
-  double twice = 0.0;
-  for (const RigidBody& body : bodies) {
-    if (body.inverseMass > 0.0) twice += twiceKinetic(body, body.velocity, body.spin, body.velocity, body.spin);
-  }
-  return 0.5 * twice;
+  const auto sum = [&](std::size_t first, std::size_t last) {
+    double twice = 0.0;
+    for (const RigidBody& body : std::span(bodies).subspan(first, last - first)) {
+      if (body.inverseMass > 0.0) twice += twiceKinetic(body, body.velocity, body.spin, body.velocity, body.spin);
+    }
+    return twice;
+  };
+  return 0.5 * sumRanges(bodies.size(), tuning::kBlockGrain, bodies.size() >= tuning::kParallelBlocks, sum);
 }
 
 void addWorkOfGravity(const IslandStep& step, RigidIsland& island) {
@@ -173,19 +189,22 @@ double growthOf(const PackedPoints& packed, const PackedPair& pair, int lane) {
 // change their velocity as much; returns whether any is new. So is a light block between a heavy one and the floor, which keeps
 // its velocity while both push it.
 bool spreadImpact(RigidIsland& island, double least) {
-  for (RigidBody& body : island.bodies) body.removed = 0.0;
+  overBodies(island, [&](std::size_t i) { island.bodies[i].removed = 0.0; });
   const auto bodyAt = [&](std::int32_t at) {
     return at == unmovedBody(island) ? nullptr : &island.bodies[static_cast<std::size_t>(at)];
   };
   for (const PackedPoints* packed : packsOf(island)) {
-    for (const PackedPair& pair : packed->pairs) {
-      for (std::size_t lane = 0; lane < kPackedPairs; ++lane) {
-        RigidBody* upper = bodyAt(pair.upper[lane]);
-        RigidBody* lower = bodyAt(pair.lower[lane]);
-        if (pair.group[lane] < 0 || upper == nullptr || lower == nullptr || upper->struck == lower->struck) continue;
-        (upper->struck ? lower : upper)->removed += growthOf(*packed, pair, static_cast<int>(lane));
+    overColours(packed->colourStart, [&](std::size_t first, std::size_t last) {
+      for (const PackedPair& pair : std::span(packed->pairs).subspan(first, last - first)) {
+        for (std::size_t lane = 0; lane < kPackedPairs; ++lane) {
+          RigidBody* upper = bodyAt(pair.upper[lane]);
+          RigidBody* lower = bodyAt(pair.lower[lane]);
+          if (pair.group[lane] < 0 || upper == nullptr || lower == nullptr || upper->struck == lower->struck) continue;
+          RigidBody& other = upper->struck ? *lower : *upper;
+          if (other.inverseMass > 0.0) other.removed += growthOf(*packed, pair, static_cast<int>(lane));
+        }
       }
-    }
+    });
   }
   bool any = false;
   for (RigidBody& body : island.bodies) {
@@ -221,15 +240,17 @@ void forgetImpact(IslandStep& step, RigidIsland& island) {
     return at != unmovedBody(island) && island.bodies[static_cast<std::size_t>(at)].struck;
   };
   for (ActingPoints* list : {&island.steady, &island.fast}) {
-    for (const PackedPair& pair : list->packed.pairs) {
-      for (std::size_t lane = 0; lane < kPackedPairs; ++lane) {
-        if (pair.group[lane] < 0 || (!isStruck(pair.upper[lane]) && !isStruck(pair.lower[lane]))) continue;
-        bool met = false;
-        forgetPair(list->packed, pair, static_cast<int>(lane), met);
-        const PointGroup& group = list->groups[static_cast<std::size_t>(pair.group[lane])];
-        if (met) step.engine.scratch.covered[static_cast<std::size_t>(group.pair)] = kCoveredAndMet;
+    overPacks(list->packed, [&](std::size_t first, std::size_t last) {
+      for (const PackedPair& pair : std::span(list->packed.pairs).subspan(first, last - first)) {
+        for (std::size_t lane = 0; lane < kPackedPairs; ++lane) {
+          if (pair.group[lane] < 0 || (!isStruck(pair.upper[lane]) && !isStruck(pair.lower[lane]))) continue;
+          bool met = false;
+          forgetPair(list->packed, pair, static_cast<int>(lane), met);
+          const PointGroup& group = list->groups[static_cast<std::size_t>(pair.group[lane])];
+          if (met) step.engine.scratch.covered[static_cast<std::size_t>(group.pair)] = kCoveredAndMet;
+        }
       }
-    }
+    });
   }
 }
 

@@ -1,14 +1,17 @@
 #include "solver/rigid/list_points.h"
 
+#include "core/parallel.h"
 #include "core/tuning.h"
 #include "narrowphase/near_points.h"
 #include "solver/contact/create.h"
 #include "solver/contact/rigid_contacts.h"
 #include "solver/rigid/constraints.h"
+#include "solver/rigid/over_bodies.h"
 #include "solver/rigid/packs.h"
 #include "solver/rigid/warm_start.h"
 #include "solver/world/checkpoint.h"
 #include "solver/world/driven_blocks.h"
+#include "solver/world/over_island.h"
 
 #include <algorithm>
 #include <array>
@@ -16,13 +19,6 @@
 namespace springtower {
 
 namespace {
-
-// The two blocks of a pair: block numbers (the floor -1) and the indices of their bodies.
-struct PairBodies {
-  std::int32_t pair;
-  std::array<std::int32_t, 2> block;
-  std::array<std::int32_t, 2> body;
-};
 
 PairBodies bodiesOf(const IslandStep& step, const RigidIsland& island, std::int32_t pair) {
   const BlockPair& key = step.engine.pairs.key[static_cast<std::size_t>(pair)];
@@ -163,26 +159,6 @@ void addGroup(const IslandStep& step, const RigidIsland& island, const PairBodie
   list.groups.push_back({of.pair, first, static_cast<std::int32_t>(near.count), reach, moved});
 }
 
-// The points of the same pair in the step before: among the steady ones or the fast ones.
-class KnownPoints {
- public:
-  KnownPoints(const PointList& first, const PointList& second) : lists_{&first, &second} {}
-  // Pairs in ascending order.
-  KnownGroup find(std::int32_t pair) {
-    for (std::size_t k = 0; k < lists_.size(); ++k) {
-      const std::vector<PointGroup>& groups = lists_[k]->groups;
-      std::size_t& at = at_[k];
-      while (at < groups.size() && groups[at].pair < pair) ++at;
-      if (at < groups.size() && groups[at].pair == pair && groups[at].count > 0) return {lists_[k], &groups[at], k == 0};
-    }
-    return {};
-  }
-
- private:
-  std::array<const PointList*, 2> lists_;
-  std::array<std::size_t, 2> at_{};
-};
-
 // By how much blocks may still move against one another before points listed before are no longer all that may touch, m; none
 // where they were fast.
 double reachLeft(const IslandStep& step, const KnownGroup& known) {
@@ -216,10 +192,10 @@ void warmStartLast(const IslandStep& step, const RigidIsland& island, const Know
 // Pairs that have become fast in the step are listed there alone: their points no longer act among the steady ones.
 void removeFastFromSteady(RigidIsland& island) {
   auto group = island.steady.groups.begin();
-  for (const std::int32_t pair : island.fastPairs) {
-    while (group != island.steady.groups.end() && group->pair < pair) ++group;
+  for (const PairBodies& fast : island.fastPairs) {
+    while (group != island.steady.groups.end() && group->pair < fast.pair) ++group;
     if (group == island.steady.groups.end()) return;
-    if (group->pair != pair || group->count == 0) continue;
+    if (group->pair != fast.pair || group->count == 0) continue;
     disablePacked(island.steady.packed, *group);
     group->count = 0;
   }
@@ -228,24 +204,26 @@ void removeFastFromSteady(RigidIsland& island) {
 // Marks the bodies whose velocity has changed since the step began by more than its margin allows for; returns whether any has.
 bool markOutrunning(const IslandStep& step, RigidIsland& island, double step_s) {
   const double most = 0.5 * tuning::kNearPointMargin * step.simulation.lengths.blockHeight_m / step_s;
-  bool any = false;
-  for (RigidBody& body : island.bodies) {
-    const double change = (body.velocity - body.before.velocity).norm() + (body.spin - body.before.spin).norm() * body.radius_m;
-    body.outruns = change > most;
-    any = any || body.outruns;
-  }
-  return any;
+  const auto mark = [&](std::size_t first, std::size_t last) {
+    bool any = false;
+    for (RigidBody& body : std::span(island.bodies).subspan(first, last - first)) {
+      const double change = (body.velocity - body.before.velocity).norm() + (body.spin - body.before.spin).norm() * body.radius_m;
+      body.outruns = change > most;
+      any = any || body.outruns;
+    }
+    return any;
+  };
+  return mergeRanges(island.bodies.size(), tuning::kBlockGrain, isWide(step), false, mark, [](bool a, bool b) { return a || b; });
 }
 
 // Bounds the motion of a pair with such a body again, as if it had had its present speed from the start of the step: what it may
 // move more counts for its points in the steps to come. Returns whether it may move farther than they, or that it has none, hold.
 bool boundAgain(const IslandStep& step, const RigidIsland& island, double step_s, ListedPair& listed, PointGroup* points) {
-  const PairBodies of = bodiesOf(step, island, listed.pair);
-  const bool changed = std::any_of(of.body.begin(), of.body.end(), [&](std::int32_t body) {
+  const bool changed = std::any_of(listed.body.begin(), listed.body.end(), [&](std::int32_t body) {
     return body != unmovedBody(island) && island.bodies[static_cast<std::size_t>(body)].outruns;
   });
   if (!changed) return false;
-  const double motion = relativeMotion(step, island, of, step_s);
+  const double motion = relativeMotion(step, island, listed, step_s);
   if (motion > listed.reach_m) return true;
   const double more = std::max(0.0, motion - listed.motion_m);
   listed.motion_m += more;
@@ -265,10 +243,10 @@ double fastestPoint(const RigidIsland& island, std::int32_t body) {
 }
 
 // Whether two blocks do not touch, and cannot in the step, as they move now and fall: most near pairs of a heap that flies.
-bool isFarApart(const IslandStep& step, const RigidIsland& island, const PairBodies& of, ListedPair& listed) {
-  const auto at = static_cast<std::size_t>(of.pair);
+bool isFarApart(const IslandStep& step, const RigidIsland& island, ListedPair& listed) {
+  const auto at = static_cast<std::size_t>(listed.pair);
   if (step.engine.pairs.touches(at)) return false;
-  const double speed = fastestPoint(island, of.body[0]) + fastestPoint(island, of.body[1]);
+  const double speed = fastestPoint(island, listed.body[0]) + fastestPoint(island, listed.body[1]);
   const double motion = (speed + step.simulation.scene.gravity.magnitude * step.drift_s) * step.drift_s;
   const double gap = gapOf(step, at);
   if (gap <= motion + tuning::kNearPointMargin * step.simulation.lengths.blockHeight_m) return false;
@@ -288,51 +266,116 @@ double pathOf(const IslandStep& step, const PairBodies& of) {
   return path;
 }
 
+// Appends what a range of pairs has listed.
+void append(const ListedRange& from, PointList& list, std::vector<PairBodies>& fastPairs) {
+  const auto first = static_cast<std::int32_t>(list.points.size());
+  list.points.insert(list.points.end(), from.list.points.begin(), from.list.points.end());
+  for (PointGroup group : from.list.groups) {
+    group.first += first;
+    list.groups.push_back(group);
+  }
+  fastPairs.insert(fastPairs.end(), from.fastPairs.begin(), from.fastPairs.end());
+}
+
+// Runs kernel(first, last, list, fastPairs), which appends to both, over the pairs [0, count): in one call, or on many threads
+// into lists of ranges of them, which are appended in order.
+template <class Kernel>
+void listRanges(const IslandStep& step, std::size_t count, std::vector<ListedRange>& ranges, PointList& list,
+                std::vector<PairBodies>& fastPairs, const Kernel& kernel) {
+  const std::size_t used = count / tuning::kListGrain;
+  if (!isWide(step) || used < 2 || threadsNow() == 1) {
+    kernel(std::size_t{0}, count, list, fastPairs);
+    return;
+  }
+  if (ranges.size() < used) ranges.resize(used);
+  forEach(used, [&](std::size_t i) {
+    ListedRange& range = ranges[i];
+    clear(range.list);
+    range.fastPairs.clear();
+    kernel(i * count / used, (i + 1) * count / used, range.list, range.fastPairs);
+  });
+  for (std::size_t i = 0; i < used; ++i) append(ranges[i], list, fastPairs);
+}
+
+// The pairs that may meet in the step, with their bodies, and an upper bound of the speed of these.
+void listPairs(const IslandStep& step, RigidIsland& island) {
+  island.listedPairs.resize(step.activePairs.size());
+  forRanges(step.activePairs.size(), tuning::kPairGrain, isWide(step), [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) island.listedPairs[i] = {bodiesOf(step, island, step.activePairs[i])};
+  });
+  overBodies(island, [&](std::size_t i) {
+    RigidBody& body = island.bodies[i];
+    body.fastestPoint_m_s = body.velocity.norm() + body.spin.norm() * body.radius_m;
+  });
+}
+
+// How the points of a step are listed; see listPoints.
+struct Listing {
+  double substep_s;
+  bool again;
+};
+
+// Lists the points of a pair among the steady ones, or the pair among the fast ones.
+void listPair(IslandStep& step, const RigidIsland& island, const Listing& how, KnownPoints& known, ListedPair& listed,
+              NearPoints& near, PointList& list, std::vector<PairBodies>& fastPairs) {
+  Engine& engine = step.engine;
+  const double h = step.simulation.lengths.blockHeight_m;
+  const auto at = static_cast<std::size_t>(listed.pair);
+  if (isFarApart(step, island, listed)) return;
+  const KnownGroup before = known.find(listed.pair);
+  const double motion = relativeMotion(step, island, listed, step.drift_s);
+  listed.motion_m = motion;
+  engine.scratch.covered[at] = 1;
+  listed.reach_m = reachLeft(step, before);
+  if (!how.again && motion < listed.reach_m) return takeOver(before, motion, list);
+  double reach = motion + tuning::kNearPointMargin * h;
+  listed.reach_m = reach;
+  engine.scratch.covered[at] = 0;
+  const bool touches = engine.pairs.touches(at);
+  if (!touches && !step.simulation.scene.settings.continuousTests) return;  // no contact begins
+  if (!touches && gapOf(step, at) > reach) return;
+  if (how.again && touches) reach = std::max(reach, pathOf(step, listed));
+  if (motion > tuning::kMaxSteadyMotion * h) {
+    engine.scratch.covered[at] = 1;
+    fastPairs.push_back(listed);
+    return;
+  }
+  listed.reach_m = findPoints(step, island, listed, reach, true, near);
+  if (near.count > 0 || near.grazes) engine.scratch.covered[at] = 1;
+  if (near.count == 0) return;
+  addGroup(step, island, listed, near, reach, motion, list);
+  warmStartLast(step, island, before, how.substep_s, list);
+}
+
+// Finds the points of a fast pair.
+void listFastPair(IslandStep& step, RigidIsland& island, const PairBodies& of, KnownPoints& known, NearPoints& near,
+                  PointList& list) {
+  const KnownGroup before = known.find(of.pair);
+  if (before.list == &island.steady) unpackGroup(island.steady, *before.group);
+  const double motion = relativeMotion(step, island, of, step.drift_s);
+  const double reach = motion + tuning::kNearPointMargin * step.simulation.lengths.blockHeight_m;
+  findPoints(step, island, of, reach, false, near);
+  if (near.count == 0) return;
+  addGroup(step, island, of, near, reach, motion, list);
+  warmStartLast(step, island, before, step.drift_s, list);
+}
+
 }  // namespace
 
 void listPoints(IslandStep& step, RigidIsland& island, double substep_s, bool again) {
-  Engine& engine = step.engine;
-  const double h = step.simulation.lengths.blockHeight_m;
   clear(island.steady);
   clear(island.fast);
   island.fastPairs.clear();
-  island.listedPairs.clear();
-  for (const std::int32_t pair : step.activePairs) island.listedPairs.push_back({pair});
-  for (RigidBody& body : island.bodies) body.fastestPoint_m_s = body.velocity.norm() + body.spin.norm() * body.radius_m;
-  KnownPoints known(island.steadyKnown, island.fastKnown);
-  NearPoints near;
-  for (ListedPair& listed : island.listedPairs) {
-    const std::int32_t pair = listed.pair;
-    const auto at = static_cast<std::size_t>(pair);
-    const PairBodies of = bodiesOf(step, island, pair);
-    if (isFarApart(step, island, of, listed)) continue;
-    const KnownGroup before = known.find(pair);
-    const double motion = relativeMotion(step, island, of, step.drift_s);
-    listed.motion_m = motion;
-    engine.scratch.covered[at] = 1;
-    listed.reach_m = reachLeft(step, before);
-    if (!again && motion < listed.reach_m) {
-      takeOver(before, motion, island.steady);
-      continue;
-    }
-    double reach = motion + tuning::kNearPointMargin * h;
-    listed.reach_m = reach;
-    engine.scratch.covered[at] = 0;
-    const bool touches = engine.pairs.touches(at);
-    if (!touches && !step.simulation.scene.settings.continuousTests) continue;  // no contact begins
-    if (!touches && gapOf(step, at) > reach) continue;
-    if (again && touches) reach = std::max(reach, pathOf(step, of));
-    if (motion > tuning::kMaxSteadyMotion * h) {
-      engine.scratch.covered[at] = 1;
-      island.fastPairs.push_back(pair);
-      continue;
-    }
-    listed.reach_m = findPoints(step, island, of, reach, true, near);
-    if (near.count > 0 || near.grazes) engine.scratch.covered[at] = 1;
-    if (near.count == 0) continue;
-    addGroup(step, island, of, near, reach, motion, island.steady);
-    warmStartLast(step, island, before, substep_s, island.steady);
-  }
+  listPairs(step, island);
+  const std::span<ListedPair> pairs(island.listedPairs);
+  const auto listRange = [&](std::size_t first, std::size_t last, PointList& list, std::vector<PairBodies>& fastPairs) {
+    if (first == last) return;
+    KnownPoints known(island.steadyKnown, island.fastKnown, pairs[first].pair);
+    NearPoints near;
+    for (ListedPair& listed : pairs.subspan(first, last - first))
+      listPair(step, island, {substep_s, again}, known, listed, near, list, fastPairs);
+  };
+  listRanges(step, pairs.size(), island.ranges, island.steady, island.fastPairs, listRange);
   packPoints(step, island, island.steady);
   packPoints(step, island, island.fast);
 }
@@ -341,39 +384,39 @@ void addOutrun(IslandStep& step, RigidIsland& island, double step_s) {
   if (!markOutrunning(step, island, step_s)) return;
   std::swap(island.fastPairs, island.fastPairsBefore);
   island.fastPairs.clear();
-  auto fast = island.fastPairsBefore.begin();
-  auto group = island.steady.groups.begin();
-  for (ListedPair& listed : island.listedPairs) {
-    const bool isFast = fast != island.fastPairsBefore.end() && *fast == listed.pair;
-    if (isFast) ++fast;
-    while (group != island.steady.groups.end() && group->pair < listed.pair) ++group;
-    PointGroup* points = group != island.steady.groups.end() && group->pair == listed.pair ? &*group : nullptr;
-    if (!isFast && !boundAgain(step, island, step_s, listed, points)) continue;
-    std::uint8_t& covered = step.engine.scratch.covered[static_cast<std::size_t>(listed.pair)];
-    covered = std::max<std::uint8_t>(covered, 1);
-    island.fastPairs.push_back(listed.pair);
-  }
+  const std::span<ListedPair> pairs(island.listedPairs);
+  const auto addRange = [&](std::size_t first, std::size_t last, PointList&, std::vector<PairBodies>& fastPairs) {
+    if (first == last) return;
+    auto fast = std::ranges::lower_bound(island.fastPairsBefore, pairs[first].pair, {}, &PairBodies::pair);
+    auto group = std::ranges::lower_bound(island.steady.groups, pairs[first].pair, {}, &PointGroup::pair);
+    for (ListedPair& listed : pairs.subspan(first, last - first)) {
+      const bool isFast = fast != island.fastPairsBefore.end() && fast->pair == listed.pair;
+      if (isFast) ++fast;
+      while (group != island.steady.groups.end() && group->pair < listed.pair) ++group;
+      PointGroup* points = group != island.steady.groups.end() && group->pair == listed.pair ? &*group : nullptr;
+      if (!isFast && !boundAgain(step, island, step_s, listed, points)) continue;
+      std::uint8_t& covered = step.engine.scratch.covered[static_cast<std::size_t>(listed.pair)];
+      covered = std::max<std::uint8_t>(covered, 1);
+      fastPairs.push_back(listed);
+    }
+  };
+  listRanges(step, pairs.size(), island.ranges, island.fast, island.fastPairs, addRange);
 }
 
 void listFastPoints(IslandStep& step, RigidIsland& island, bool firstSubstep) {
-  const double h = step.simulation.lengths.blockHeight_m;
   unpackPoints(island.fast);
   std::swap(static_cast<PointList&>(island.fast), island.fastBefore);
   clear(island.fast);
-  KnownPoints known =
-      firstSubstep ? KnownPoints(island.steadyKnown, island.fastKnown) : KnownPoints(island.steady, island.fastBefore);
-  NearPoints near;
-  for (const std::int32_t pair : island.fastPairs) {
-    const PairBodies of = bodiesOf(step, island, pair);
-    const KnownGroup before = known.find(pair);
-    if (before.list == &island.steady) unpackGroup(island.steady, *before.group);
-    const double motion = relativeMotion(step, island, of, step.drift_s);
-    const double reach = motion + tuning::kNearPointMargin * h;
-    findPoints(step, island, of, reach, false, near);
-    if (near.count == 0) continue;
-    addGroup(step, island, of, near, reach, motion, island.fast);
-    warmStartLast(step, island, before, step.drift_s, island.fast);
-  }
+  const PointList& steady = firstSubstep ? island.steadyKnown : island.steady;
+  const PointList& fast = firstSubstep ? island.fastKnown : island.fastBefore;
+  const std::span<const PairBodies> pairs(island.fastPairs);
+  const auto listRange = [&](std::size_t first, std::size_t last, PointList& list, std::vector<PairBodies>&) {
+    if (first == last) return;
+    KnownPoints known(steady, fast, pairs[first].pair);
+    NearPoints near;
+    for (const PairBodies& of : pairs.subspan(first, last - first)) listFastPair(step, island, of, known, near, list);
+  };
+  listRanges(step, pairs.size(), island.ranges, island.fast, island.fastPairsBefore, listRange);
   removeFastFromSteady(island);
   packPoints(step, island, island.fast);
 }
@@ -419,7 +462,7 @@ void keepPoints(IslandStep& step, RigidIsland& island) {
     const auto at = static_cast<std::size_t>(listed.pair);
     if (step.engine.scratch.covered[at] != kCoveredAndMet || step.engine.pairs.touches(at)) continue;
     savePair(step.engine, at);
-    createTouching(step, at);
+    createTouching(step, at, step.counters);
   }
   std::swap(static_cast<PointList&>(island.steady), island.steadyKnown);
   std::swap(static_cast<PointList&>(island.fast), island.fastKnown);

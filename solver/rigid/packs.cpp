@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <limits>
+#include <numeric>
 
 namespace springtower {
 
@@ -181,6 +182,24 @@ void fillPack(const IslandStep& step, const RigidIsland& island, ActingPoints& l
   }
 }
 
+// Lists the packs of each body.
+void listPairsOfBodies(const RigidIsland& island, PackedPoints& packed) {
+  packed.bodyStart.assign(island.bodies.size() + 1, 0);
+  const auto forEach = [&](const auto& visit) {
+    for (std::size_t i = 0; i < packed.pairs.size(); ++i) {
+      for (std::size_t lane = 0; lane < kPackedPairs; ++lane) {
+        for (const std::int32_t body : {packed.pairs[i].upper[lane], packed.pairs[i].lower[lane]}) {
+          if (body != unmovedBody(island)) visit(static_cast<std::size_t>(body), static_cast<std::int32_t>(i));
+        }
+      }
+    }
+  };
+  forEach([&](std::size_t body, std::int32_t) { ++packed.bodyStart[body]; });
+  std::partial_sum(packed.bodyStart.begin(), packed.bodyStart.end(), packed.bodyStart.begin());
+  packed.bodyPairs.resize(static_cast<std::size_t>(packed.bodyStart.back()));
+  forEach([&](std::size_t body, std::int32_t i) { packed.bodyPairs[static_cast<std::size_t>(--packed.bodyStart[body])] = i; });
+}
+
 }  // namespace
 
 void packPoints(const IslandStep& step, const RigidIsland& island, ActingPoints& list) {
@@ -197,7 +216,10 @@ void packPoints(const IslandStep& step, const RigidIsland& island, ActingPoints&
   }
   sortGroups(island, list, packed);
   distribute(island, list);
-  for (PackedPair& pair : packed.pairs) fillPack(step, island, list, pair);
+  overPacks(packed, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) fillPack(step, island, list, packed.pairs[i]);
+  });
+  listPairsOfBodies(island, packed);
 }
 
 void unpackGroup(ActingPoints& list, const PointGroup& group) {
@@ -218,7 +240,10 @@ void unpackGroup(ActingPoints& list, const PointGroup& group) {
 }
 
 void unpackPoints(ActingPoints& list) {
-  for (const PointGroup& group : list.groups) unpackGroup(list, group);
+  forRanges(list.groups.size(), tuning::kPairGrain, list.groups.size() >= 2 * tuning::kPairGrain,
+            [&](std::size_t first, std::size_t last) {
+              for (std::size_t g = first; g < last; ++g) unpackGroup(list, list.groups[g]);
+            });
 }
 
 void disablePacked(PackedPoints& packed, const PointGroup& group) {

@@ -35,8 +35,8 @@ void overColours(const std::vector<std::int32_t>& start, const Kernel& kernel) {
     const auto last = static_cast<std::size_t>(start[colour + 1]);
     if (last - first < 2 * tuning::kPackGrain) continue;
     if (done < first) kernel(done, first);
-    forRanges(last - first, tuning::kPackGrain, true,
-              [&](std::size_t from, std::size_t to) { kernel(first + from, first + to); });
+    forEqualRanges(last - first, tuning::kPackGrain, true,
+                   [&](std::size_t from, std::size_t to) { kernel(first + from, first + to); });
     done = last;
   }
   const std::size_t end = start.empty() ? 0 : static_cast<std::size_t>(start.back());
@@ -47,7 +47,7 @@ void overColours(const std::vector<std::int32_t>& start, const Kernel& kernel) {
 template <class Kernel>
 void overPacks(const PackedPoints& packed, const Kernel& kernel) {
   const std::size_t count = packed.pairs.size();
-  forRanges(count, tuning::kPackGrain, count >= 2 * tuning::kPackGrain, kernel);
+  forEqualRanges(count, tuning::kPackGrain, count >= 2 * tuning::kPackGrain, kernel);
 }
 
 /// The packed points of four pairs.

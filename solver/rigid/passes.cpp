@@ -212,37 +212,12 @@ SPRINGTOWER_INLINE std::size_t findChanged(const std::vector<int>& changed, cons
   return static_cast<std::size_t>(points);
 }
 
-SPRINGTOWER_INLINE void noteChanges(const LaneMask& changes, const PackedPair& pair, int number, std::vector<int>& changed) {
+void noteChanges(const LaneMask& changes, const PackedPair& pair, int number, RigidIsland& island) {
   for (std::size_t lane = 0; lane < kPackedPairs; ++lane) {
     if (changes[static_cast<int>(lane)] == 0) continue;
-    if ((pair.movesUpper >> lane & 1) != 0) changed[static_cast<std::size_t>(pair.upper[lane])] = number;
-    if ((pair.movesLower >> lane & 1) != 0) changed[static_cast<std::size_t>(pair.lower[lane])] = number;
+    if ((pair.movesUpper >> lane & 1) != 0) noteChange(pair.upper[lane], number, island);
+    if ((pair.movesLower >> lane & 1) != 0) noteChange(pair.lower[lane], number, island);
   }
-}
-
-SPRINGTOWER_KERNEL
-std::size_t solveRange(const Pass& pass, RigidIsland& island, PackedPoints& packed, int number, double enough, std::size_t first,
-                       std::size_t last) {
-  std::size_t solved = 0;
-  for (std::size_t i = first; i < last; ++i) {
-    const PackedPair& pair = packed.pairs[static_cast<std::size_t>(packed.active[i])];
-    LaneMask looks;
-    const std::size_t points = findChanged(island.changed, pair, number - 1, looks);
-    if (points == 0) continue;
-    solved += points;
-    PackMotion motion;
-    gather(island.motions.data(), pair, motion);
-    LaneMask changes = kNone != kNone;
-    for (PackedPoint& p : pointsOf(packed, pair)) {
-      Lanes opening, more, size;
-      solvePoints(pass, pair, looks, motion, p, opening, more);
-      sizeOf(more, size);
-      changes |= size > enough * p.normalMass;
-    }
-    scatter(motion, pair, island.motions.data());
-    noteChanges(changes, pair, number, island.changed);
-  }
-  return solved;
 }
 
 // Lists the pairs at whose points further passes look.
@@ -288,11 +263,39 @@ double solveActive(const Pass& pass, std::vector<BodyMotion>& bodies, PackedPoin
   return worst;
 }
 
+void noteChange(std::int32_t body, int number, RigidIsland& island) {
+  const auto b = static_cast<std::size_t>(body);
+  if (island.changed[b] == number) return;
+  island.changed[b] = number;
+  for (PackedPoints* packed : packsOf(island)) {
+    if (packed->pairs.empty()) continue;
+    for (std::int32_t k = packed->bodyStart[b]; k < packed->bodyStart[b + 1]; ++k)
+      packed->due[static_cast<std::size_t>(packed->bodyPairs[static_cast<std::size_t>(k)])] = number + 1;
+  }
+}
+
+SPRINGTOWER_KERNEL
 std::size_t solveChanged(const Pass& pass, RigidIsland& island, PackedPoints& packed, int number, double enough) {
-  std::atomic<std::size_t> solved = 0;
-  overColours(packed.activeStart, [&](std::size_t first, std::size_t last) {
-    solved += solveRange(pass, island, packed, number, enough, first, last);
-  });
+  std::size_t solved = 0;
+  for (const std::int32_t at : packed.active) {
+    if (packed.due[static_cast<std::size_t>(at)] < number) continue;
+    const PackedPair& pair = packed.pairs[static_cast<std::size_t>(at)];
+    LaneMask looks;
+    const std::size_t points = findChanged(island.changed, pair, number - 1, looks);
+    if (points == 0) continue;
+    solved += points;
+    PackMotion motion;
+    gather(island.motions.data(), pair, motion);
+    LaneMask changes = kNone != kNone;
+    for (PackedPoint& p : pointsOf(packed, pair)) {
+      Lanes opening, more, size;
+      solvePoints(pass, pair, looks, motion, p, opening, more);
+      sizeOf(more, size);
+      changes |= size > enough * p.normalMass;
+    }
+    scatter(motion, pair, island.motions.data());
+    noteChanges(changes, pair, number, island);
+  }
   return solved;
 }
 

@@ -4,6 +4,7 @@
 #include "solver/world/rigid_island.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 namespace springtower {
@@ -37,6 +38,10 @@ std::size_t solveAll(const Pass& pass, std::vector<BodyMotion>& bodies, PackedPo
 
 /// A pass over the active points. Returns by how much it has slowed the approach at a point at most, m/s.
 double solveActive(const Pass& pass, std::vector<BodyMotion>& bodies, PackedPoints& packed);
+
+/// Notes that pass `number` through an impact (0: what meets in it) has changed a body's velocity: the pairs in which it is are
+/// due in the next pass, and in this one where they come later. Precondition: `changed` and `due` are set, to less.
+void noteChange(std::int32_t body, int number, RigidIsland& island);
 
 /// Pass `number` through an impact: over those active points of which a body's velocity has changed since they were solved last,
 /// as `changed` [bodies] has it. Changes of less than `enough` (m/s) count as none. Returns the number of points solved.

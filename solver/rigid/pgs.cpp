@@ -5,6 +5,7 @@
 #include "solver/rigid/constraints.h"
 #include "solver/rigid/impact.h"
 #include "solver/rigid/methods.h"
+#include "solver/rigid/over_bodies.h"
 #include "solver/rigid/packs.h"
 #include "solver/rigid/passes.h"
 #include "solver/rigid/patch_friction.h"
@@ -59,6 +60,7 @@ Pass passOf(const IslandStep& step, bool push) {
 // Marks the bodies that meet in an impact.
 void markImpacts(RigidIsland& island) {
   island.changed.assign(island.bodies.size() + 1, -1);
+  for (PackedPoints* packed : packsOf(island)) packed->due.assign(packed->pairs.size(), -1);
   for (const PackedPoints* packed : packsOf(island)) {
     for (const std::int32_t i : packed->active) {
       const PackedPair& pair = packed->pairs[static_cast<std::size_t>(i)];
@@ -69,7 +71,7 @@ void markImpacts(RigidIsland& island) {
       for (std::size_t lane = 0; lane < kPackedPairs; ++lane) {
         if (meets[static_cast<int>(lane)] == 0) continue;
         for (const std::int32_t body : {pair.upper[lane], pair.lower[lane]}) {
-          if (body != unmovedBody(island)) island.changed[static_cast<std::size_t>(body)] = 0;
+          if (body != unmovedBody(island)) noteChange(body, 0, island);
         }
       }
     }
@@ -178,10 +180,10 @@ void relaxAndRebound(IslandStep& step, RigidIsland& island, int passes) {
 // Passes move blocks by more than their velocities where they push overlap out. If the frame has gained energy that nothing lost
 // before pays for, takes back the share of that extra motion whose lifting work is the unpaid energy. Between very unlike masses
 // a push that is too large is corrected only slowly over the passes.
-void lowerUnpaid(const IslandStep& step, RigidIsland& island) {
+void lowerUnpaid(const IslandStep& step, double kinetic_j, RigidIsland& island) {
   if (!island.touches || isWorkedOn(step)) return;
-  const double unpaid_j = kineticEnergy(island.bodies) - island.energyBefore_j -
-                          std::max(0.0, freePushOut(step.simulation, massOf(island)) - island.gained_j);
+  const double unpaid_j =
+      kinetic_j - island.energyBefore_j - std::max(0.0, freePushOut(step.simulation, massOf(island)) - island.gained_j);
   if (!(unpaid_j > 0.0)) return;
   const auto excessOf = [&](const RigidBody& body) { return Vec3(body.moved - step.drift_s * body.velocity); };
   double lifted_j = 0.0;
@@ -218,18 +220,19 @@ int rigidModePasses(const IslandStep& step, const RigidIsland& island) {
 void stepImpulses(IslandStep& step, RigidIsland& island) {
   const Scene& scene = step.simulation.scene;
   const bool rigidMode = !isRigid(scene.settings.method);
-  for (RigidBody& body : island.bodies) {
+  overBodies(island, [&](std::size_t i) {
+    RigidBody& body = island.bodies[i];
     updateInertia(body);
     body.velocityBefore = body.velocity;
     body.moved.setZero();
     body.turned.setZero();
-  }
+  });
   if (island.steady.points.empty() && island.fast.points.empty()) {
     applyForces(step);
-    for (RigidBody& body : island.bodies) {
-      body.pushed = false;
-      moveInStep(step, body);
-    }
+    overBodies(island, [&](std::size_t i) {
+      island.bodies[i].pushed = false;
+      moveInStep(step, island.bodies[i]);
+    });
     island.touches = false;
     return;
   }
@@ -248,19 +251,21 @@ void stepImpulses(IslandStep& step, RigidIsland& island) {
   if (rigidMode) passes = std::max(passes, rigidModePasses(step, island));
   stopAtContact(step, island, passes);
   island.touches = markPushedByPoints(step, island);
-  for (RigidBody& body : island.bodies) moveInStep(step, body);
+  overBodies(island, [&](std::size_t i) { moveInStep(step, island.bodies[i]); });
   addWorkOfGravity(step, island);
   moveGaps(island);
   relaxAndRebound(step, island, scene.settings.iterations);
   if (isolated) restoreAngularMomentum(momentum, island);
   // Not in the rigid methods: there, blocks of a stack move by such slow pushes only, and the clamp would suppress them.
   if (rigidMode) {
-    const double added_j = kineticEnergy(island.bodies) - island.energyBefore_j;
-    const bool worksAlone = island.touches && step.driven.empty();  // a driven block does work
-    if (worksAlone && isolated) removeAddedEnergy(added_j, island);
-    if (worksAlone && !isolated) takeGivenEnergy(added_j, step.drift_s, island);
-    if (!isolated) lowerUnpaid(step, island);
-    island.gained_j += kineticEnergy(island.bodies) - island.energyBefore_j;
+    double kinetic_j = kineticEnergy(island.bodies);
+    const double added_j = kinetic_j - island.energyBefore_j;
+    if (added_j > 0.0 && island.touches && step.driven.empty()) {  // a driven block does work
+      isolated ? removeAddedEnergy(added_j, island) : takeGivenEnergy(added_j, step.drift_s, island);
+      kinetic_j = kineticEnergy(island.bodies);
+    }
+    if (!isolated) lowerUnpaid(step, kinetic_j, island);
+    island.gained_j += kinetic_j - island.energyBefore_j;
   }
 }
 

@@ -81,9 +81,16 @@ void readPoses(IslandStep& step) {
   readDriven(step, island);
 }
 
+void computeAllFrames(IslandStep& step) {
+  overBlocks(step, [&](std::size_t first, std::size_t last) {
+    computeFrames(step.simulation.state.position, step.blocks.subspan(first, last - first), step.engine.memo.frames);
+  });
+}
+
 SPRINGTOWER_KERNEL
-void writePositions(const RigidIsland& island, std::span<const std::int32_t> blocks, ParticleArray& position) {
-  for (std::size_t i = 0; i < blocks.size(); ++i) {
+void writePositionsOf(const RigidIsland& island, std::span<const std::int32_t> blocks, std::size_t first, std::size_t last,
+                      ParticleArray& position) {
+  for (std::size_t i = first; i < last; ++i) {
     const RigidBody& body = island.bodies[i];
     for (std::size_t a = 0; a < 3; ++a) {
       const auto row = static_cast<Eigen::Index>(a);
@@ -94,6 +101,12 @@ void writePositions(const RigidIsland& island, std::span<const std::int32_t> blo
       }
     }
   }
+}
+
+void writePositions(IslandStep& step) {
+  overBlocks(step, [&](std::size_t first, std::size_t last) {
+    writePositionsOf(rigidIslandOf(step), step.blocks, first, last, step.simulation.state.position);
+  });
 }
 
 void writeVelocities(IslandStep& step) {
@@ -141,7 +154,7 @@ void stepOnce(IslandStep& step) {
   applyContactRebounds(step, island);
   storeForces(step, island);
   clock.lap(Stage::contacts);
-  writePositions(island, step.blocks, step.simulation.state.position);
+  writePositions(step);
   clock.lap(Stage::integration);
 }
 
@@ -161,15 +174,14 @@ void stepThroughSubsteps(IslandStep& step, double begin_s, int substeps, bool ag
     if (i > 0) placeDriven(step, begin_s, step.time_s);
     if (i > 0) addOutrun(step, island, step_s);
     // Both what is listed now and the hand's force follow the positions of the substep.
-    if (i > 0 && (!island.fastPairs.empty() || holdsTether(step)))
-      writePositions(island, step.blocks, step.simulation.state.position);
+    if (i > 0 && (!island.fastPairs.empty() || holdsTether(step))) writePositions(step);
     if (!island.fastPairs.empty()) listFastPoints(step, island, i == 0);
     clock.lap(Stage::candidates);
     stepImpulses(step, island);
     clock.lap(Stage::contacts);
   }
   step.drift_s = step_s;
-  writePositions(island, step.blocks, step.simulation.state.position);
+  writePositions(step);
   clock.lap(Stage::integration);
 }
 
@@ -335,7 +347,7 @@ bool runSteps(IslandStep& step, int steps, int substeps, double begin_s) {
       island.gained_j = gained_j;
       recomputeClearances(step);
     }
-    computeFrames(simulation.state.position, step.blocks, step.engine.memo.frames);
+    computeAllFrames(step);
     if (sequential && inside) keepPoints(step, island);
     if (!sequential && inside) refreshContacts(step, refreshTravelOfExplicitSteps(simulation));
   }
@@ -347,8 +359,8 @@ void takeShapes(IslandStep& step, double time_s, double contacts_j, RigidIsland&
   const double most_j = isWorkedOn(step) ? std::numeric_limits<double>::infinity() : contacts_j - island.gained_j;
   const double stored_j = boundStrainOfContacts(step, most_j);
   relaxShapes(step, time_s, contacts_j - stored_j - island.gained_j, island);
-  writePositions(island, step.blocks, step.simulation.state.position);
-  computeFrames(step.simulation.state.position, step.blocks, step.engine.memo.frames);
+  writePositions(step);
+  computeAllFrames(step);
 }
 
 }  // namespace
@@ -366,7 +378,7 @@ IslandOutcome runRigidSteps(IslandStep& step, int steps, double begin_s) {
   step.drift_s = (step.part.end_s - begin_s) / count;
   step.kick_s = step.advance_s = step.drift_s;
   readPoses(step);
-  computeFrames(simulation.state.position, step.blocks, step.engine.memo.frames);
+  computeAllFrames(step);
   step.usesActiveList = true;
   step.activeListSteps = 0;
   RigidIsland& island = rigidIslandOf(step);

@@ -1,15 +1,19 @@
 #include "solver/rigid/shapes.h"
 
+#include "core/parallel.h"
+#include "core/tuning.h"
 #include "solver/block/inertia.h"
 #include "solver/block/springs.h"
 #include "solver/block/static_shape.h"
 #include "solver/contact/query.h"
 #include "solver/contact/rigid_contacts.h"
+#include "solver/world/over_island.h"
 #include "solver/world/stiffness.h"
 
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace springtower {
 
@@ -40,8 +44,8 @@ double lastingShare(const Simulation& simulation, const ContactView& manifold, s
 
 // Calls `visit(contact, manifold, points)` for each manifold of the island that stores impulses, with its forces now.
 template <class Visit>
-void forEachRigidContact(const IslandStep& step, Visit visit) {
-  for (const std::int32_t pair : step.pairs) {
+void forEachRigidContact(const IslandStep& step, std::span<const std::int32_t> pairs, Visit visit) {
+  for (const std::int32_t pair : pairs) {
     const auto at = static_cast<std::size_t>(pair);
     if (!step.engine.pairs.touches(at)) continue;
     const ContactView manifold = contactOf(step.engine, at);
@@ -50,7 +54,7 @@ void forEachRigidContact(const IslandStep& step, Visit visit) {
 }
 
 void addLoads(const IslandStep& step, RigidIsland& island) {
-  forEachRigidContact(step, [&](std::int32_t, const ContactView& manifold, const PointForces& points) {
+  forEachRigidContact(step, step.pairs, [&](std::int32_t, const ContactView& manifold, const PointForces& points) {
     RigidBody* upper = bodyOf(step, manifold.upper, island);
     RigidBody* lower = bodyOf(step, manifold.lower, island);
     for (std::size_t i = 0; i < static_cast<std::size_t>(manifold.count); ++i) {
@@ -119,12 +123,16 @@ void prepareShapes(Simulation& simulation) {
 }
 
 double strainEnergyOfContacts(const IslandStep& step) {
-  double energy_j = 0.0;
-  forEachRigidContact(step, [&](std::int32_t, const ContactView& manifold, const PointForces& points) {
-    for (std::size_t i = 0; i < static_cast<std::size_t>(manifold.count); ++i)
-      energy_j += strainEnergy(step.simulation, manifold, i, points.depth[i]);
-  });
-  return energy_j;
+  const auto sum = [&](std::size_t first, std::size_t last) {
+    double energy_j = 0.0;
+    const auto add = [&](std::int32_t, const ContactView& manifold, const PointForces& points) {
+      for (std::size_t i = 0; i < static_cast<std::size_t>(manifold.count); ++i)
+        energy_j += strainEnergy(step.simulation, manifold, i, points.depth[i]);
+    };
+    forEachRigidContact(step, step.pairs.subspan(first, last - first), add);
+    return energy_j;
+  };
+  return sumRanges(step.pairs.size(), tuning::kPairGrain, isWide(step), sum);
 }
 
 double boundStrainOfContacts(const IslandStep& step, double most_j) {
@@ -132,10 +140,13 @@ double boundStrainOfContacts(const IslandStep& step, double most_j) {
   const double bound_j = std::max(0.0, most_j);
   for (int i = 0; i < kStrainBounds && energy_j > bound_j; ++i) {
     const double share = std::sqrt(bound_j / energy_j);  // the energy is quadratic in what lasts, or grows less
-    forEachRigidContact(step, [&](std::int32_t contact, const ContactView& manifold, const PointForces&) {
+    const auto scale = [&](std::int32_t contact, const ContactView& manifold, const PointForces&) {
       const PointRows rows = step.engine.contacts.points(contact);
       for (std::size_t k = 0; k < static_cast<std::size_t>(manifold.count); ++k)
         rows[rowOf(k)]->impulse.lasting[laneOf(k)] *= share;
+    };
+    overPairs(step, [&](std::size_t first, std::size_t last) {
+      forEachRigidContact(step, step.pairs.subspan(first, last - first), scale);
     });
     energy_j = strainEnergyOfContacts(step);
   }

@@ -1,9 +1,11 @@
 #include "solver/rigid/warm_start.h"
 
+#include "core/parallel.h"
 #include "core/tuning.h"
 #include "solver/contact/create.h"
 #include "solver/contact/rigid_contacts.h"
 #include "solver/world/checkpoint.h"
+#include "solver/world/over_island.h"
 
 #include <algorithm>
 #include <array>
@@ -57,14 +59,14 @@ void addForce(const ContactConstraint& p, double rate, bool swapped, std::size_t
 }
 
 // Finds the manifold of a pair at the present positions; returns whether it touches.
-bool renewManifold(IslandStep& step, std::size_t at, bool pushes) {
+bool renewManifold(IslandStep& step, std::size_t at, bool pushes, Counters& counters) {
   PairTable& pairs = step.engine.pairs;
   if (!pairs.touches(at) && !pushes) return false;
   savePair(step.engine, at);
   if (pairs.touches(at)) {
-    refreshManifold(step, at, step.counters);
+    refreshManifold(step, at, counters);
   } else {
-    createTouching(step, at);
+    createTouching(step, at, counters);
   }
   if (!pairs.touches(at)) return false;
   pairs.travelAtCheck[at] = travelOf(step.engine, at);
@@ -72,9 +74,9 @@ bool renewManifold(IslandStep& step, std::size_t at, bool pushes) {
 }
 
 void storePair(IslandStep& step, const RigidIsland& island, std::size_t at, std::span<const ContactConstraint> points,
-               double rate) {
+               double rate, Counters& counters) {
   const bool pushes = std::any_of(points.begin(), points.end(), [](const ContactConstraint& p) { return p.push > 0.0; });
-  if (!renewManifold(step, at, pushes)) return;
+  if (!renewManifold(step, at, pushes, counters)) return;
   const ContactView manifold = contactOf(step.engine, at);
   const PointRows rows = step.engine.contacts.points(step.engine.pairs.contact[at]);
   clearForces(rows, manifold.count);
@@ -98,10 +100,30 @@ void storePair(IslandStep& step, const RigidIsland& island, std::size_t at, std:
 
 }  // namespace
 
+std::span<const ContactConstraint> pointsOf(const KnownGroup& known) {
+  return std::span(known.list->points)
+      .subspan(static_cast<std::size_t>(known.group->first), static_cast<std::size_t>(known.group->count));
+}
+
+KnownPoints::KnownPoints(const PointList& steady, const PointList& fast, std::int32_t firstPair) : lists_{&steady, &fast} {
+  for (std::size_t k = 0; k < lists_.size(); ++k) {
+    const std::vector<PointGroup>& groups = lists_[k]->groups;
+    at_[k] = static_cast<std::size_t>(std::ranges::lower_bound(groups, firstPair, {}, &PointGroup::pair) - groups.begin());
+  }
+}
+
+KnownGroup KnownPoints::find(std::int32_t pair) {
+  for (std::size_t k = 0; k < lists_.size(); ++k) {
+    const std::vector<PointGroup>& groups = lists_[k]->groups;
+    std::size_t& at = at_[k];
+    while (at < groups.size() && groups[at].pair < pair) ++at;
+    if (at < groups.size() && groups[at].pair == pair && groups[at].count > 0) return {lists_[k], &groups[at], k == 0};
+  }
+  return {};
+}
+
 void warmStartFromKnown(const IslandStep& step, const KnownGroup& known, std::span<ContactConstraint> points) {
-  const std::span<const ContactConstraint> old =
-      std::span(known.list->points)
-          .subspan(static_cast<std::size_t>(known.group->first), static_cast<std::size_t>(known.group->count));
+  const std::span<const ContactConstraint> old = pointsOf(known);
   std::uint32_t taken = 0;
   for (ContactConstraint& p : points) {
     double nearest = takeoverSquared(step);
@@ -156,20 +178,21 @@ void warmStartFromManifold(const IslandStep& step, const RigidIsland& island, st
 }
 
 void storeInManifolds(IslandStep& step, RigidIsland& island, double substep_s) {
-  const std::array<const PointList*, 2> lists = {&island.steadyKnown, &island.fastKnown};
-  std::array<std::size_t, 2> at{};
-  for (const std::int32_t pair : step.pairs) {
-    step.engine.scratch.covered[static_cast<std::size_t>(pair)] = 0;
-    std::span<const ContactConstraint> points;
-    for (std::size_t k = 0; k < 2; ++k) {
-      const std::vector<PointGroup>& groups = lists[k]->groups;
-      while (at[k] < groups.size() && groups[at[k]].pair < pair) ++at[k];
-      if (at[k] == groups.size() || groups[at[k]].pair != pair) continue;
-      points = std::span(lists[k]->points)
-                   .subspan(static_cast<std::size_t>(groups[at[k]].first), static_cast<std::size_t>(groups[at[k]].count));
+  const auto storeRange = [&](std::size_t first, std::size_t last) {
+    Counters counters;
+    if (first == last) return counters;
+    KnownPoints known(island.steadyKnown, island.fastKnown, step.pairs[first]);
+    for (const std::int32_t pair : step.pairs.subspan(first, last - first)) {
+      const auto at = static_cast<std::size_t>(pair);
+      step.engine.scratch.covered[at] = 0;
+      const KnownGroup group = known.find(pair);
+      storePair(step, island, at, group.group != nullptr ? pointsOf(group) : std::span<const ContactConstraint>(),
+                1.0 / substep_s, counters);
     }
-    storePair(step, island, static_cast<std::size_t>(pair), points, 1.0 / substep_s);
-  }
+    return counters;
+  };
+  step.counters += mergeRanges(step.pairs.size(), tuning::kPairGrain, isWide(step), Counters{}, storeRange,
+                               [](Counters a, const Counters& b) { return a += b; });
 }
 
 }  // namespace springtower

@@ -3,7 +3,9 @@
 #include "solver/world/island_step.h"
 #include "solver/world/rigid_island.h"
 
+#include <array>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 
 namespace springtower {
@@ -13,6 +15,20 @@ struct KnownGroup {
   const PointList* list = nullptr;
   const PointGroup* group = nullptr;
   bool isSteady = false;
+};
+
+std::span<const ContactConstraint> pointsOf(const KnownGroup& known);
+
+/// Finds pairs in ascending order, from one on, among the points of two lists.
+class KnownPoints {
+ public:
+  KnownPoints(const PointList& steady, const PointList& fast, std::int32_t firstPair);
+  /// Precondition: `pair` is none before the last one.
+  KnownGroup find(std::int32_t pair);
+
+ private:
+  std::array<const PointList*, 2> lists_;
+  std::array<std::size_t, 2> at_{};
 };
 
 /// Starts the points of a pair with the impulses of the step before: each takes over those of the nearest known point on its

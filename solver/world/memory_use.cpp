@@ -109,7 +109,9 @@ std::size_t ofScratch(const Scratch& s) {
     for (const PointList* list : listsOf(island)) sum += sumOf(list->points, list->groups);
     for (const PackedPoints* p : packsOf(island))
       sum += sumOf(p->pairs, p->points, p->places, p->colourStart, p->active, p->activeStart, p->taken, p->kind, p->key,
-                   p->keyStart, p->order);
+                   p->keyStart, p->order, p->bodyStart, p->bodyPairs, p->due);
+    for (const ListedRange& range : island.ranges) sum += sumOf(range.list.points, range.list.groups, range.fastPairs);
+    sum += sumOf(island.ranges);
   }
   return sum;
 }

@@ -47,7 +47,8 @@ void poisonScratch(Engine& engine) {
     for (PointList* list : listsOf(island)) poisonAll(list->points, list->groups);
     for (PackedPoints* p : packsOf(island))
       poisonAll(p->pairs, p->points, p->places, p->colourStart, p->active, p->activeStart, p->taken, p->kind, p->key, p->keyStart,
-                p->order);
+                p->order, p->bodyStart, p->bodyPairs, p->due);
+    for (ListedRange& range : island.ranges) poisonAll(range.list.points, range.list.groups, range.fastPairs);
   }
 }
 

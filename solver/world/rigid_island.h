@@ -100,9 +100,15 @@ struct PointGroup {
   std::int32_t lane = 0;
 };
 
+/// A pair with its blocks.
+struct PairBodies {
+  std::int32_t pair;                  ///< position in engine.pairs
+  std::array<std::int32_t, 2> block;  ///< the floor -1
+  std::array<std::int32_t, 2> body;   ///< indices of their bodies; the last index stands for what does not move
+};
+
 /// A pair that was looked at before a step.
-struct ListedPair {
-  std::int32_t pair;      ///< position in engine.pairs
+struct ListedPair : PairBodies {
   double motion_m = 0.0;  ///< upper bound of its relative motion in the step, at the speeds so far
   double reach_m = 0.0;   ///< its points listed, or that it has none, hold up to this relative motion in the step
 };
@@ -114,6 +120,12 @@ inline constexpr std::uint8_t kCoveredAndMet = 2;
 struct PointList {
   std::vector<ContactConstraint> points;
   std::vector<PointGroup> groups;
+};
+
+/// What a range of pairs adds to a list, where ranges are on many threads.
+struct ListedRange {
+  PointList list;
+  std::vector<PairBodies> fastPairs;
 };
 
 /// Points on which impulses act.
@@ -150,21 +162,22 @@ struct RigidIsland {
   std::vector<BodyMotion> motions;  ///< velocities in the passes; how far they have moved while gaps are moved
   std::vector<int> changed;         ///< the last pass of an impact that changed a body's velocity
   // Of sequential impulses, in place of `contacts` (solver/rigid/list_points.h).
-  ActingPoints steady;                        ///< points found before a step
-  ActingPoints fast;                          ///< points found before a substep
-  PointList steadyKnown;                      ///< the same of the step before,
-  PointList fastKnown;                        ///< of its last substep,
-  PointList fastBefore;                       ///< and of the substep before
-  std::vector<ListedPair> listedPairs;        ///< looked at for the step, ascending
-  std::vector<std::int32_t> fastPairs;        ///< of these, whose points are found before a substep
-  std::vector<std::int32_t> fastPairsBefore;  ///< working space
-  bool knowsManifolds = false;                ///< points start with the forces of manifolds where no others are known
-  double energyBefore_j = 0.0;                ///< kinetic energy before the step plus the work of gravity in it
-  bool rebounds = false;                      ///< whether blocks have met in the frame so fast that they rebound
-  bool stands = false;                        ///< whether half of the blocks at least have not fallen since they slept last
-  double massRatio = 1.0;                     ///< of its heaviest to its lightest body, of those that impulses move
-  double gained_j = 0.0;                      ///< kinetic energy in the frame so far beyond the work of gravity; < 0: lost
-  bool touches = false;                       ///< whether any contact pushes in the step
+  ActingPoints steady;                      ///< points found before a step
+  ActingPoints fast;                        ///< points found before a substep
+  PointList steadyKnown;                    ///< the same of the step before,
+  PointList fastKnown;                      ///< of its last substep,
+  PointList fastBefore;                     ///< and of the substep before
+  std::vector<ListedPair> listedPairs;      ///< looked at for the step, ascending
+  std::vector<PairBodies> fastPairs;        ///< of these, whose points are found before a substep
+  std::vector<PairBodies> fastPairsBefore;  ///< working space
+  std::vector<ListedRange> ranges;          ///< working space, where points are listed on many threads
+  bool knowsManifolds = false;              ///< points start with the forces of manifolds where no others are known
+  double energyBefore_j = 0.0;              ///< kinetic energy before the step plus the work of gravity in it
+  bool rebounds = false;                    ///< whether blocks have met in the frame so fast that they rebound
+  bool stands = false;                      ///< whether half of the blocks at least have not fallen since they slept last
+  double massRatio = 1.0;                   ///< of its heaviest to its lightest body, of those that impulses move
+  double gained_j = 0.0;                    ///< kinetic energy in the frame so far beyond the work of gravity; < 0: lost
+  bool touches = false;                     ///< whether any contact pushes in the step
   LcpWorkspace pivoting;
 };
 
