@@ -15,6 +15,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 
 namespace springtower {
 
@@ -106,6 +107,14 @@ void setSeparated(IslandStep& step, std::size_t at, double gap, const Vec3& axis
   pairs.setAxis(at, axis);
 }
 
+// The axis along which blocks are apart is the first that is looked at in the substeps to come.
+void keepAxis(IslandStep& step, std::int32_t pair, const Vec3& axis) {
+  const auto at = static_cast<std::size_t>(pair);
+  if (step.engine.pairs.touches(at)) return;
+  savePair(step.engine, at);
+  step.engine.pairs.setAxis(at, axis);
+}
+
 // How far two blocks may come nearer along a direction (unit, towards the first) in a time, m, as they move now and fall.
 double closingAlong(const IslandStep& step, const RigidIsland& island, const PairBodies& of, const Vec3& direction,
                     double time_s) {
@@ -118,36 +127,42 @@ double closingAlong(const IslandStep& step, const RigidIsland& island, const Pai
   return (speed + step.simulation.scene.gravity.magnitude * time_s) * time_s;
 }
 
-// Finds the points of a pair within `reach` at the present positions, and returns up to which relative motion they hold: where
-// there are none, the blocks' gap. `separates`: such a pair is separated.
-double findPoints(IslandStep& step, const RigidIsland& island, const PairBodies& of, double reach, bool separates,
-                  NearPoints& near) {
+// Whether two blocks that do not touch are so far apart along the axis known that they do not meet in step.drift_s. `gap`: along
+// it, m.
+bool isApart(const IslandStep& step, const RigidIsland& island, const PairBodies& of, double& gap) {
   const auto at = static_cast<std::size_t>(of.pair);
+  if (of.block[1] < 0 || step.engine.pairs.touches(at)) return false;
+  const ParticleArray& x = step.simulation.state.position;
+  const Vec3 axis = step.engine.pairs.axisOf(at);
+  gap = gapAlong(axis, cornersOf(x, static_cast<std::size_t>(of.block[0])), cornersOf(x, static_cast<std::size_t>(of.block[1])));
+  const double margin = tuning::kNearPointMargin * step.simulation.lengths.blockHeight_m;
+  return gap > margin && gap > margin + closingAlong(step, island, of, axis, step.drift_s);
+}
+
+// The points of a pair within `reach` at the present positions, or else by how much the blocks are apart, m, and along which
+// axis.
+struct Apart {
+  double gap;
+  Vec3 axis;
+};
+std::optional<Apart> findPoints(const IslandStep& step, const RigidIsland& island, const PairBodies& of, double reach,
+                                NearPoints& near) {
   const ParticleArray& x = step.simulation.state.position;
   const CornerView a = cornersOf(x, static_cast<std::size_t>(of.block[0]));
   near.count = 0;
   near.grazes = false;
-  const auto none = [&](double gap, const Vec3& axis) {
-    if (separates) setSeparated(step, at, gap, axis);
-    return gap;
-  };
   if (of.block[1] < 0) {
     findNearFloorPoints(a, reach, near);
-    return near.count > 0 ? reach : none(*std::min_element(a.z, a.z + kCorners), Vec3::UnitZ());
+    if (near.count > 0) return {};
+    return Apart{*std::min_element(a.z, a.z + kCorners), Vec3::UnitZ()};
   }
   const CornerView b = cornersOf(x, static_cast<std::size_t>(of.block[1]));
-  if (!step.engine.pairs.touches(at)) {
-    const Vec3 axis = step.engine.pairs.axisOf(at);
-    const double gap = gapAlong(axis, a, b);
-    const double margin = tuning::kNearPointMargin * step.simulation.lengths.blockHeight_m;
-    if (gap > margin && gap > margin + closingAlong(step, island, of, axis, step.drift_s)) return none(gap, axis);
-  }
   const Separation apart = findSeparation(a, b);
-  if (apart.best() > reach) return none(apart.best(), apart.bestNormal());
+  if (apart.best() > reach) return Apart{apart.best(), apart.bestNormal()};
   near.grazes = grazes(apart, grazingLimits(step.simulation), relativeVelocity(island, of));
   findNearPoints(a, b, near.grazes ? alongLevel(apart) : apart, reach,
                  tuning::kMergeRadius * step.simulation.lengths.blockHeight_m, near);
-  return reach;
+  return {};
 }
 
 // Appends a pair's points to a list.
@@ -206,23 +221,23 @@ bool markOutrunning(const IslandStep& step, RigidIsland& island, double step_s) 
   const double most = 0.5 * tuning::kNearPointMargin * step.simulation.lengths.blockHeight_m / step_s;
   const auto mark = [&](std::size_t first, std::size_t last) {
     bool any = false;
-    for (RigidBody& body : std::span(island.bodies).subspan(first, last - first)) {
+    for (std::size_t i = first; i < last; ++i) {
+      const RigidBody& body = island.bodies[i];
       const double change = (body.velocity - body.before.velocity).norm() + (body.spin - body.before.spin).norm() * body.radius_m;
-      body.outruns = change > most;
-      any = any || body.outruns;
+      island.outruns[i] = change > most ? 1 : 0;
+      any = any || island.outruns[i] != 0;
     }
     return any;
   };
+  island.outruns.assign(island.bodies.size() + 1, 0);  // what does not move is the last
   return mergeRanges(island.bodies.size(), tuning::kBlockGrain, isWide(step), false, mark, [](bool a, bool b) { return a || b; });
 }
 
 // Bounds the motion of a pair with such a body again, as if it had had its present speed from the start of the step: what it may
 // move more counts for its points in the steps to come. Returns whether it may move farther than they, or that it has none, hold.
 bool boundAgain(const IslandStep& step, const RigidIsland& island, double step_s, ListedPair& listed, PointGroup* points) {
-  const bool changed = std::any_of(listed.body.begin(), listed.body.end(), [&](std::int32_t body) {
-    return body != unmovedBody(island) && island.bodies[static_cast<std::size_t>(body)].outruns;
-  });
-  if (!changed) return false;
+  const auto outruns = [&](std::size_t side) { return island.outruns[static_cast<std::size_t>(listed.body[side])] != 0; };
+  if (!outruns(0) && !outruns(1)) return false;
   const double motion = relativeMotion(step, island, listed, step_s);
   if (motion > listed.reach_m) return true;
   const double more = std::max(0.0, motion - listed.motion_m);
@@ -340,7 +355,15 @@ void listPair(IslandStep& step, const RigidIsland& island, const Listing& how, K
     fastPairs.push_back(listed);
     return;
   }
-  listed.reach_m = findPoints(step, island, listed, reach, true, near);
+  double gap = 0.0;
+  if (isApart(step, island, listed, gap)) {
+    listed.reach_m = gap;
+    return setSeparated(step, at, gap, engine.pairs.axisOf(at));
+  }
+  if (const std::optional<Apart> apart = findPoints(step, island, listed, reach, near)) {
+    listed.reach_m = apart->gap;
+    return setSeparated(step, at, apart->gap, apart->axis);
+  }
   if (near.count > 0 || near.grazes) engine.scratch.covered[at] = 1;
   if (near.count == 0) return;
   addGroup(step, island, listed, near, reach, motion, list);
@@ -350,12 +373,14 @@ void listPair(IslandStep& step, const RigidIsland& island, const Listing& how, K
 // Finds the points of a fast pair.
 void listFastPair(IslandStep& step, RigidIsland& island, const PairBodies& of, KnownPoints& known, NearPoints& near,
                   PointList& list) {
-  const KnownGroup before = known.find(of.pair);
-  if (before.list == &island.steady) unpackGroup(island.steady, *before.group);
+  double gap = 0.0;
+  if (isApart(step, island, of, gap)) return;
   const double motion = relativeMotion(step, island, of, step.drift_s);
   const double reach = motion + tuning::kNearPointMargin * step.simulation.lengths.blockHeight_m;
-  findPoints(step, island, of, reach, false, near);
+  if (const std::optional<Apart> apart = findPoints(step, island, of, reach, near)) return keepAxis(step, of.pair, apart->axis);
   if (near.count == 0) return;
+  const KnownGroup before = known.find(of.pair);
+  if (before.list == &island.steady) unpackGroup(island.steady, *before.group);
   addGroup(step, island, of, near, reach, motion, list);
   warmStartLast(step, island, before, step.drift_s, list);
 }

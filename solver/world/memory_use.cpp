@@ -103,9 +103,9 @@ std::size_t ofScratch(const Scratch& s) {
   for (const RigidIsland& island : s.rigidIslands.all()) {
     const LcpWorkspace& lcp = island.pivoting;
     sum += sizeof(RigidIsland) + sumOf(island.bodies, island.contacts, island.places, island.motions, island.changed,
-                                       island.listedPairs, island.fastPairs, island.fastPairsBefore, lcp.matrix, lcp.inverse,
-                                       lcp.impulse, lcp.velocity, lcp.least, lcp.most, lcp.impulseChange, lcp.velocityChange,
-                                       lcp.column, lcp.clamped, lcp.placeOf);
+                                       island.listedPairs, island.fastPairs, island.fastPairsBefore, island.outruns, lcp.matrix,
+                                       lcp.inverse, lcp.impulse, lcp.velocity, lcp.least, lcp.most, lcp.impulseChange,
+                                       lcp.velocityChange, lcp.column, lcp.clamped, lcp.placeOf);
     for (const PointList* list : listsOf(island)) sum += sumOf(list->points, list->groups);
     for (const PackedPoints* p : packsOf(island))
       sum += sumOf(p->pairs, p->points, p->places, p->colourStart, p->active, p->activeStart, p->taken, p->kind, p->key,

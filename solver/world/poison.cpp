@@ -42,8 +42,8 @@ void poisonScratch(Engine& engine) {
   for (RigidIsland& island : s.rigidIslands.all()) {
     LcpWorkspace& lcp = island.pivoting;
     poisonAll(island.bodies, island.contacts, island.places, island.motions, island.changed, island.listedPairs, island.fastPairs,
-              lcp.matrix, lcp.inverse, lcp.impulse, lcp.velocity, lcp.least, lcp.most, lcp.impulseChange, lcp.velocityChange,
-              lcp.column, lcp.clamped, lcp.placeOf);
+              island.outruns, lcp.matrix, lcp.inverse, lcp.impulse, lcp.velocity, lcp.least, lcp.most, lcp.impulseChange,
+              lcp.velocityChange, lcp.column, lcp.clamped, lcp.placeOf);
     for (PointList* list : listsOf(island)) poisonAll(list->points, list->groups);
     for (PackedPoints* p : packsOf(island))
       poisonAll(p->pairs, p->points, p->places, p->colourStart, p->active, p->activeStart, p->taken, p->kind, p->key, p->keyStart,

@@ -43,7 +43,6 @@ struct RigidBody : RigidPose {
   double mostGiven_j = 0.0;                                  ///< J, both together, one sweep before
   bool pushed = false;                                       ///< whether a contact pushes it in this step
   double fastestPoint_m_s = 0.0;                             ///< upper bound of the speed of its points at the start of the step
-  bool outruns = false;  ///< whether its velocity has changed since the step began by more than the points listed allow for
 };
 
 /// One point of a manifold as a constraint: along the normal the blocks may separate, in the tangents they stick or slip.
@@ -170,14 +169,15 @@ struct RigidIsland {
   std::vector<ListedPair> listedPairs;      ///< looked at for the step, ascending
   std::vector<PairBodies> fastPairs;        ///< of these, whose points are found before a substep
   std::vector<PairBodies> fastPairsBefore;  ///< working space
-  std::vector<ListedRange> ranges;          ///< working space, where points are listed on many threads
-  bool knowsManifolds = false;              ///< points start with the forces of manifolds where no others are known
-  double energyBefore_j = 0.0;              ///< kinetic energy before the step plus the work of gravity in it
-  bool rebounds = false;                    ///< whether blocks have met in the frame so fast that they rebound
-  bool stands = false;                      ///< whether half of the blocks at least have not fallen since they slept last
-  double massRatio = 1.0;                   ///< of its heaviest to its lightest body, of those that impulses move
-  double gained_j = 0.0;                    ///< kinetic energy in the frame so far beyond the work of gravity; < 0: lost
-  bool touches = false;                     ///< whether any contact pushes in the step
+  std::vector<std::uint8_t> outruns;  ///< of each body, 1 where its velocity has changed by more in the step than they allow
+  std::vector<ListedRange> ranges;    ///< working space, where points are listed on many threads
+  bool knowsManifolds = false;        ///< points start with the forces of manifolds where no others are known
+  double energyBefore_j = 0.0;        ///< kinetic energy before the step plus the work of gravity in it
+  bool rebounds = false;              ///< whether blocks have met in the frame so fast that they rebound
+  bool stands = false;                ///< whether half of the blocks at least have not fallen since they slept last
+  double massRatio = 1.0;             ///< of its heaviest to its lightest body, of those that impulses move
+  double gained_j = 0.0;              ///< kinetic energy in the frame so far beyond the work of gravity; < 0: lost
+  bool touches = false;               ///< whether any contact pushes in the step
   LcpWorkspace pivoting;
 };
 
