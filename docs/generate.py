@@ -43,6 +43,7 @@ def marked_parts(commands, viewer, scenes, settings):
         "docs/scenes.md": {"scenes": reference.scene_names(scenes), "settings": reference.settings(settings)},
         "docs/validation.md": {"claims": recorded.claims_summary(recorded.read_json(DATA / "validation.json"))},
         "docs/performance.md": measurements(peers_stacks),
+        "docs/sensitivity.md": {"constants": recorded.constants(recorded.read_csv(DATA / "constants.csv"))},
         "docs/accuracy.md": {"peers-at-rest": recorded.peers_at_rest(peers_at_rest),
                              "peers-stacks": recorded.peers_stacks(peers_stacks),
                              "peers-falls": recorded.peers_falls(recorded.read_csv(PEERS / "falls.csv"))},
@@ -53,8 +54,9 @@ def files(folder):
     """{path from the root: text} of all that is generated."""
     program, viewer_program = (str(pathlib.Path(folder, name)) for name in ("springtower", "springtower-viewer"))
     commands, viewer, scenes, settings, constants = reference.read(program, viewer_program)
+    changes = recorded.what_constants_change(recorded.read_csv(DATA / "constants.csv"))
     written = {
-        "docs/tuning.md": reference.tuning(constants, (ROOT / "core" / "tuning.def").read_text()),
+        "docs/tuning.md": reference.tuning(constants, (ROOT / "core" / "tuning.def").read_text(), changes),
         "docs/claims.md": recorded.claims_page(recorded.read_json(DATA / "validation.json")),
     }
     for page, parts in marked_parts(commands, viewer, scenes, settings).items():

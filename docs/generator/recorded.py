@@ -203,3 +203,82 @@ def peers_falls(recorded):
 def read_json(path):
     with open(path) as file:
         return json.load(file)
+
+
+KINDS = {"rest": "at rest", "falls": "in falls", "hand": "by hand", "methods": "of other methods"}
+LEAST_EFFECT = 0.005
+SCATTERS = 1.5  # times the largest deviation of the scatter from its mean that an effect exceeds
+
+
+def _bounds(scatter, column):
+    """Within which a ratio is no effect."""
+    values = [float(row[column]) for row in scatter]
+    mean = sum(values) / len(values)
+    far = SCATTERS * max(abs(value - mean) for value in values)
+    return min(mean - far, 1 - LEAST_EFFECT), max(mean + far, 1 + LEAST_EFFECT)
+
+
+def _effects(row, scatter):
+    """What a moved constant changes beyond the scatter, in words."""
+    found = []
+    for kind, words in KINDS.items():
+        for figure in ("work", "depth"):
+            ratio = float(row[f"{kind}_{figure}"])
+            least, most = _bounds(scatter, f"{kind}_{figure}")
+            if not least <= ratio <= most:
+                found.append(f"{figure} {words} {100 * (ratio - 1):+.1f} %")
+    if float(row["rise"]) > 2 * max(float(other["rise"]) for other in scatter):
+        found.append(f"energy rises by {number(row['rise'], 1)}")
+    usual = {end for other in scatter for end in other["ends"].split("; ")}
+    found += [end for end in row["ends"].split("; ") if end and end not in usual]
+    return ", ".join(found)
+
+
+def _moved(recorded):
+    """The rows of the scatter, and {constant: its rows}."""
+    scatter = [row for row in recorded if row["constant"] in ("none", "scatter")]
+    moved = {}
+    for row in recorded:
+        if row["constant"] not in ("none", "scatter"):
+            moved.setdefault(row["constant"], []).append(row)
+    return scatter, moved
+
+
+def what_constants_change(recorded):
+    """{constant: "nothing", "states" or "figures"}: what changes where it is moved by a tenth, figures beyond the scatter."""
+    scatter, moved = _moved(recorded)
+    def most(rows):
+        if all(int(row["states"]) == 0 and not row["ends"] for row in rows):
+            return "nothing"
+        return "figures" if any(_effects(row, scatter) for row in rows) else "states"
+    return {name: most(rows) for name, rows in moved.items()}
+
+
+def constants(recorded):
+    """What changes when a constant is moved by a tenth, for docs/sensitivity.md: counts, lists and a table."""
+    scatter, moved = _moved(recorded)
+    changes = what_constants_change(recorded)
+    lines = []
+    for name, rows in moved.items():
+        if changes[name] != "figures":
+            continue
+        cells = [f"{number(row['value'], 3)}: " + (_effects(row, scatter) or f"within the scatter ({row['states']} states)")
+                 for row in rows]
+        lines.append((f"`{name}`", *(cell(text) for text in (cells if len(cells) == 2 else ["", *cells]))))
+    def span(column):
+        least, most = _bounds(scatter, column)
+        return f"{100 * (least - 1):+.1f} to {100 * (most - 1):+.1f} %"
+    def names(what):
+        return ", ".join(f"`{name}`" for name, change in changes.items() if change == what)
+    def count(what):
+        return sum(change == what for change in changes.values())
+    return "\n\n".join([
+        f"Of {len(moved)} constants {count('nothing')} change no bit of any end state, {count('states')} change states but no figure beyond the "
+        f"scatter, and {count('figures')} change a figure.",
+        table(["no effect within", *KINDS.values()],
+              [(figure, *(span(f"{kind}_{figure}") for kind in KINDS)) for figure in ("work", "depth")]),
+        table(["constant", "a tenth less", "a tenth more"], lines),
+        f"States change, no figure does beyond the scatter: {names('states')}.",
+        f"No bit of any state changes: {names('nothing')}.",
+        condition(recorded),
+    ])

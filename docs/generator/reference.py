@@ -62,16 +62,25 @@ def reasons(definition):
     return found
 
 
-def tuning(rows, definition):
-    """The whole page docs/tuning.md."""
+# What docs/sensitivity.md says of a constant, where nothing else is on record.
+CHANGES = {"nothing": "none; a tenth more or less changes no state", "states": "none; a tenth more or less changes states, no figure",
+           "figures": "none; a tenth more or less changes figures"}
+
+
+def tuning(rows, definition, changes):
+    """The whole page docs/tuning.md. changes: of recorded.what_constants_change."""
     why = reasons(definition)
-    bare = sum(row["evidence"] == "none" for row in rows)
+    bare = [row["name"] for row in rows if row["evidence"] == "none"]
+    deciding = sum(changes.get(name) == "figures" for name in bare)
+    def evidence(row):
+        return CHANGES.get(changes.get(row["name"]), "none") if row["evidence"] == "none" else row["evidence"]
     page = [
         "# Constants of the engine", "",
         "Made by `docs/generate.py` from `springtower settings --all --json` and the comments of [`core/tuning.def`](../core/tuning.def).", "",
         "These are the numbers that are choices, rather than physics or layout, and that no scene sets: thresholds, limits, safety factors. "
         "h is the height of the scene's lowest block, g is gravity. "
-        f"Of {len(rows)} constants, {len(rows) - bare} rest on something that is on record; for {bare} nothing is ('none'). "
+        f"Of {len(rows)} constants, {len(rows) - len(bare)} rest on something that is on record; for {len(bare)} nothing is ('none'): "
+        f"{deciding} of these change a figure where they are a tenth more or less ([sensitivity.md](sensitivity.md)). "
         "To try others: the preset `tune` ([CONTRIBUTING.md](../CONTRIBUTING.md)).",
     ]
     groups = []
@@ -82,7 +91,7 @@ def tuning(rows, definition):
         members = [row for row in rows if row["group"] == group]
         page += ["", f"## {group[0].upper()}{group[1:]}", "", table(
             ["constant", "value", "unit", "what for", "rests on"],
-            [(f"`{row['name']}`", f"{row['value']:g}", cell(row["unit"]), cell(row["purpose"]), cell(row["evidence"])) for row in members])]
+            [(f"`{row['name']}`", f"{row['value']:g}", cell(row["unit"]), cell(row["purpose"]), cell(evidence(row))) for row in members])]
         for row in members:
             if row["name"] in why:
                 page += ["", f"`{row['name']}`: {cell(why[row['name']])}"]
