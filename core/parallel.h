@@ -41,7 +41,7 @@ void forRanges(std::size_t count, std::size_t grain, bool parallel, const Kernel
 #endif
 }
 
-/// The same, in as many ranges as there are threads, each on the same thread in every call, as far as they are free: what one
+/// The same, in as many ranges as there are threads at most, each on the same thread in every call where that is free: what one
 /// call leaves in a core's cache the next one finds there.
 template <class Kernel>
 void forEqualRanges(std::size_t count, std::size_t grain, bool parallel, const Kernel& kernel) {

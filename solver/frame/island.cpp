@@ -49,7 +49,7 @@ IslandOutcome runByModes(IslandStep& step) {
   double begin_s = step.part.begin_s;
   const IslandMode mode = nextMode(begin_s > 0.0 ? ModeChange::frameContinues : ModeChange::frameBegins, facts);
   setMode(step, mode);
-  if (facts.leftAlone) noteFallen(step);
+  if (facts.leftAlone || facts.fast) noteFallen(step);
   if (mode == IslandMode::implicit) {
     const bool isChecked = movesAlone(step, facts);
     const IslandEnergy before = isChecked ? islandEnergy(step) : IslandEnergy{};

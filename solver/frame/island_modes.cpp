@@ -123,8 +123,9 @@ void impulseToPenalty(const IslandStep& step, std::int32_t contact, const Contac
 
 void noteFallen(const IslandStep& step) {
   const double least = speedOf(step, tuning::kRigidEntrySpeed);
+  const std::int32_t held = holdsTether(step) ? static_cast<std::int32_t>(index(step.simulation.tether.block)) : -1;
   for (const std::int32_t block : step.blocks) {
-    if (centreVelocity(step, block).squaredNorm() > least * least)
+    if (block != held && centreVelocity(step, block).squaredNorm() > least * least)
       step.engine.memo.blockHistory[static_cast<std::size_t>(block)].hasFallen = true;
   }
 }

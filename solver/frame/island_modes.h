@@ -29,7 +29,8 @@ struct IslandFacts {
 };
 IslandFacts islandFacts(const IslandStep& step);
 
-/// Notes in the histories of blocks which of them are as fast as what falls.
+/// Notes in the histories of blocks which of them are as fast as what falls. Not of the block that a hand holds, which is as fast
+/// as the hand.
 void noteFallen(const IslandStep& step);
 
 /// Whether an island is a stack that stands and sways, or that a hand leads: mostly not fallen, on something else, and with no

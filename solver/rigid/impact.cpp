@@ -84,8 +84,9 @@ double fastestImpact(const RigidIsland& island) {
       return std::max(std::max(most[0], most[1]), std::max(most[2], most[3]));
     };
     const std::size_t count = packed->active.size();
-    fastest = mergeRanges(count, tuning::kPairGrain, count >= 2 * tuning::kPairGrain, fastest, fastestOf,
-                          [](double x, double y) { return std::max(x, y); });
+    const double found = mergeRanges(count, tuning::kPairGrain, count >= 2 * tuning::kPairGrain, 0.0, fastestOf,
+                                     [](double x, double y) { return std::max(x, y); });
+    fastest = std::max(fastest, found);
   }
   return fastest;
 }

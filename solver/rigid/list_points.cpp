@@ -425,7 +425,7 @@ void addOutrun(IslandStep& step, RigidIsland& island, double step_s) {
       fastPairs.push_back(listed);
     }
   };
-  listRanges(step, pairs.size(), island.ranges, island.fast, island.fastPairs, addRange);
+  listRanges(step, pairs.size(), island.ranges, island.fast, island.fastPairs, addRange);  // no points
 }
 
 void listFastPoints(IslandStep& step, RigidIsland& island, bool firstSubstep) {
@@ -441,7 +441,7 @@ void listFastPoints(IslandStep& step, RigidIsland& island, bool firstSubstep) {
     NearPoints near;
     for (const PairBodies& of : pairs.subspan(first, last - first)) listFastPair(step, island, of, known, near, list);
   };
-  listRanges(step, pairs.size(), island.ranges, island.fast, island.fastPairsBefore, listRange);
+  listRanges(step, pairs.size(), island.ranges, island.fast, island.fastPairsBefore, listRange);  // no pairs
   removeFastFromSteady(island);
   packPoints(step, island, island.fast);
 }

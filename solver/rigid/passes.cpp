@@ -193,7 +193,8 @@ double solveAgain(const Pass& pass, BodyMotion* bodies, PackedPoints& packed, st
     for (std::size_t k = 0; k < points.size(); ++k) {
       PackedPoint& p = points[pass.reversed ? points.size() - 1 - k : k];
       solvePoints(pass, pair, kAll, motion, p, opening, more);
-      worst = more > worst * p.normalMass ? more / p.normalMass : worst;
+      const Lanes slowed = p.normalMass > kNone ? more / p.normalMass : kNone;
+      largerOf(slowed, worst, worst);
     }
     scatter(motion, pair, bodies);
   }

@@ -40,7 +40,7 @@ std::size_t solveAll(const Pass& pass, std::vector<BodyMotion>& bodies, PackedPo
 double solveActive(const Pass& pass, std::vector<BodyMotion>& bodies, PackedPoints& packed);
 
 /// Notes that pass `number` through an impact (0: what meets in it) has changed a body's velocity: the pairs in which it is are
-/// due in the next pass, and in this one where they come later. Precondition: `changed` and `due` are set, to less.
+/// due in the next pass, and in this one where they come later. Precondition: `changed` and `due` are set, to no more.
 void noteChange(std::int32_t body, int number, RigidIsland& island);
 
 /// Pass `number` through an impact: over those active points of which a body's velocity has changed since they were solved last,

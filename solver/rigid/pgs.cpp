@@ -179,18 +179,19 @@ void relaxAndRebound(IslandStep& step, RigidIsland& island, int passes) {
 
 // Passes move blocks by more than their velocities where they push overlap out. If the frame has gained energy that nothing lost
 // before pays for, takes back the share of that extra motion whose lifting work is the unpaid energy. Between very unlike masses
-// a push that is too large is corrected only slowly over the passes.
-void lowerUnpaid(const IslandStep& step, double kinetic_j, RigidIsland& island) {
-  if (!island.touches || isWorkedOn(step)) return;
+// a push that is too large is corrected only slowly over the passes. `kinetic_j`: kinetic energy of all bodies; returns what it
+// is then, as their axes turn.
+double lowerUnpaid(const IslandStep& step, double kinetic_j, RigidIsland& island) {
+  if (!island.touches || isWorkedOn(step)) return kinetic_j;
   const double unpaid_j =
       kinetic_j - island.energyBefore_j - std::max(0.0, freePushOut(step.simulation, massOf(island)) - island.gained_j);
-  if (!(unpaid_j > 0.0)) return;
+  if (!(unpaid_j > 0.0)) return kinetic_j;
   const auto excessOf = [&](const RigidBody& body) { return Vec3(body.moved - step.drift_s * body.velocity); };
   double lifted_j = 0.0;
   for (const RigidBody& body : island.bodies) {
     if (body.pushed && body.inverseMass > 0.0) lifted_j -= excessOf(body).dot(step.gravity) / body.inverseMass;
   }
-  if (!(lifted_j > 0.0)) return;
+  if (!(lifted_j > 0.0)) return kinetic_j;
   const double share = std::min(1.0, unpaid_j / lifted_j);
   for (RigidBody& body : island.bodies) {
     if (!body.pushed || body.inverseMass == 0.0) continue;
@@ -200,16 +201,19 @@ void lowerUnpaid(const IslandStep& step, double kinetic_j, RigidIsland& island) 
     turnAxes(-share * (body.turned - step.drift_s * body.spin), body.axes);
     island.energyBefore_j -= excess.dot(step.gravity) / body.inverseMass;
   }
+  return kineticEnergy(island.bodies);
 }
 
 // Few passes while an island is fast; more where its blocks overlap, or are coming to rest: then the load of a pile sinks in by
 // what a pass leaves, and there is no energy to lift it again.
 int rigidModePasses(const IslandStep& step, const RigidIsland& island) {
-  if (holdsTether(step) || isPushed(step)) return tuning::kCheapPasses;  // what a hand leaves in place depends on friction
   const Lengths& lengths = step.simulation.lengths;
+  const double entry = tuning::kRigidEntrySpeed * lengths.blockHeight_m / lengths.fallTime_s;
+  const bool slow = 2.0 * island.energyBefore_j < massOf(island) * entry * entry;
+  // What a hand or a force leaves in place depends on friction.
+  if ((slow || island.stands) && (holdsTether(step) || isPushed(step))) return tuning::kCheapPasses;
   if (deepestOverlap(island) > tuning::kDeepOverlap * lengths.blockHeight_m) return tuning::kDeepOverlapPasses;
-  const double slow = tuning::kRigidEntrySpeed * lengths.blockHeight_m / lengths.fallTime_s;
-  return 2.0 * island.energyBefore_j < massOf(island) * slow * slow ? tuning::kSlowIslandPasses : tuning::kFastIslandPasses;
+  return slow ? tuning::kSlowIslandPasses : tuning::kFastIslandPasses;
 }
 
 }  // namespace
@@ -264,7 +268,7 @@ void stepImpulses(IslandStep& step, RigidIsland& island) {
       isolated ? removeAddedEnergy(added_j, island) : takeGivenEnergy(added_j, step.drift_s, island);
       kinetic_j = kineticEnergy(island.bodies);
     }
-    if (!isolated) lowerUnpaid(step, kinetic_j, island);
+    if (!isolated) kinetic_j = lowerUnpaid(step, kinetic_j, island);
     island.gained_j += kinetic_j - island.energyBefore_j;
   }
 }

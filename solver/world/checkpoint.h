@@ -35,7 +35,7 @@ Vec3 frameStartPosition(const Simulation& simulation, std::size_t block, std::si
 void releaseFrameStart(Engine& engine);
 
 /// Saves a pair (its position in engine.pairs), and its points as the frame began, before anything changes in it other than by
-/// the steps; that is rare.
+/// the steps. Any thread, one thread a pair; the first call in a frame saves, the others do nothing.
 void savePair(Engine& engine, std::size_t at);
 
 /// Restores the start of the frame, or of its part that was run last, for all islands that took part or for one.

@@ -169,7 +169,8 @@ struct RigidIsland {
   std::vector<ListedPair> listedPairs;      ///< looked at for the step, ascending
   std::vector<PairBodies> fastPairs;        ///< of these, whose points are found before a substep
   std::vector<PairBodies> fastPairsBefore;  ///< working space
-  std::vector<std::uint8_t> outruns;  ///< of each body, 1 where its velocity has changed by more in the step than they allow
+  std::vector<std::uint8_t> outruns;  ///< of each body: 1 where its velocity has changed in the step by more than the listed
+                                      ///< points allow; and 0 for what does not move
   std::vector<ListedRange> ranges;    ///< working space, where points are listed on many threads
   bool knowsManifolds = false;        ///< points start with the forces of manifolds where no others are known
   double energyBefore_j = 0.0;        ///< kinetic energy before the step plus the work of gravity in it
