@@ -228,12 +228,14 @@ class RecordingReader {
  public:
   // Throws InputError naming where the line stands; Json::parse_error where it is no JSON.
   void take(std::string_view text, const std::string& where) {
-    const Json line = Json::parse(text);
     try {
+      const Json line = Json::parse(text);
       if (!scene_) return begin(line, where);
       recording.frames.push_back(frameFrom(line, *scene_, tuning_, where));
       tuning_ = recording.frames.back().input.tuning;
-    } catch (const Json::exception& error) {
+    } catch (const Json::parse_error&) {
+      throw;
+    } catch (const Json::exception& error) {  // also a number that is too large
       throw InputError(fmt::format("{}: {}", where, onOneLine(error.what())));
     }
   }

@@ -26,6 +26,8 @@ TEST(Recording, BrokenFilesNameTheLine) {
   const std::pair<std::string, std::string> broken[] = {
       {"", "empty"},
       {R"({"scene":"tower:1"})", "line 1"},
+      {R"({"springtower_recording":1,"scene":"tower:1","players":0,"seed":1e3000})", "recording.jsonl, line 1: "},
+      {head + "\n{\"hash\":\"0\",\"tuning\":{\"friction\":-1e400}}", "recording.jsonl, line 2: "},
       {head + "\n{\"hash\":\"zz\"}", "line 2: hash"},
       {head + "\n[1]", "line 2: expected an object, got an array"},
       {head + "\n{\"hash\":\"0\"}\nnonsense", "line 3"},
