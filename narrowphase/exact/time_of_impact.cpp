@@ -14,6 +14,9 @@ constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 /// Added to every error bound: more than the effect of underflow where all factors are below 1e100.
 constexpr double kUnderflow = 1e-200;
 
+/// Products of six coordinates up to this, and a few of them added, are finite.
+constexpr double kLargest = 1e50;
+
 /// Parts of the step examined before exact arithmetic. A simple crossing needs about five.
 constexpr int kMaxParts = 24;
 
@@ -184,16 +187,16 @@ Refined refine(BernsteinCubic cubic, const MovingPolygon<Vertices>& polygon) {
   return {Outcome::undecided, time.from};
 }
 
-/// Whether all coordinates are numbers. NaN gets lost in comparisons, so a miss that was found with one proves nothing.
-bool areFinite(const MovingPoint& a, const MovingPoint& b, const MovingPoint& c, const MovingPoint& d) {
-  for (const MovingPoint* point : {&a, &b, &c, &d})
-    if (!point->start.allFinite() || !point->end.allFinite()) return false;
+/// Whether no coordinate is larger than this. NaN is none.
+bool areWithin(double most, const MovingPoint& a, const MovingPoint& b, const MovingPoint& c, const MovingPoint& d) {
+  for (const MovingPoint* point : {&a, &b, &c, &d}) {
+    if (!(point->start.array().abs() <= most).all() || !(point->end.array().abs() <= most).all()) return false;
+  }
   return true;
 }
 
-/// The result of a cull that excludes a hit, or that of coordinates with which nothing is excluded.
-TimeOfImpact missIfFinite(const MovingPoint& a, const MovingPoint& b, const MovingPoint& c, const MovingPoint& d) {
-  return areFinite(a, b, c, d) ? TimeOfImpact{false, 1.0} : TimeOfImpact{true, 0.0};
+bool areFinite(const MovingPoint& a, const MovingPoint& b, const MovingPoint& c, const MovingPoint& d) {
+  return areWithin(std::numeric_limits<double>::max(), a, b, c, d);
 }
 
 }  // namespace
@@ -203,14 +206,18 @@ TimeOfImpact pointTriangleTimeOfImpact(const MovingPoint& point, const MovingPoi
   DecidedBy ignored;
   DecidedBy& stage = decidedBy != nullptr ? *decidedBy : ignored;
   stage = DecidedBy::boxes;
-  if (!pointTriangleBoxesOverlap(point, a, b, c)) return missIfFinite(point, a, b, c);
-  stage = DecidedBy::cubic;
-  const BernsteinCubic cubic = coplanarityCubic(point, a, b, c);
-  if (!mayVanish(cubic)) return missIfFinite(point, a, b, c);
-  stage = DecidedBy::refinement;
-  if (!areFinite(point, a, b, c)) return {true, 0.0};
-  const Refined refined = refine<3>(cubic, differences<3>({&a, &b, &c}, {&point, &point, &point}));
-  if (refined.outcome != Outcome::undecided) return {refined.outcome == Outcome::hit, refined.time};
+  // What is not finite gets lost in comparisons, so that nothing is excluded with it.
+  const bool multiplies = areWithin(kLargest, point, a, b, c);
+  if (!multiplies && !areFinite(point, a, b, c)) return {true, 0.0};
+  if (!pointTriangleBoxesOverlap(point, a, b, c)) return {false, 1.0};
+  if (multiplies) {
+    stage = DecidedBy::cubic;
+    const BernsteinCubic cubic = coplanarityCubic(point, a, b, c);
+    if (!mayVanish(cubic)) return {false, 1.0};
+    stage = DecidedBy::refinement;
+    const Refined refined = refine<3>(cubic, differences<3>({&a, &b, &c}, {&point, &point, &point}));
+    if (refined.outcome != Outcome::undecided) return {refined.outcome == Outcome::hit, refined.time};
+  }
   stage = DecidedBy::exact;
   return exactPointTriangleTimeOfImpact(point, a, b, c);
 }
@@ -220,14 +227,17 @@ TimeOfImpact edgeEdgeTimeOfImpact(const MovingPoint& a, const MovingPoint& b, co
   DecidedBy ignored;
   DecidedBy& stage = decidedBy != nullptr ? *decidedBy : ignored;
   stage = DecidedBy::boxes;
-  if (!edgeEdgeBoxesOverlap(a, b, c, d)) return missIfFinite(a, b, c, d);
-  stage = DecidedBy::cubic;
-  const BernsteinCubic cubic = coplanarityCubic(a, b, c, d);
-  if (!mayVanish(cubic)) return missIfFinite(a, b, c, d);
-  stage = DecidedBy::refinement;
-  if (!areFinite(a, b, c, d)) return {true, 0.0};
-  const Refined refined = refine<4>(cubic, differences<4>({&c, &d, &d, &c}, {&a, &a, &b, &b}));
-  if (refined.outcome != Outcome::undecided) return {refined.outcome == Outcome::hit, refined.time};
+  const bool multiplies = areWithin(kLargest, a, b, c, d);
+  if (!multiplies && !areFinite(a, b, c, d)) return {true, 0.0};
+  if (!edgeEdgeBoxesOverlap(a, b, c, d)) return {false, 1.0};
+  if (multiplies) {
+    stage = DecidedBy::cubic;
+    const BernsteinCubic cubic = coplanarityCubic(a, b, c, d);
+    if (!mayVanish(cubic)) return {false, 1.0};
+    stage = DecidedBy::refinement;
+    const Refined refined = refine<4>(cubic, differences<4>({&c, &d, &d, &c}, {&a, &a, &b, &b}));
+    if (refined.outcome != Outcome::undecided) return {refined.outcome == Outcome::hit, refined.time};
+  }
   stage = DecidedBy::exact;
   return exactEdgeEdgeTimeOfImpact(a, b, c, d);
 }

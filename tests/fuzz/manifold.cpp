@@ -133,9 +133,12 @@ void testSeparation(const ParticleArray& position, const Pair& pair, long double
   // Edges that are all but parallel are left out, which may hide so much.
   if (gap > 4.0 * tuning::kMinEdgeCross * size + rounding)
     requireThat(found.best() > 0.0, "blocks that are apart are said to be: " + figures);
-  // The normal of edges that are all but parallel is off by its rounding over their sine; and of all directions, in which corners
-  // may be farther apart than along the fifteen axes, it is one.
-  const double turned = 1e-15 / tuning::kMinEdgeCross * size;
+  // Axes come from corners, which are rounded in proportion to their distance from the origin. The normal of edges that are all
+  // but parallel is off by that over their sine; and of all directions, in which corners may be farther apart than along the
+  // fifteen axes, it is one.
+  const double least = std::min(pair.lower.half.minCoeff(), pair.upper.half.minCoeff());
+  const double axes = 1e-15 + 1e-3 * rounding / least;
+  const double turned = axes / tuning::kMinEdgeCross * size;
   requireThat(found.best() <= static_cast<double>(gap) + rounding + turned, "no gap is larger than the largest: " + figures);
   for (const double normal : {found.normalFaceA.norm(), found.normalFaceB.norm()})
     requireThat(std::abs(normal - 1.0) < 1e-9, "normals are of length 1");

@@ -206,6 +206,22 @@ struct Sampled {
   std::optional<double> meetUntil;  ///< the features certainly touch no later than this
 };
 
+// Found by fuzz_hour: products of such coordinates overflow, and a cubic of what is not finite seemed to have no root.
+TEST(TimeOfImpact, OfCoordinatesWhoseProductsOverflowIsTheExactOne) {
+  const MovingPoint a = moving({0x1.4p+29, 0x1.4d674d674d674p+26, -0x1.5157d157d157dp+28},
+                               {0x1.f353735373538p+28, 0x1.f353735373538p+28, -0x1.54ca57d04fc7fp+24});
+  const MovingPoint b = moving({-0x1.54ca57d04fc7fp+24, 0x1p+28, 0x1.6p+27}, {-0x1.54ca57d04fc7fp+24, 0x1p+28, 0x1.6p+27});
+  const MovingPoint c =
+      moving({0x1.6p+27, 0x1.bf97bf97bf97cp+26, -0x1.ffffffffffffep+26}, {0x1.8p+26, 0x1.4p+29, 0x1.4d6172adf6504p-936});
+  const MovingPoint d =
+      moving({0x1.8p+27, 0x1p+26, 0x1.4fc7ffffedcd4p+977}, {0x1.85d705d705d7p+28, 0x1.85d705d705d7p+28, 0x1p+28});
+  const TimeOfImpact exact = exactEdgeEdgeTimeOfImpact(a, b, c, d);
+  const TimeOfImpact found = edgeEdgeTimeOfImpact(a, b, c, d);
+  EXPECT_TRUE(exact.hit);
+  EXPECT_EQ(found.hit, exact.hit);
+  EXPECT_EQ(found.time, exact.time);
+}
+
 // Each of the 24 coordinates, of queries that miss by their boxes, by their cubic, by the refinement and of one that hits.
 TEST(TimeOfImpact, WhatIsNotFiniteIsAHitWhateverElseThereIs) {
   const std::array<std::array<MovingPoint, 4>, 5> queries = {
