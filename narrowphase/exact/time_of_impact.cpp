@@ -195,51 +195,42 @@ bool areWithin(double most, const MovingPoint& a, const MovingPoint& b, const Mo
   return true;
 }
 
-bool areFinite(const MovingPoint& a, const MovingPoint& b, const MovingPoint& c, const MovingPoint& d) {
-  return areWithin(std::numeric_limits<double>::max(), a, b, c, d);
+/// The stages one after the other, the cheapest first. `boxesOverlap` and `exactly` are called with the points,
+/// `polygonOf` gives their differences.
+template <int Vertices, class BoxesOverlap, class PolygonOf, class Exactly>
+TimeOfImpact decide(const MovingPoint& a, const MovingPoint& b, const MovingPoint& c, const MovingPoint& d, DecidedBy* decidedBy,
+                    const BoxesOverlap& boxesOverlap, const PolygonOf& polygonOf, const Exactly& exactly) {
+  DecidedBy ignored;
+  DecidedBy& stage = decidedBy != nullptr ? *decidedBy : ignored;
+  stage = DecidedBy::boxes;
+  // What is not finite gets lost in comparisons, so that nothing is excluded with it.
+  const bool multiplies = areWithin(kLargest, a, b, c, d);
+  if (!multiplies && !areWithin(std::numeric_limits<double>::max(), a, b, c, d)) return {true, 0.0};
+  if (!boxesOverlap(a, b, c, d)) return {false, 1.0};
+  if (multiplies) {
+    stage = DecidedBy::cubic;
+    const BernsteinCubic cubic = coplanarityCubic(a, b, c, d);
+    if (!mayVanish(cubic)) return {false, 1.0};
+    stage = DecidedBy::refinement;
+    const Refined refined = refine<Vertices>(cubic, polygonOf());
+    if (refined.outcome != Outcome::undecided) return {refined.outcome == Outcome::hit, refined.time};
+  }
+  stage = DecidedBy::exact;
+  return exactly(a, b, c, d);
 }
 
 }  // namespace
 
 TimeOfImpact pointTriangleTimeOfImpact(const MovingPoint& point, const MovingPoint& a, const MovingPoint& b, const MovingPoint& c,
                                        DecidedBy* decidedBy) {
-  DecidedBy ignored;
-  DecidedBy& stage = decidedBy != nullptr ? *decidedBy : ignored;
-  stage = DecidedBy::boxes;
-  // What is not finite gets lost in comparisons, so that nothing is excluded with it.
-  const bool multiplies = areWithin(kLargest, point, a, b, c);
-  if (!multiplies && !areFinite(point, a, b, c)) return {true, 0.0};
-  if (!pointTriangleBoxesOverlap(point, a, b, c)) return {false, 1.0};
-  if (multiplies) {
-    stage = DecidedBy::cubic;
-    const BernsteinCubic cubic = coplanarityCubic(point, a, b, c);
-    if (!mayVanish(cubic)) return {false, 1.0};
-    stage = DecidedBy::refinement;
-    const Refined refined = refine<3>(cubic, differences<3>({&a, &b, &c}, {&point, &point, &point}));
-    if (refined.outcome != Outcome::undecided) return {refined.outcome == Outcome::hit, refined.time};
-  }
-  stage = DecidedBy::exact;
-  return exactPointTriangleTimeOfImpact(point, a, b, c);
+  const auto polygonOf = [&] { return differences<3>({&a, &b, &c}, {&point, &point, &point}); };
+  return decide<3>(point, a, b, c, decidedBy, pointTriangleBoxesOverlap, polygonOf, exactPointTriangleTimeOfImpact);
 }
 
 TimeOfImpact edgeEdgeTimeOfImpact(const MovingPoint& a, const MovingPoint& b, const MovingPoint& c, const MovingPoint& d,
                                   DecidedBy* decidedBy) {
-  DecidedBy ignored;
-  DecidedBy& stage = decidedBy != nullptr ? *decidedBy : ignored;
-  stage = DecidedBy::boxes;
-  const bool multiplies = areWithin(kLargest, a, b, c, d);
-  if (!multiplies && !areFinite(a, b, c, d)) return {true, 0.0};
-  if (!edgeEdgeBoxesOverlap(a, b, c, d)) return {false, 1.0};
-  if (multiplies) {
-    stage = DecidedBy::cubic;
-    const BernsteinCubic cubic = coplanarityCubic(a, b, c, d);
-    if (!mayVanish(cubic)) return {false, 1.0};
-    stage = DecidedBy::refinement;
-    const Refined refined = refine<4>(cubic, differences<4>({&c, &d, &d, &c}, {&a, &a, &b, &b}));
-    if (refined.outcome != Outcome::undecided) return {refined.outcome == Outcome::hit, refined.time};
-  }
-  stage = DecidedBy::exact;
-  return exactEdgeEdgeTimeOfImpact(a, b, c, d);
+  const auto polygonOf = [&] { return differences<4>({&c, &d, &d, &c}, {&a, &a, &b, &b}); };
+  return decide<4>(a, b, c, d, decidedBy, edgeEdgeBoxesOverlap, polygonOf, exactEdgeEdgeTimeOfImpact);
 }
 
 }  // namespace springtower

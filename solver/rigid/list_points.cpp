@@ -127,24 +127,26 @@ double closingAlong(const IslandStep& step, const RigidIsland& island, const Pai
   return (speed + step.simulation.scene.gravity.magnitude * time_s) * time_s;
 }
 
-// Whether two blocks that do not touch are so far apart along the axis known that they do not meet in step.drift_s. `gap`: along
-// it, m.
-bool isApart(const IslandStep& step, const RigidIsland& island, const PairBodies& of, double& gap) {
-  const auto at = static_cast<std::size_t>(of.pair);
-  if (of.block[1] < 0 || step.engine.pairs.touches(at)) return false;
-  const ParticleArray& x = step.simulation.state.position;
-  const Vec3 axis = step.engine.pairs.axisOf(at);
-  gap = gapAlong(axis, cornersOf(x, static_cast<std::size_t>(of.block[0])), cornersOf(x, static_cast<std::size_t>(of.block[1])));
-  const double margin = tuning::kNearPointMargin * step.simulation.lengths.blockHeight_m;
-  return gap > margin && gap > margin + closingAlong(step, island, of, axis, step.drift_s);
-}
-
-// The points of a pair within `reach` at the present positions, or else by how much the blocks are apart, m, and along which
-// axis.
+// By how much two blocks are apart, m, and along which axis.
 struct Apart {
   double gap;
   Vec3 axis;
 };
+
+// Of two blocks that do not touch and are so far apart along the axis known that they do not meet in step.drift_s.
+std::optional<Apart> apartAlongKnownAxis(const IslandStep& step, const RigidIsland& island, const PairBodies& of) {
+  const auto at = static_cast<std::size_t>(of.pair);
+  if (of.block[1] < 0 || step.engine.pairs.touches(at)) return {};
+  const ParticleArray& x = step.simulation.state.position;
+  const Vec3 axis = step.engine.pairs.axisOf(at);
+  const double gap =
+      gapAlong(axis, cornersOf(x, static_cast<std::size_t>(of.block[0])), cornersOf(x, static_cast<std::size_t>(of.block[1])));
+  const double margin = tuning::kNearPointMargin * step.simulation.lengths.blockHeight_m;
+  if (!(gap > margin && gap > margin + closingAlong(step, island, of, axis, step.drift_s))) return {};
+  return Apart{gap, axis};
+}
+
+// The points of a pair within `reach` at the present positions, where the blocks are not farther apart than that.
 std::optional<Apart> findPoints(const IslandStep& step, const RigidIsland& island, const PairBodies& of, double reach,
                                 NearPoints& near) {
   const ParticleArray& x = step.simulation.state.position;
@@ -355,12 +357,9 @@ void listPair(IslandStep& step, const RigidIsland& island, const Listing& how, K
     fastPairs.push_back(listed);
     return;
   }
-  double gap = 0.0;
-  if (isApart(step, island, listed, gap)) {
-    listed.reach_m = gap;
-    return setSeparated(step, at, gap, engine.pairs.axisOf(at));
-  }
-  if (const std::optional<Apart> apart = findPoints(step, island, listed, reach, near)) {
+  std::optional<Apart> apart = apartAlongKnownAxis(step, island, listed);
+  if (!apart) apart = findPoints(step, island, listed, reach, near);
+  if (apart) {
     listed.reach_m = apart->gap;
     return setSeparated(step, at, apart->gap, apart->axis);
   }
@@ -373,8 +372,7 @@ void listPair(IslandStep& step, const RigidIsland& island, const Listing& how, K
 // Finds the points of a fast pair.
 void listFastPair(IslandStep& step, RigidIsland& island, const PairBodies& of, KnownPoints& known, NearPoints& near,
                   PointList& list) {
-  double gap = 0.0;
-  if (isApart(step, island, of, gap)) return;
+  if (apartAlongKnownAxis(step, island, of)) return;
   const double motion = relativeMotion(step, island, of, step.drift_s);
   const double reach = motion + tuning::kNearPointMargin * step.simulation.lengths.blockHeight_m;
   if (const std::optional<Apart> apart = findPoints(step, island, of, reach, near)) return keepAxis(step, of.pair, apart->axis);

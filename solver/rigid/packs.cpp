@@ -182,8 +182,30 @@ void fillPack(const IslandStep& step, const RigidIsland& island, ActingPoints& l
   }
 }
 
-// Lists the packs of each body.
+}  // namespace
+
+void packPoints(const IslandStep& step, const RigidIsland& island, ActingPoints& list) {
+  PackedPoints& packed = list.packed;
+  packed.active.clear();
+  packed.activeStart.clear();
+  packed.activePoints = 0;
+  packed.bodyStart.clear();
+  if (list.points.empty()) {
+    packed.pairs.clear();
+    packed.points.clear();
+    packed.places.clear();
+    packed.colourStart.clear();
+    return;
+  }
+  sortGroups(island, list, packed);
+  distribute(island, list);
+  overPacks(packed, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) fillPack(step, island, list, packed.pairs[i]);
+  });
+}
+
 void listPairsOfBodies(const RigidIsland& island, PackedPoints& packed) {
+  if (!packed.bodyStart.empty()) return;
   packed.bodyStart.assign(island.bodies.size() + 1, 0);
   const auto forEach = [&](const auto& visit) {
     for (std::size_t i = 0; i < packed.pairs.size(); ++i) {
@@ -198,28 +220,6 @@ void listPairsOfBodies(const RigidIsland& island, PackedPoints& packed) {
   std::partial_sum(packed.bodyStart.begin(), packed.bodyStart.end(), packed.bodyStart.begin());
   packed.bodyPairs.resize(static_cast<std::size_t>(packed.bodyStart.back()));
   forEach([&](std::size_t body, std::int32_t i) { packed.bodyPairs[static_cast<std::size_t>(--packed.bodyStart[body])] = i; });
-}
-
-}  // namespace
-
-void packPoints(const IslandStep& step, const RigidIsland& island, ActingPoints& list) {
-  PackedPoints& packed = list.packed;
-  packed.active.clear();
-  packed.activeStart.clear();
-  packed.activePoints = 0;
-  if (list.points.empty()) {
-    packed.pairs.clear();
-    packed.points.clear();
-    packed.places.clear();
-    packed.colourStart.clear();
-    return;
-  }
-  sortGroups(island, list, packed);
-  distribute(island, list);
-  overPacks(packed, [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) fillPack(step, island, list, packed.pairs[i]);
-  });
-  listPairsOfBodies(island, packed);
 }
 
 void unpackGroup(ActingPoints& list, const PointGroup& group) {

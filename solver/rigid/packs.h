@@ -18,6 +18,9 @@ namespace springtower {
 /// change with the poses. The same list gives the same packs.
 void packPoints(const IslandStep& step, const RigidIsland& island, ActingPoints& list);
 
+/// Lists the packs of each body, unless they have been since the points were packed: passes through impacts alone need them.
+void listPairsOfBodies(const RigidIsland& island, PackedPoints& packed);
+
 /// What placing and passes have changed in a group's points, from the packs to the list; of all groups.
 void unpackGroup(ActingPoints& list, const PointGroup& group);
 void unpackPoints(ActingPoints& list);

@@ -269,7 +269,6 @@ void noteChange(std::int32_t body, int number, RigidIsland& island) {
   if (island.changed[b] == number) return;
   island.changed[b] = number;
   for (PackedPoints* packed : packsOf(island)) {
-    if (packed->pairs.empty()) continue;
     for (std::int32_t k = packed->bodyStart[b]; k < packed->bodyStart[b + 1]; ++k)
       packed->due[static_cast<std::size_t>(packed->bodyPairs[static_cast<std::size_t>(k)])] = number + 1;
   }

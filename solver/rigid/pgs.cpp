@@ -60,7 +60,10 @@ Pass passOf(const IslandStep& step, bool push) {
 // Marks the bodies that meet in an impact.
 void markImpacts(RigidIsland& island) {
   island.changed.assign(island.bodies.size() + 1, -1);
-  for (PackedPoints* packed : packsOf(island)) packed->due.assign(packed->pairs.size(), -1);
+  for (PackedPoints* packed : packsOf(island)) {
+    listPairsOfBodies(island, *packed);
+    packed->due.assign(packed->pairs.size(), -1);
+  }
   for (const PackedPoints* packed : packsOf(island)) {
     for (const std::int32_t i : packed->active) {
       const PackedPair& pair = packed->pairs[static_cast<std::size_t>(i)];

@@ -105,7 +105,7 @@ struct PackedPoints {
   std::vector<std::int32_t> active;       ///< of `pairs`, those with points that touch in the substep or nearly do
   std::vector<std::int32_t> activeStart;  ///< of each colour in `active`, and their end
   std::size_t activePoints = 0;           ///< points that touch or nearly do
-  std::vector<std::int32_t> bodyStart;    ///< of each body in `bodyPairs`, and their end
+  std::vector<std::int32_t> bodyStart;    ///< of each body in `bodyPairs`, and their end; empty before listPairsOfBodies()
   std::vector<std::int32_t> bodyPairs;    ///< of `pairs`, those in which it is
   std::vector<int> due;                   ///< of each of `pairs`, the last pass of an impact that is to look at it
   // Working space of packPoints().
