@@ -1,6 +1,6 @@
 #include "solver/implicit/friction_tangent.h"
 
-#include "solver/implicit/system.h"
+#include "solver/law/point_places.h"
 #include "solver/world/over_island.h"
 
 #include <algorithm>
@@ -17,22 +17,12 @@ Vec3 normalOf(const ContactTangent& tangent) {
   return {tangent.normal[0], tangent.normal[1], tangent.normal[2]};
 }
 
-void setWeights(const BlockFrame& frame, const Vec3& place, std::size_t lane, Lanes (&weight)[3]) {
-  const auto weights = weightsAt(frame, place);
-  for (std::size_t a = 0; a < 3; ++a) weight[a][lane] = weights[1 + a];
-}
-
 // Normal force of a point on upper without damping, N.
 double pushOf(const ContactLaw& law, const ContactView& trial, std::size_t i, double stiffness, double depth) {
   const PenaltyRow& row = trial.penalty(i);
   const std::size_t lane = laneOf(i);
   const double elastic = depth - row.restDepth[lane];
   return std::max(0.0, stiffness * row.stiffening[lane] * (elastic + law.maxwellRatio * (elastic - row.maxwellDepth[lane])));
-}
-
-// Whether the friction of a contact's points acts nearer to its centre of pressure than they are.
-bool actsNearer(const ManifoldShape& contact) {
-  return contact.slips && contact.patch.shrink < 1.0F;
 }
 
 // Tangents of a touching pair with this active set: one for every four points, and another for their friction where it acts
@@ -46,7 +36,7 @@ std::size_t tangentCount(const IslandStep& step, const NewtonSystem& island, std
 }
 
 // The nodes of a tangent's blocks, and what all its points have in common.
-void setPair(const IslandStep& step, const ContactView& m, const Vec3& normal, ContactTangent& tangent) {
+void setPair(const IslandStep& step, const ContactView& m, const double* normal, ContactTangent& tangent) {
   const std::vector<std::uint8_t>& asleep = step.simulation.asleep;
   const Engine& engine = step.engine;
   const auto nodeOf = [&](std::int32_t block) {
@@ -56,13 +46,47 @@ void setPair(const IslandStep& step, const ContactView& m, const Vec3& normal, C
   tangent = {};
   tangent.upper = nodeOf(m.upper);
   tangent.lower = nodeOf(m.lower);
-  for (std::size_t k = 0; k < 3; ++k) tangent.normal[k] = normal[static_cast<Eigen::Index>(k)];
+  for (std::size_t k = 0; k < 3; ++k) tangent.normal[k] = normal[k];
   if (tangent.lower < 0) return;
   const BlockFrame& lower = engine.memo.frames[static_cast<std::size_t>(m.lower)];
   for (std::size_t a = 0; a < 3; ++a) std::copy_n(lower.dual[a].begin(), 3, tangent.dual[a]);
 }
 
+// Writes the weights of a row of points.
+SPRINGTOWER_INLINE void setWeights(const PlacedPoints& points, bool floor, ContactTangent& tangent) {
+  for (std::size_t a = 0; a < 3; ++a) {
+    tangent.upperWeight[a] = points.upper[a];
+    if (!floor) tangent.lowerWeight[a] = points.lower[a];
+  }
+}
+
+// Writes what point `lane` resists with: `tangent` along the normal and, unless that is another, `across` by its friction.
+void setStiffness(const PointStiffness& resists, double sign, std::size_t lane, ContactTangent& tangent, ContactTangent& across) {
+  if (&across != &tangent) {
+    tangent.alongNormal[lane] = sign * resists.normal;
+    across.alongNormal[lane] = -sign * resists.tangential;
+  } else {
+    tangent.alongNormal[lane] = sign * (resists.normal - resists.tangential);
+  }
+  across.isotropic[lane] = sign * resists.tangential;
+  for (std::size_t k = 0; k < 3; ++k) tangent.slip[k][lane] = across.slip[k][lane] = resists.slip[static_cast<Eigen::Index>(k)];
+  across.alongSlip[lane] = -sign * resists.tangential;
+}
+
+// Writes how the friction of a slipping point follows its normal force, `push` (N).
+void setCoupling(const PointStiffness& resists, double friction, double push, std::size_t lane, ContactTangent& tangent,
+                 ContactTangent& across) {
+  across.coupling[lane] = friction * resists.normal;
+  const bool nearer = &across != &tangent;
+  const Vec3 pushed = nearer ? Vec3(push * normalOf(tangent)) : Vec3(push * (normalOf(tangent) - friction * resists.slip));
+  for (std::size_t k = 0; k < 3; ++k) {
+    tangent.push[k][lane] = pushed[static_cast<Eigen::Index>(k)];
+    if (nearer) across.push[k][lane] = -push * friction * resists.slip[static_cast<Eigen::Index>(k)];
+  }
+}
+
 // Writes a pair's tangents; returns the place behind them.
+SPRINGTOWER_KERNEL
 ContactTangent* putPair(const IslandStep& step, const NewtonSystem& island, std::size_t at, ActiveSetBits mask, Part part,
                         double step_s, ContactTangent* to) {
   if ((mask & kAllPoints) == 0) return to;
@@ -71,50 +95,36 @@ ContactTangent* putPair(const IslandStep& step, const NewtonSystem& island, std:
   const ContactView m = contactOf(engine, pair);
   const ContactView trial = trialOf(engine, pair, m);
   const bool nearer = actsNearer(m);
-  const auto upper = static_cast<std::size_t>(m.upper);
-  const BlockFrame* frameLower = m.lower < 0 ? nullptr : &engine.memo.frames[static_cast<std::size_t>(m.lower)];
-  static const AffineField kStill{};
-  const PointForces points =
-      pointForces(m, {&engine.memo.frames[upper], &kStill, &kStill}, {frameLower, &kStill, &kStill}, step.law);
+  const bool floor = m.lower < 0;
+  const PlacedBlocks blocks{engine.memo.frames[static_cast<std::size_t>(m.upper)],
+                            floor ? nullptr : &engine.memo.frames[static_cast<std::size_t>(m.lower)]};
   const double stiffness = step.law.stiffnessOf(m.upper, m.lower);
   const double friction = step.law.frictionOf(m);
-  const double sign = part == Part::factors ? 1.0 : -1.0;
+  double normal[3];
+  normalOf(m, blocks, normal);
 
-  for (std::size_t first = 0; first < static_cast<std::size_t>(m.count); first += 4) {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(m.count);) {
+    PlacedPoints points;
+    placePoints(m, blocks, normal, rowOf(i), points);
     ContactTangent& tangent = *to++;
-    setPair(step, m, points.direction, tangent);
+    setPair(step, m, normal, tangent);
+    setWeights(points, floor, tangent);
     ContactTangent& across = nearer ? *to++ : tangent;
     if (nearer) {
-      setPair(step, m, points.direction, across);
+      setPair(step, m, normal, across);
       across.followsPush = true;
+      PlacedPoints slips;
+      placeFriction(m, blocks, normal, rowOf(i), slips);
+      setWeights(slips, floor, across);
     }
-    for (std::size_t i = first; i < std::min(first + 4, static_cast<std::size_t>(m.count)); ++i) {
+    const std::size_t end = std::min(i + kRowPoints, static_cast<std::size_t>(m.count));
+    for (; i < end; ++i) {
       if ((mask & kPushBit << i) == 0) continue;
-      const std::size_t lane = i - first;
       const PointStiffness resists = pointStiffness(step, m, trial, mask, i, step_s);
-      setWeights(engine.memo.frames[upper], points.place[i], lane, tangent.upperWeight);
-      if (frameLower != nullptr) setWeights(*frameLower, points.lowerPlace[i], lane, tangent.lowerWeight);
-      if (nearer) {
-        setWeights(engine.memo.frames[upper], points.slipPlace[i], lane, across.upperWeight);
-        if (frameLower != nullptr) setWeights(*frameLower, points.lowerSlipPlace[i], lane, across.lowerWeight);
-        tangent.alongNormal[lane] = sign * resists.normal;
-        across.alongNormal[lane] = -sign * resists.tangential;
-      } else {
-        tangent.alongNormal[lane] = sign * (resists.normal - resists.tangential);
-      }
-      across.isotropic[lane] = sign * resists.tangential;
-      for (std::size_t k = 0; k < 3; ++k)
-        tangent.slip[k][lane] = across.slip[k][lane] = resists.slip[static_cast<Eigen::Index>(k)];
-      across.alongSlip[lane] = -sign * resists.tangential;
-      const bool slides = (mask & kSlideBit << i) != 0;
-      if (part == Part::factors || !slides) continue;
-      across.coupling[lane] = friction * resists.normal;
-      const double push = pushOf(step.law, trial, i, stiffness, points.depth[i]);
-      const Vec3 pushed = nearer ? Vec3(push * normalOf(tangent)) : Vec3(push * (normalOf(tangent) - friction * resists.slip));
-      for (std::size_t k = 0; k < 3; ++k) {
-        tangent.push[k][lane] = pushed[static_cast<Eigen::Index>(k)];
-        if (nearer) across.push[k][lane] = -push * friction * resists.slip[static_cast<Eigen::Index>(k)];
-      }
+      setStiffness(resists, part == Part::factors ? 1.0 : -1.0, laneOf(i), tangent, across);
+      if (part == Part::factors || (mask & kSlideBit << i) == 0) continue;
+      const double push = pushOf(step.law, trial, i, stiffness, points.depth[laneOf(i)]);
+      setCoupling(resists, friction, push, laneOf(i), tangent, across);
     }
   }
   return to;
@@ -237,16 +247,15 @@ void findFactorTangents(const IslandStep& step, NewtonSystem& island, double ste
 void findTangents(const IslandStep& step, NewtonSystem& island, double step_s) {
   island.tangents = island.factorTangents;
   // The part in the factors, unless factorTangents has it already, and that of the present contacts.
-  const auto differs = [&](std::size_t at, ActiveSetBits mask) { return mask != island.mask[at] || anySlides(mask); };
   const auto count = [&](std::size_t at) {
-    const ActiveSetBits mask = activeSetBits(step, island, at);
-    if (!differs(at, mask)) return std::size_t{0};
+    const ActiveSetBits mask = island.active[at];
+    if (mask == island.mask[at] && !anySlides(mask)) return std::size_t{0};
     const std::size_t known = anySlides(island.mask[at]) ? 0 : tangentCount(step, island, at, island.mask[at]);
     return known + tangentCount(step, island, at, mask);
   };
   const auto put = [&](std::size_t at, ContactTangent* to) {
     if (!anySlides(island.mask[at])) to = putPair(step, island, at, island.mask[at], Part::factors, step_s, to);
-    putPair(step, island, at, activeSetBits(step, island, at), Part::contacts, step_s, to);
+    putPair(step, island, at, island.active[at], Part::contacts, step_s, to);
   };
   appendTangents(step, island, count, put, island.tangents);
 }

@@ -27,8 +27,8 @@ PointStiffness pointStiffness(const IslandStep& step, const ContactView& manifol
 /// Fills island.factorTangents with the contributions to the factors of pairs that slip, with the active set island.mask.
 void findFactorTangents(const IslandStep& step, NewtonSystem& island, double step_s);
 
-/// Fills island.tangents with the differences between the present contacts and those in the factors: for points that slip now or
-/// slipped then, and points that became active or inactive.
+/// Fills island.tangents with the differences between the present contacts, of active set island.active, and those in the
+/// factors: for points that slip now or slipped then, and points that became active or inactive.
 void findTangents(const IslandStep& step, NewtonSystem& island, double step_s);
 
 /// Adds the forces (N) of these tangents at displacements (m), both [node][12].

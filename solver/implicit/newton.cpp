@@ -53,18 +53,20 @@ NewtonSystem& islandOf(IslandStep& step) {
   return step.engine.memo.newtonSystems.of(step.blocks.front());
 }
 
-// The present active set. Before the first iteration nothing has moved yet, so points slip as they did in the step before.
+// Finds the present active set, island.active. Before the first iteration nothing has moved yet, so points slip as they did in
+// the step before.
 struct ActiveSet {
   bool changed = false;  // differs from that in the factors
   bool slides = false;   // whether any point slips
   bool limited = false;  // whether the hand is at a limit of its forces
 };
 
-ActiveSet activeSetNow(const IslandStep& step, const NewtonSystem& island) {
+ActiveSet findActiveSet(const IslandStep& step, NewtonSystem& island) {
+  island.active.resize(island.touching.size());
   const auto inRange = [&](std::size_t first, std::size_t last) {
     ActiveSet set;
     for (std::size_t i = first; i < last; ++i) {
-      const ActiveSetBits mask = activeSetBits(step, island, i);
+      const ActiveSetBits mask = island.active[i] = activeSetBits(step, island, i);
       set.changed = set.changed || mask != island.mask[i];
       set.slides = set.slides || anySlides(mask);
     }
@@ -81,9 +83,7 @@ ActiveSet activeSetNow(const IslandStep& step, const NewtonSystem& island) {
 
 // Factorises for the present active set.
 bool refactorise(IslandStep& step, NewtonSystem& island, double effective_s) {
-  forRanges(island.touching.size(), tuning::kPairGrain, isWide(step), [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) island.mask[i] = activeSetBits(step, island, i);
-  });
+  std::copy(island.active.begin(), island.active.end(), island.mask.begin());
   return assemble(step, island, effective_s);
 }
 
@@ -381,7 +381,7 @@ bool solveStep(IslandStep& step, double effective_s, Begin begin, const NewtonOp
     island.useConsistentTangent = residual < how.near;
     island.assumesSupport = iteration == 0 && how.assumesSupport;
     if (island.assumesSupport) island.factorised = false;
-    const ActiveSet now = activeSetNow(step, island);
+    const ActiveSet now = findActiveSet(step, island);
     if (now.changed || how.mostStalled > 0) most = std::min(how.mostContactIterations, iteration + tuning::kMaxNewtonIterations);
     const bool old =
         iteration == 0 && island.directions >= tuning::kRefactorDirectionShare * static_cast<double>(mostDirections(island));

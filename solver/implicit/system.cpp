@@ -4,6 +4,7 @@
 #include "core/lanes.h"
 #include "core/tuning.h"
 #include "solver/contact/evaluate_forces.h"
+#include "solver/implicit/contact_matrix.h"
 #include "solver/implicit/friction_tangent.h"
 #include "solver/world/over_island.h"
 
@@ -18,8 +19,6 @@ namespace springtower {
 namespace {
 
 using Axes = std::array<std::array<double, 3>, 3>;
-using Weights = std::array<double, kAffine>;
-using Coupling = std::array<std::array<double, kAffine>, kAffine>;
 
 // Orthonormal axes of a block from its mean edges (Gram & Schmidt).
 Axes axesOf(const AffineField& place) {
@@ -54,117 +53,15 @@ void addOwn(const BlockJacobian& jacobian, const Axes& axes, float* diagonal) {
   }
 }
 
-// Twelve numbers, [vector][component].
-using ModeRow = std::array<double, kNodeSize>;
-
-SPRINGTOWER_INLINE void ofVectors(const double* value, ModeRow& row) {
-  for (std::size_t e = 0; e < kNodeSize; ++e) row[e] = value[e / 3];
-}
-SPRINGTOWER_INLINE void ofComponents(const double* value, ModeRow& row) {
-  for (std::size_t e = 0; e < kNodeSize; ++e) row[e] = value[e % 3];
-}
-
-// Adds sign * (normal[p][q] n n^T + tangential[p][q] (1 - n n^T)) for all pairs of vectors.
-SPRINGTOWER_INLINE void addContacts(const Coupling& normal, const Coupling& tangential, const Vec3& n, double sign,
-                                    float* block) {
-  ModeRow components;
-  ofComponents(n.data(), components);
-  for (std::size_t p = 0; p < kAffine; ++p) {
-    double alongOf[kAffine], acrossOf[kAffine];
-    for (std::size_t q = 0; q < kAffine; ++q) {
-      alongOf[q] = sign * (normal[p][q] - tangential[p][q]);
-      acrossOf[q] = sign * tangential[p][q];
-    }
-    ModeRow along, across;
-    ofVectors(alongOf, along);
-    ofVectors(acrossOf, across);
-    for (std::size_t i = 0; i < 3; ++i) {
-      float* to = block + kNodeSize * (3 * p + i);
-      const double component = n[static_cast<Eigen::Index>(i)];
-      for (std::size_t e = 0; e < kNodeSize; ++e)
-        to[e] += static_cast<float>(along[e] * component * components[e] + (e % 3 == i ? across[e] : 0.0));
-    }
-  }
-}
-
-// Subtracts factor * (p (x) s) (q (x) s)^T from a block of the matrix: a slipping point has no stiffness along `s`.
-SPRINGTOWER_INLINE void takeAlong(double factor, const Weights& p, const Weights& q, const Vec3& s, float* block) {
-  ModeRow vectors, components;
-  ofVectors(q.data(), vectors);
-  ofComponents(s.data(), components);
-  for (std::size_t i = 0; i < kNodeSize; ++i) {
-    const double row = factor * p[i / 3] * s[static_cast<Eigen::Index>(i % 3)];
-    for (std::size_t e = 0; e < kNodeSize; ++e) block[kNodeSize * i + e] -= static_cast<float>(row * vectors[e] * components[e]);
-  }
-}
-
-SPRINGTOWER_INLINE void addProduct(double factor, const Weights& p, const Weights& q, Coupling& sum) {
-  for (std::size_t i = 0; i < kAffine; ++i) {
-    for (std::size_t k = 0; k < kAffine; ++k) sum[i][k] += factor * p[i] * q[k];
-  }
-}
-
-SPRINGTOWER_KERNEL
-void addManifold(const IslandStep& step, NewtonSystem& island, std::size_t at, double step_s) {
-  const Engine& engine = step.engine;
-  const auto pair = static_cast<std::size_t>(island.touching[at]);
-  const ContactView m = contactOf(engine, pair);
-  const ActiveSetBits mask = island.mask[at];
-  if ((mask & kAllPoints) == 0) return;
-  const auto upper = static_cast<std::size_t>(m.upper);
-  const BlockFrame& frameUpper = engine.memo.frames[upper];
-  const BlockFrame* frameLower = m.lower < 0 ? nullptr : &engine.memo.frames[static_cast<std::size_t>(m.lower)];
-  static const AffineField kStill{};
-  const PointForces points = pointForces(m, {&frameUpper, &kStill, &kStill}, {frameLower, &kStill, &kStill}, step.law);
-
-  const ContactView trial = trialOf(engine, pair, m);
-  BlockCholesky& matrix = island.matrix;
-  const auto diagonalOf = [&](std::size_t block) {
-    return matrix.diagonal.data() +
-           kNodeMatrix * static_cast<std::size_t>(matrix.position[static_cast<std::size_t>(engine.scratch.nodeOf[block])]);
-  };
-  const std::vector<std::uint8_t>& asleep = step.simulation.asleep;
-  float* ofUpper = asleep[upper] == 0 ? diagonalOf(upper) : nullptr;
-  float* ofLower = frameLower != nullptr && asleep[static_cast<std::size_t>(m.lower)] == 0
-                       ? diagonalOf(static_cast<std::size_t>(m.lower))
-                       : nullptr;
-  const BlockSlot& slot = island.slot[at];
-  float* ofBoth = slot.at >= 0 ? matrix.lower.data() + kNodeMatrix * static_cast<std::size_t>(slot.at) : nullptr;
-
-  Coupling upperNormal{}, upperTangential{}, lowerNormal{}, lowerTangential{}, crossNormal{}, crossTangential{};
-  for (std::size_t i = 0; i < static_cast<std::size_t>(m.count); ++i) {
-    if ((mask & kPushBit << i) == 0) continue;
-    const auto [normal, tangential, along] = pointStiffness(step, m, trial, mask, i, step_s);
-    const bool slides = (mask & kSlideBit << i) != 0;
-    const Weights wu = weightsAt(frameUpper, points.place[i]);
-    const Weights su = m.slips ? weightsAt(frameUpper, points.slipPlace[i]) : wu;  // where friction acts
-    if (slides && ofUpper != nullptr) takeAlong(tangential, su, su, along, ofUpper);
-    addProduct(normal, wu, wu, upperNormal);
-    addProduct(tangential, su, su, upperTangential);
-    if (frameLower == nullptr) continue;
-    const Weights wl = weightsAt(*frameLower, points.lowerPlace[i]);
-    const Weights sl = m.slips ? weightsAt(*frameLower, points.lowerSlipPlace[i]) : wl;
-    addProduct(normal, wl, wl, lowerNormal);
-    addProduct(tangential, sl, sl, lowerTangential);
-    if (slides && ofLower != nullptr) takeAlong(tangential, sl, sl, along, ofLower);
-    if (slides && ofBoth != nullptr) takeAlong(-tangential, slot.firstIsRow ? su : sl, slot.firstIsRow ? sl : su, along, ofBoth);
-    addProduct(normal, slot.firstIsRow ? wu : wl, slot.firstIsRow ? wl : wu, crossNormal);
-    addProduct(tangential, slot.firstIsRow ? su : sl, slot.firstIsRow ? sl : su, crossTangential);
-  }
-  if (ofUpper != nullptr) addContacts(upperNormal, upperTangential, points.direction, 1.0, ofUpper);
-  if (ofLower != nullptr) addContacts(lowerNormal, lowerTangential, points.direction, 1.0, ofLower);
-  if (ofBoth != nullptr) addContacts(crossNormal, crossTangential, points.direction, -1.0, ofBoth);
-}
-
 // Adds all manifolds: those of tasks side by side, then those of the top.
 void addManifolds(const IslandStep& step, NewtonSystem& island, double step_s) {
   if (island.taskPairs.empty()) {
-    for (std::size_t at = 0; at < island.touching.size(); ++at) addManifold(step, island, at, step_s);
+    for (std::size_t at = 0; at < island.touching.size(); ++at) addContactStiffness(step, island, at, step_s);
     return;
   }
   const auto addTask = [&](std::size_t task) {
     for (std::int32_t i = island.taskPairStart[task]; i < island.taskPairStart[task + 1]; ++i)
-      addManifold(step, island, static_cast<std::size_t>(island.taskPairs[static_cast<std::size_t>(i)]), step_s);
+      addContactStiffness(step, island, static_cast<std::size_t>(island.taskPairs[static_cast<std::size_t>(i)]), step_s);
   };
   const std::size_t tasks = island.matrix.tasks.count();
   forRanges(tasks, 1, true, [&](std::size_t first, std::size_t last) {
@@ -299,14 +196,6 @@ void findSlots(const IslandStep& step, NewtonSystem& island) {
 }
 
 }  // namespace
-
-std::array<double, kAffine> weightsAt(const BlockFrame& frame, const Vec3& place) {
-  const Vec3 arm = place - Vec3(frame.place.centre[0], frame.place.centre[1], frame.place.centre[2]);
-  Weights weights{1.0, 0.0, 0.0, 0.0};
-  for (std::size_t a = 0; a < 3; ++a)
-    weights[1 + a] = frame.dual[a][0] * arm[0] + frame.dual[a][1] * arm[1] + frame.dual[a][2] * arm[2];
-  return weights;
-}
 
 void layOutWork(NewtonSystem& island) {
   const std::size_t count = island.axes.size();

@@ -9,9 +9,6 @@ namespace springtower {
 
 struct IslandStep;
 
-/// Weights of a block's affine vectors at a point in space.
-std::array<double, kAffine> weightsAt(const BlockFrame& frame, const Vec3& place);
-
 /// Sizes the working space of the iteration for a matrix that is laid out.
 void layOutWork(NewtonSystem& island);
 

@@ -475,6 +475,7 @@ void manifoldForces(const ContactView& manifold, const ContactSide& upper, const
   evaluate(manifold, upper, lower, constants, keep, result, nullptr);
 }
 
+SPRINGTOWER_KERNEL
 PointForces pointForces(const ContactView& manifold, const ContactSide& upper, const ContactSide& lower, const ContactLaw& law) {
   PairForce unused;
   PointForces report;

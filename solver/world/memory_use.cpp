@@ -65,9 +65,9 @@ std::size_t ofNewton(const NewtonSystem& island) {
       sizeof(NewtonSystem) +
       sumOf(matrix.mark, matrix.firstChild, matrix.nextChild, matrix.edgeStart, matrix.edgeRow, matrix.work, matrix.divided,
             matrix.taken, island.touching, island.taskPairs, island.taskPairStart, island.tangentStart, island.slot, island.mask,
-            island.axes, island.residual, island.direction, island.affine, island.factorTangents, island.tangents, island.coupled,
-            island.coupledIndex, island.coupledMotion, island.coupledForce, island.correction, island.blockClasses,
-            island.blockClassOf, island.order.nodes, island.order.centre, island.edges);
+            island.active, island.axes, island.residual, island.direction, island.affine, island.factorTangents, island.tangents,
+            island.coupled, island.coupledIndex, island.coupledMotion, island.coupledForce, island.correction,
+            island.blockClasses, island.blockClassOf, island.order.nodes, island.order.centre, island.edges);
   for (const DissectionSpace& space : island.order.space)
     sum += sizeof(space) +
            sumOf(space.neighbourStart, space.neighbour, space.sorted, space.best, space.place, space.reach, space.change);

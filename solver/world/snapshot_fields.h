@@ -225,10 +225,10 @@ void fieldsOf(Stream& stream, ContactTangent& tangent) {
 
 template <class Stream>
 void fieldsOf(Stream& stream, NewtonWork& work) {
-  auto& [residual, direction, affine, tangents, tangentStart, coupled, coupledIndex, coupledMotion, coupledForce, correction] =
-      work;
-  stream(sizeOf(residual), sizeOf(direction), sizeOf(affine), sizeOf(tangents), sizeOf(tangentStart), sizeOf(coupled),
-         sizeOf(coupledIndex), sizeOf(coupledMotion), sizeOf(coupledForce), sizeOf(correction));
+  auto& [residual, direction, affine, tangents, active, tangentStart, coupled, coupledIndex, coupledMotion, coupledForce,
+         correction] = work;
+  stream(sizeOf(residual), sizeOf(direction), sizeOf(affine), sizeOf(tangents), sizeOf(active), sizeOf(tangentStart),
+         sizeOf(coupled), sizeOf(coupledIndex), sizeOf(coupledMotion), sizeOf(coupledForce), sizeOf(correction));
 }
 
 template <class Stream>

@@ -53,9 +53,21 @@ struct DrawnBlock {
     return simulation;
   }
 
+  void findActive() {
+    island().active.resize(island().touching.size());
+    for (std::size_t at = 0; at < island().touching.size(); ++at) island().active[at] = activeSetBits(step, island(), at);
+  }
+
+  // The tangents of the present active set.
+  void findTangentsNow() {
+    findActive();
+    findTangents(step, island(), effective_s);
+  }
+
   // Factorises for the present active set.
   bool factorise() {
-    for (std::size_t at = 0; at < island().touching.size(); ++at) island().mask[at] = activeSetBits(step, island(), at);
+    findActive();
+    island().mask = island().active;
     setJacobians(step, effective_s);
     return assemble(step, island(), effective_s);
   }
@@ -141,7 +153,7 @@ void expectTangentsToBeTheDerivative(DrawnBlock& drawn, double way_m) {
   NewtonSystem& island = drawn.island();
   island.mask.assign(island.touching.size(), 0);
   island.factorTangents.clear();
-  findTangents(drawn.step, island, drawn.effective_s);
+  drawn.findTangentsNow();
   const std::vector<double> way = randomVector(kNodeSize * drawn.step.blocks.size(), way_m);
   std::vector<double> back(way.size());
   for (std::size_t i = 0; i < way.size(); ++i) back[i] = -way[i];
@@ -254,7 +266,7 @@ TEST(ContactTangent, FactorsLackWhatIsNotSymmetric) {
   NewtonSystem& island = drawn.island();
   ASSERT_TRUE(drawn.factorise());
   ASSERT_FALSE(island.factorTangents.empty());
-  findTangents(drawn.step, island, drawn.effective_s);
+  drawn.findTangentsNow();
   const Eigen::MatrixXd lacking = drawn.tangentMatrix();
   const double symmetric = (0.5 * (lacking + lacking.transpose())).norm();
   const double rest = (0.5 * (lacking - lacking.transpose())).norm();
@@ -269,7 +281,7 @@ TEST(CoupledSolve, SolvesWithTangents) {
   DrawnBlock drawn;
   NewtonSystem& island = drawn.island();
   ASSERT_TRUE(drawn.factorise());
-  findTangents(drawn.step, island, drawn.effective_s);
+  drawn.findTangentsNow();
   const std::size_t count = kNodeSize * drawn.step.blocks.size();
   const auto size = static_cast<Eigen::Index>(count);
   const Eigen::MatrixXd tangent = drawn.tangentMatrix();
