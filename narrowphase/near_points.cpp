@@ -15,7 +15,6 @@ namespace {
 // Numbers of the separating axes.
 constexpr std::uint8_t kFaceOfA = 0;
 constexpr std::uint8_t kFaceOfB = 1;
-constexpr std::uint8_t kCrossing = 2;
 
 // The corner of an outline from which its points are listed: rounding may decide with which corner clipping begins, and the order
 // of points is that in which they are solved. The first one counterclockwise of a direction in which no corner of rectangles that
@@ -84,7 +83,7 @@ void addCrossing(const CornerView& a, const CornerView& b, const Separation& apa
   const double onA = (bb * between.dot(alongA) - ab * between.dot(alongB)) / determinant;
   const double onB = (ab * between.dot(alongA) - aa * between.dot(alongB)) / determinant;
   points.add({fromA + std::clamp(onA, 0.0, 1.0) * alongA, fromB + std::clamp(onB, 0.0, 1.0) * alongB, apart.normalEdge,
-              NormalOf::b, kCrossing});
+              NormalOf::b, kCrossingAxis});
 }
 
 double gapOf(const NearPoint& point) {
@@ -109,13 +108,15 @@ void setBeside(const Separation& apart, NearPoints& points) {
 
 }  // namespace
 
-void findNearPoints(const CornerView& a, const CornerView& b, const Separation& apart, double reach, double mergeRadius,
-                    NearPoints& points) {
+void findNearPoints(const CornerView& a, const CornerView& b, const Separation& apart, const Vec3& gravity, double reach,
+                    double mergeRadius, NearPoints& points) {
   points.count = 0;
   const double least = apart.best() - reach;
   if (apart.best() > reach) return;
   const ManifoldLimits limits{mergeRadius, reach};
-  const bool isFaceOfB = apart.faceB + mergeRadius >= apart.faceA;  // of two that are alike always the same
+  // Of two that are alike always the same.
+  const bool prefersB = prefersFaceOfB(apart, gravity, mergeRadius);
+  const bool isFaceOfB = prefersB ? apart.faceB + mergeRadius >= apart.faceA : apart.faceB > apart.faceA + mergeRadius;
   const auto addFaces = [&](bool ofB) {
     if ((ofB ? apart.faceB : apart.faceA) < least) return;
     addFacePoints(ofB ? a : b, ofB ? b : a, ofB ? apart.faceOfB : apart.faceOfA, limits, ofB, points);

@@ -23,6 +23,7 @@ struct NearPoint {
 };
 
 inline constexpr std::size_t kSeparatingAxes = 3;
+inline constexpr std::uint8_t kCrossingAxis = 2;  ///< number of that of two edges
 
 /// The outlines of both blocks' nearest faces have at most eight corners each, and a pair of edges crosses once.
 inline constexpr std::size_t kMostNearPoints = 17;
@@ -37,11 +38,12 @@ struct NearPoints {
 /// The points at which two blocks may touch before any of their points has moved by `reach` (m, > 0) against the other block:
 /// corners of the overlap of a's nearest face with b's outline along the normal of that face, likewise of b's face with a's, and
 /// the crossing of the nearest edges; as far as their gap is at most `reach`, and only along directions whose separation is
-/// within `reach` of the best. A manifold (narrowphase/manifold.h) has the points of one of these directions alone, which is
-/// enough where it is renewed before another direction matters. `apart`: their separation; `mergeRadius`: points of a face closer
-/// than this (m) are one. Preconditions: as of findSeparation.
-void findNearPoints(const CornerView& a, const CornerView& b, const Separation& apart, double reach, double mergeRadius,
-                    NearPoints& points);
+/// within `reach` of the best. Of parallel faces those over the face of the block that is higher against `gravity` (m/s2). A
+/// manifold (narrowphase/manifold.h) has the points of one of these directions alone, which is enough where it is renewed before
+/// another direction matters. `apart`: their separation; `mergeRadius`: points of a face closer than this (m) are one.
+/// Preconditions: as of findSeparation.
+void findNearPoints(const CornerView& a, const CornerView& b, const Separation& apart, const Vec3& gravity, double reach,
+                    double mergeRadius, NearPoints& points);
 
 /// The same against the floor z = 0: the corners no higher than `reach`. The block is a, the floor is b.
 void findNearFloorPoints(const CornerView& block, double reach, NearPoints& points);

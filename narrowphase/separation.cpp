@@ -113,6 +113,7 @@ Separation findSeparation(const CornerView& a, const CornerView& b) {
   const Vec3 between = frameA.centre - frameB.centre;
 
   Separation result;
+  result.between = between;
   std::array<double, 3> gapA;
   std::array<double, 3> gapB;
   result.faceA = result.faceB = result.edge = kNothing;

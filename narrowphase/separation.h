@@ -45,6 +45,7 @@ struct Separation {
   int levelFaceOfA = 0;
   int levelFaceOfB = 0;
   Vec3 normalLevel;
+  Vec3 between;  ///< from b's centre to a's, m
 
   /// The largest of the three: where positive, a lower bound of the distance.
   [[nodiscard]] double best() const { return std::max(edge, std::max(faceA, faceB)); }
@@ -53,6 +54,13 @@ struct Separation {
     return faceA > faceB ? normalFaceA : normalFaceB;
   }
 };
+
+/// Whether b's face counts where faces of both separate as well: that of the block that is higher against gravity (m/s2); b's
+/// where their centres are level to within `level_m`. So it does not matter which block is named first.
+inline bool prefersFaceOfB(const Separation& apart, const Vec3& gravity, double level_m) {
+  const double size = gravity.norm();
+  return (size > 0.0 ? -apart.between.dot(gravity) / size : apart.between.z()) <= level_m;
+}
 
 /// Computes it for blocks a and b. Precondition: no block is turned inside out.
 Separation findSeparation(const CornerView& a, const CornerView& b);

@@ -23,6 +23,7 @@ TARGET = pathlib.Path(__file__).resolve().parent / "game.jsonl"
 OUT_OF_THE_LEFT_FACE = (-0.81, 0.58)  # where a block goes that is drawn out of it, of a pixel
 OUT_OF_THE_RIGHT_FACE = (0.925, 0.38)
 AFTER_THE_FALL = 90  # pictures
+LETS_GO_BEFORE = 10  # frames before the first block touches the floor
 
 
 class Mouse:
@@ -144,6 +145,14 @@ def kept(line):
     return frame
 
 
+def letGoEarly(frames):
+    """The hand lets go some frames before the game is over, which it is in another frame when the physics changes a little."""
+    last = max(at for at, frame in enumerate(frames) if "hand" in frame)
+    for frame in frames[last + 1 - LETS_GO_BEFORE : last + 1]:
+        frame.pop("hand", None)
+    return frames
+
+
 def main():
     if len(sys.argv) != 2 or sys.argv[1] in ("-h", "--help"):
         sys.exit(__doc__)
@@ -153,7 +162,7 @@ def main():
         mouse.write_text("\n".join(lines) + "\n")
         game = ["--headless", "--players", "1", "--scene", "tower:18", "--size", "1280x800", "--frames", str(len(lines))]
         subprocess.run([sys.argv[1], *game, "--mouse", str(mouse), "--record", str(recorded)], check=True)
-        frames = [kept(line) for line in recorded.read_text().splitlines()]
+        frames = letGoEarly([kept(line) for line in recorded.read_text().splitlines()])
     TARGET.write_text("".join(json.dumps(frame, separators=(",", ":")) + "\n" for frame in frames))
     held = sum("hand" in frame for frame in frames)
     print(f"{TARGET.name}: {len(frames) - 1} frames, {held} of them with a block in the hand, {TARGET.stat().st_size / 1e3:.0f} kB")

@@ -97,8 +97,9 @@ bool mayTouch(const Simulation& simulation, const Separation& separation, const 
 // The touching faces or edges, from the best separating directions. The reference face changes only if the other is clearly
 // better. Faces are preferred to edges that separate better, if they touch as well. If the outlines do not overlap, the next best
 // direction is taken.
-void chooseManifold(const Simulation& simulation, const Separation& apart, const CornerView& a, const CornerView& b, double slack,
+void chooseManifold(const IslandStep& step, const Separation& apart, const CornerView& a, const CornerView& b, double slack,
                     const BlockPair& pair, const ContactView& old, Manifold& fresh) {
+  const Simulation& simulation = step.simulation;
   const ParticleArray& velocity = simulation.state.velocity;
   const Vec3 relative = centre(velocity, static_cast<std::size_t>(pair.a)) - centre(velocity, static_cast<std::size_t>(pair.b));
   const Separation separation = grazes(apart, grazingLimits(simulation), relative) ? alongLevel(apart) : apart;
@@ -106,10 +107,13 @@ void chooseManifold(const Simulation& simulation, const Separation& apart, const
   const double edgeSlack = edgeSlackOf(simulation);
   const bool wasA = old.phase == PairPhase::face && old.lower == pair.a;
   const bool wasB = old.phase == PairPhase::face && old.lower == pair.b;
-  // Of two faces that separate as well it is that of a fixed block: like the floor, it is the lower one.
+  // Of two faces that separate as well it is that of a fixed block, or else of the higher one.
   const double ofA = simulation.model.isFixed(static_cast<std::size_t>(pair.a)) ? edgeSlack : 0.0;
   const double ofB = simulation.model.isFixed(static_cast<std::size_t>(pair.b)) ? edgeSlack : 0.0;
-  const bool referenceIsB = separation.faceB + ofB + (wasB ? slack : 0.0) >= separation.faceA + ofA + (wasA ? slack : 0.0);
+  const double alike = tuning::kAlikeFaces * simulation.lengths.blockHeight_m;
+  const double preferred = prefersFaceOfB(separation, step.gravity, limits.mergeRadius) ? alike : -alike;
+  const bool referenceIsB =
+      separation.faceB + ofB + (wasB ? slack : 0.0) + preferred >= separation.faceA + ofA + (wasA ? slack : 0.0);
   const double face = referenceIsB ? separation.faceB : separation.faceA;
   const bool crossed = separation.edge > face + slack;
   faceManifold(separation, a, b, limits, pair, referenceIsB, fresh);
@@ -215,7 +219,7 @@ bool storeManifoldNow(IslandStep& step, std::size_t at) {
     buildFloorManifold(a, limitsOf(step.simulation), fresh);
   } else {
     const CornerView b = cornersOf(position, static_cast<std::size_t>(pair.b));
-    chooseManifold(step.simulation, findSeparation(a, b), a, b, 0.0, pair, {}, fresh);
+    chooseManifold(step, findSeparation(a, b), a, b, 0.0, pair, {}, fresh);
   }
   if (fresh.count > 0) storeContact(step.engine, at, fresh);
   return fresh.count > 0;
@@ -289,7 +293,7 @@ void updateSeparated(IslandStep& step, std::size_t at, Counters& counters, Stage
   if (step.simulation.frame > 0 && before.best() < -overlapError) ++counters.contactsCreatedPenetrating;
   Manifold fresh;
   fresh.kind = step.pointKind;
-  chooseManifold(step.simulation, before, movingA.end, movingB.end, 0.0, pair, {}, fresh);
+  chooseManifold(step, before, movingA.end, movingB.end, 0.0, pair, {}, fresh);
   pairs.clearance[at] = 0.0;
   if (fresh.count == 0) return;
   ++counters.contactsCreated;
@@ -350,8 +354,7 @@ void refreshManifold(IslandStep& step, std::size_t at, Counters& counters) {
       markSeparated(pairs, at, separation.bestNormal(), separation.best());
       return;
     }
-    chooseManifold(simulation, separation, a, b, tuning::kReferenceFaceSlack * simulation.lengths.blockHeight_m, pair, old,
-                   fresh);
+    chooseManifold(step, separation, a, b, tuning::kReferenceFaceSlack * simulation.lengths.blockHeight_m, pair, old, fresh);
     if (fresh.count == 0) {
       markSeparated(pairs, at, separation.bestNormal(), std::max(0.0, separation.best()));
       return;

@@ -94,6 +94,9 @@ void chooseStiffness(Simulation& simulation) {
     }
   }
   for (double& edge_n_m : stiffness.edge_n_m) edge_n_m *= settings.springRatio;
+  const bool explicitSprings = traitsOf(settings.method).family == MethodFamily::explicitSprings;
+  if (explicitSprings && simulation.fixedSubsteps == 0)
+    stiffenForMotion(simulation.scene, simulation.lengths.blockHeight_m, stiffness.edge_n_m);
   simulation.stiffness = std::move(stiffness);
 }
 

@@ -61,19 +61,22 @@ std::array<RigidBody*, 2> movedBodies(RigidIsland& island, const PackedPair& pai
   return {at(pair.movesUpper, pair.upper[lane]), at(pair.movesLower, pair.lower[lane])};
 }
 
-void findGiven(RigidIsland& island, double step_s) {
-  for (RigidBody& body : island.bodies) body.given_j = body.handedOn_j = 0.0;
-  for (const PackedPoints* packed : packsOf(island)) {
-    for (const PackedPair& pair : packed->pairs) {
-      Lanes given;
-      findGivenBy(island, *packed, pair, step_s, given);
-      for (std::size_t lane = 0; lane < kPackedPairs; ++lane) {
-        for (RigidBody* body : movedBodies(island, pair, lane)) {
-          if (body != nullptr) body->given_j += given[static_cast<int>(lane)];
-        }
+SPRINGTOWER_KERNEL
+void addGiven(const PackedPoints& packed, double step_s, RigidIsland& island) {
+  for (const PackedPair& pair : packed.pairs) {
+    Lanes given;
+    findGivenBy(island, packed, pair, step_s, given);
+    for (std::size_t lane = 0; lane < kPackedPairs; ++lane) {
+      for (RigidBody* body : movedBodies(island, pair, lane)) {
+        if (body != nullptr) body->given_j += given[static_cast<int>(lane)];
       }
     }
   }
+}
+
+void findGiven(RigidIsland& island, double step_s) {
+  for (RigidBody& body : island.bodies) body.given_j = body.handedOn_j = 0.0;
+  for (const PackedPoints* packed : packsOf(island)) addGiven(*packed, step_s, island);
 }
 
 // From the lighter to the heavier of two blocks, by what the lighter one has been given and handed on so far.

@@ -52,6 +52,49 @@ void setImpactsOf(const RigidIsland& island, const Vec3& gravity, double least, 
   }
 }
 
+// Of the points that push.
+SPRINGTOWER_KERNEL
+double fastestImpactOf(const PackedPoints& packed, std::size_t first, std::size_t last) {
+  const Lanes zero = {0.0, 0.0, 0.0, 0.0};
+  Lanes most = zero;
+  for (std::size_t i = first; i < last; ++i) {
+    for (const PackedPoint& p : pointsOf(packed, packed.pairs[static_cast<std::size_t>(packed.active[i])])) {
+      const Lanes impact = p.push > zero ? p.impact : zero;
+      largerOf(impact, most, most);
+    }
+  }
+  return std::max(std::max(most[0], most[1]), std::max(most[2], most[3]));
+}
+
+// Impulses of impacts are those of points that push.
+SPRINGTOWER_KERNEL
+bool markPushedBy(double least_m_s, RigidIsland& island, PackedPoints& packed, std::size_t first, std::size_t last) {
+  const Lanes zero = {0.0, 0.0, 0.0, 0.0};
+  bool any = false;
+  const auto mark = [&](std::int32_t at, double push) {
+    if (at == unmovedBody(island)) return;
+    RigidBody& body = island.bodies[static_cast<std::size_t>(at)];
+    if (!(push * body.inverseMass > least_m_s)) return;
+    body.pushed = true;
+    any = true;
+  };
+  for (std::size_t i = first; i < last; ++i) {
+    const PackedPair& pair = packed.pairs[static_cast<std::size_t>(packed.active[i])];
+    Lanes most = zero;
+    for (PackedPoint& p : pointsOf(packed, pair)) {
+      const LaneMask pushes = p.push > zero;
+      p.impact = pushes ? p.impact : zero;
+      p.rebound = pushes ? p.rebound : zero + std::numeric_limits<double>::lowest();
+      largerOf(p.push, most, most);
+    }
+    for (std::size_t lane = 0; lane < kPackedPairs; ++lane) {
+      mark(pair.upper[lane], most[static_cast<int>(lane)]);
+      mark(pair.lower[lane], most[static_cast<int>(lane)]);
+    }
+  }
+  return any;
+}
+
 double twiceKinetic(const RigidBody& body, const Vec3& velocity, const Vec3& spin, const Vec3& otherVelocity,
                     const Vec3& otherSpin) {
   const Vec3 own = body.axes.transpose() * spin;
@@ -70,19 +113,9 @@ void setImpacts(const IslandStep& step, RigidIsland& island) {
 }
 
 double fastestImpact(const RigidIsland& island) {
-  const Lanes zero = {0.0, 0.0, 0.0, 0.0};
   double fastest = 0.0;
   for (const PackedPoints* packed : packsOf(island)) {
-    const auto fastestOf = [&](std::size_t first, std::size_t last) {
-      Lanes most = zero;
-      for (std::size_t i = first; i < last; ++i) {
-        for (const PackedPoint& p : pointsOf(*packed, packed->pairs[static_cast<std::size_t>(packed->active[i])])) {
-          const Lanes impact = p.push > zero ? p.impact : zero;
-          largerOf(impact, most, most);
-        }
-      }
-      return std::max(std::max(most[0], most[1]), std::max(most[2], most[3]));
-    };
+    const auto fastestOf = [&](std::size_t first, std::size_t last) { return fastestImpactOf(*packed, first, last); };
     const std::size_t count = packed->active.size();
     const double found = mergeRanges(count, tuning::kPairGrain, count >= 2 * tuning::kPairGrain, 0.0, fastestOf,
                                      [](double x, double y) { return std::max(x, y); });
@@ -95,30 +128,9 @@ bool markPushedByPoints(const IslandStep& step, RigidIsland& island) {
   const double least_m_s = tuning::kRoundingPush * step.simulation.scene.gravity.magnitude * step.drift_s;
   overBodies(island, [&](std::size_t i) { island.bodies[i].pushed = false; });
   std::atomic<bool> any = false;
-  const auto mark = [&](std::int32_t at, double push) {
-    if (at == unmovedBody(island)) return;
-    RigidBody& body = island.bodies[static_cast<std::size_t>(at)];
-    if (!(push * body.inverseMass > least_m_s)) return;
-    body.pushed = true;
-    any.store(true, std::memory_order_relaxed);
-  };
-  const Lanes zero = {0.0, 0.0, 0.0, 0.0};
   for (PackedPoints* packed : packsOf(island)) {
     overColours(packed->activeStart, [&](std::size_t first, std::size_t last) {
-      for (std::size_t i = first; i < last; ++i) {
-        const PackedPair& pair = packed->pairs[static_cast<std::size_t>(packed->active[i])];
-        Lanes most = zero;
-        for (PackedPoint& p : pointsOf(*packed, pair)) {
-          const LaneMask pushes = p.push > zero;
-          p.impact = pushes ? p.impact : zero;
-          p.rebound = pushes ? p.rebound : zero + std::numeric_limits<double>::lowest();
-          largerOf(p.push, most, most);
-        }
-        for (std::size_t lane = 0; lane < kPackedPairs; ++lane) {
-          mark(pair.upper[lane], most[static_cast<int>(lane)]);
-          mark(pair.lower[lane], most[static_cast<int>(lane)]);
-        }
-      }
+      if (markPushedBy(least_m_s, island, *packed, first, last)) any.store(true, std::memory_order_relaxed);
     });
   }
   return any;

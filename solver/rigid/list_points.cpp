@@ -68,6 +68,14 @@ double relativeMotion(const IslandStep& step, const RigidIsland& island, const P
   return (least + step.simulation.scene.gravity.magnitude * time_s) * time_s;
 }
 
+// The body with which the normal of a point turns. That of two edges turns with both: it is kept with the one that turns more,
+// whichever is named first.
+NormalOf turningWith(const RigidIsland& island, const PairBodies& of, const NearPoint& near) {
+  if (near.axis != kCrossingAxis || of.body[0] == unmovedBody(island) || of.body[1] == unmovedBody(island)) return near.normalOf;
+  const auto spin = [&](std::size_t side) { return island.bodies[static_cast<std::size_t>(of.body[side])].spin.squaredNorm(); };
+  return spin(0) > spin(1) ? NormalOf::a : NormalOf::b;
+}
+
 // The point in the axes of its bodies.
 void addConstraint(const RigidIsland& island, const PairBodies& of, const NearPoint& near, double restitution,
                    std::vector<ContactConstraint>& points) {
@@ -82,11 +90,11 @@ void addConstraint(const RigidIsland& island, const PairBodies& of, const NearPo
   };
   own(p.upper, near.onA, p.placeUpper);
   own(p.lower, near.onB, p.placeLower);
-  const std::int32_t turning = near.normalOf == NormalOf::a ? p.upper : p.lower;
-  p.normalOf = near.normalOf;
+  p.normalOf = turningWith(island, of, near);
+  const std::int32_t turning = p.normalOf == NormalOf::a ? p.upper : p.lower;
   p.axis = near.axis;
   p.beside = near.beside;
-  if (near.normalOf == NormalOf::world || turning == unmovedBody(island)) {
+  if (p.normalOf == NormalOf::world || turning == unmovedBody(island)) {
     p.normalOf = NormalOf::world;
     toLanes(near.normal, p.ownNormal);
   } else {
@@ -162,7 +170,7 @@ std::optional<Apart> findPoints(const IslandStep& step, const RigidIsland& islan
   const Separation apart = findSeparation(a, b);
   if (apart.best() > reach) return Apart{apart.best(), apart.bestNormal()};
   near.grazes = grazes(apart, grazingLimits(step.simulation), relativeVelocity(island, of));
-  findNearPoints(a, b, near.grazes ? alongLevel(apart) : apart, reach,
+  findNearPoints(a, b, near.grazes ? alongLevel(apart) : apart, step.gravity, reach,
                  tuning::kMergeRadius * step.simulation.lengths.blockHeight_m, near);
   return {};
 }

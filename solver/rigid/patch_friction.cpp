@@ -101,8 +101,8 @@ void setStatic(PackedPoints& packed, PackedPair& pair) {
   pair.slips = false;
 }
 
-void chooseOf(const IslandStep& step, const RigidIsland& island, const PatchRules& rules, PackedPoints& packed,
-              PackedPair& pair) {
+SPRINGTOWER_INLINE void chooseOf(const IslandStep& step, const RigidIsland& island, const PatchRules& rules, PackedPoints& packed,
+                                 PackedPair& pair) {
   setStatic(packed, pair);
   LaneMask isFree;
   findFree(packed, pair, isFree);
@@ -121,6 +121,12 @@ void chooseOf(const IslandStep& step, const RigidIsland& island, const PatchRule
   }
 }
 
+SPRINGTOWER_KERNEL
+void chooseIn(const IslandStep& step, const RigidIsland& island, const PatchRules& rules, PackedPoints& packed, std::size_t first,
+              std::size_t last) {
+  for (std::size_t i = first; i < last; ++i) chooseOf(step, island, rules, packed, packed.pairs[i]);
+}
+
 }  // namespace
 
 void choosePatchFriction(const IslandStep& step, RigidIsland& island) {
@@ -130,9 +136,7 @@ void choosePatchFriction(const IslandStep& step, RigidIsland& island) {
       all * static_cast<std::size_t>(tuning::kCheapPasses) <= static_cast<std::size_t>(tuning::kCheapEvaluations);
   const PatchRules rules{slipNoise_m_s(step), converges || isRigid(step.simulation.scene.settings.method)};
   for (PackedPoints* packed : packsOf(island)) {
-    overPacks(*packed, [&](std::size_t first, std::size_t last) {
-      for (std::size_t i = first; i < last; ++i) chooseOf(step, island, rules, *packed, packed->pairs[i]);
-    });
+    overPacks(*packed, [&](std::size_t first, std::size_t last) { chooseIn(step, island, rules, *packed, first, last); });
   }
 }
 

@@ -25,6 +25,23 @@ BlockStiffness stiffnessForTolerance(const LoadEstimate& loads, double tolerance
   return result;
 }
 
+void stiffenForMotion(const Scene& scene, double referenceLength_m, std::vector<double>& edge_n_m) {
+  double fastest_m_s = 0.0;
+  double top_m = 0.0;
+  for (const BlockSpec& block : scene.blocks) {
+    const double radius_m = 0.5 * block.dimensions.norm();
+    fastest_m_s = std::max(fastest_m_s, block.velocity.norm() + radius_m * block.spin.norm());
+    top_m = std::max(top_m, block.centre.z());
+  }
+  const double squared = elementary::square(fastest_m_s) + (scene.floor ? 2.0 * scene.gravity.magnitude * top_m : 0.0);
+  for (std::size_t b = 0; b < scene.blocks.size(); ++b) {
+    const BlockSpec& block = scene.blocks[b];
+    const double strained_m = tuning::kMaxMotionStrain * block.dimensions.minCoeff();
+    edge_n_m[b] =
+        std::max(edge_n_m[b], 0.25 * block.mass * squared / (strained_m * tuning::kMaxMotionStrain * referenceLength_m));
+  }
+}
+
 double stableStep(Method method, double spectralRadius, double dampingTime_s, double margin) {
   const double limit = 4.0 * margin * margin / spectralRadius;
   const double step = std::sqrt(dampingTime_s * dampingTime_s + limit) - dampingTime_s;

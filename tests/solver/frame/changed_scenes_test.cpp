@@ -129,7 +129,8 @@ FallCourse fallOf(const Scene& scene, double time, std::size_t frames = 0) {
   return course;
 }
 
-void expectSameFall(const Scene& scene, std::uint64_t seed) {
+// `permuted_m`: how far apart the falls may be whose blocks come in another order.
+void expectSameFall(const Scene& scene, std::uint64_t seed, double permuted_m = 1e-4) {
   const FallCourse plain = fallOf(scene, 1.0);
   // What the scene may lose: from its height to the floor.
   double fall_j = 0.0;
@@ -147,14 +148,7 @@ void expectSameFall(const Scene& scene, std::uint64_t seed) {
       energy_j = std::max(energy_j, std::abs(lost_j - (plain.frames[frame].energy_j - plain.frames[0].energy_j)));
     }
     EXPECT_EQ(course.stands, plain.stands) << "seed " << seed << ", " << scene.name << ", " << change.name;
-    // Rigid steps go over the points of an impact one after the other. Where several meet at once with friction that has more
-    // than one answer, and which one is found depends on the order of the blocks, however many passes there are: up to 2 mm until
-    // then.
-    if (change.order != 0) {
-      EXPECT_LT(energy_j, 1e-2 * fall_j) << "seed " << seed << ", " << scene.name << ", " << change.name;
-      continue;
-    }
-    EXPECT_LT(apart_m, 1e-4) << "seed " << seed << ", " << scene.name << ", " << change.name;
+    EXPECT_LT(apart_m, change.order != 0 ? permuted_m : 1e-4) << "seed " << seed << ", " << scene.name << ", " << change.name;
     EXPECT_LT(energy_j, 1e-3 * fall_j) << "seed " << seed << ", " << scene.name << ", " << change.name;
   }
 }
@@ -163,8 +157,10 @@ TEST(ChangedScenes, DroppedBlocksFallTheSame) {
   for (std::uint64_t seed = 1; seed <= scenesOr(16); ++seed) expectSameFall(droppedBlocks(seed), seed);
 }
 
+// Blocks that lie side by side go by their numbers where both their faces are alike, and impulses are solved in their order: 11
+// of 72 falls in other orders part by 0.1 to 0.31 mm (of 24 seeds; 3 of 216 after the other changes).
 TEST(ChangedScenes, TopplingTowersFallTheSame) {
-  for (std::uint64_t seed = 1; seed <= scenesOr(2); ++seed) expectSameFall(topplingTower(seed), seed);
+  for (std::uint64_t seed = 1; seed <= scenesOr(2); ++seed) expectSameFall(topplingTower(seed), seed, 3e-4);
 }
 
 }  // namespace

@@ -110,5 +110,28 @@ TEST(StepLimit, OfAnExplicitMethodIsSaidBeforeTheFrame) {
   EXPECT_GT(centre(carried.state.position, 1)[2], centre(before, 1)[2] - 1e-5);
 }
 
+// Springs that only the weight of blocks had to bend less than a tolerance let a block that spins or hits fast turn itself inside
+// out: these are stiff enough for the scene's speeds (stiffenForMotion).
+TEST(Divergence, IsNotThatOfAFastBlockOfSprings) {
+  struct Start {
+    Vec3 velocity;
+    Vec3 spin;
+  };
+  for (const Method method : {Method::semiImplicitEuler, Method::rungeKutta4}) {
+    for (const Start& start : {Start{Vec3(0.0, 0.0, -20.0), Vec3::Zero()}, Start{Vec3(0.0, 0.0, -30.0), Vec3(0.0, 0.0, 300.0)},
+                               Start{Vec3::Zero(), Vec3(0.0, 900.0, 0.0)}}) {
+      SCOPED_TRACE(testing::Message() << nameOf(method) << ", " << start.velocity.transpose() << " m/s, "
+                                      << start.spin.transpose() << " rad/s");
+      Scene scene = sceneNamed("dropped-on-corner");
+      scene.settings.method = method;
+      scene.blocks[0].velocity = start.velocity;
+      scene.blocks[0].spin = start.spin;
+      Simulation simulation(scene);
+      prepare(simulation);
+      EXPECT_EQ(messageOf(simulation, 12), "none");
+    }
+  }
+}
+
 }  // namespace
 }  // namespace springtower
