@@ -32,7 +32,7 @@ struct Settings {
   int substeps = 0;               ///< steps a frame; 0 takes them from the tolerance
   bool allowUnstable = false;     ///< allow a tolerance and substeps that do not fit together
   double stabilitySafety = 0.95;  ///< fraction of the stability limit that is used
-  double springRatio = 1.0;       ///< stiffness of an upright edge spring over that of a contact
+  double springRatio = 1.0;       ///< stiffness of an upright edge spring over that of a contact; more where a scene is fast
   double tangentialRatio = 0.8;   ///< tangential over normal contact stiffness; wood's Mindlin ratio is 2(1-nu)/(2-nu), about 0.8
   double maxwellRatio = 0.3;      ///< stiffness of the contact's Maxwell branch over its lasting one; damps a tower's sway
   double maxwellTime = 1.161;     ///< in sqrt(h / g); relaxation time of that branch, 50 ms for the game's blocks

@@ -56,7 +56,8 @@ struct Separation {
 };
 
 /// Whether b's face counts where faces of both separate as well: that of the block that is higher against gravity (m/s2); b's
-/// where their centres are level to within `level_m`. So it does not matter which block is named first.
+/// where their centres are level to within `level_m`. So it matters which block is named first only for blocks side by side.
+/// Without gravity "higher" is along z.
 inline bool prefersFaceOfB(const Separation& apart, const Vec3& gravity, double level_m) {
   const double size = gravity.norm();
   return (size > 0.0 ? -apart.between.dot(gravity) / size : apart.between.z()) <= level_m;

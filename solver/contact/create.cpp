@@ -107,7 +107,8 @@ void chooseManifold(const IslandStep& step, const Separation& apart, const Corne
   const double edgeSlack = edgeSlackOf(simulation);
   const bool wasA = old.phase == PairPhase::face && old.lower == pair.a;
   const bool wasB = old.phase == PairPhase::face && old.lower == pair.b;
-  // Of two faces that separate as well it is that of a fixed block, or else of the higher one.
+  // Of two faces that separate as well it is that of a fixed block, or else of the higher one. (Along z in the first contacts of
+  // a scene: no step has set its gravity yet.)
   const double ofA = simulation.model.isFixed(static_cast<std::size_t>(pair.a)) ? edgeSlack : 0.0;
   const double ofB = simulation.model.isFixed(static_cast<std::size_t>(pair.b)) ? edgeSlack : 0.0;
   const double alike = tuning::kAlikeFaces * simulation.lengths.blockHeight_m;

@@ -5,6 +5,7 @@
 #include "solver/law/point_places.h"
 #include "solver/world/over_island.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace springtower {

@@ -60,7 +60,8 @@ SPRINGTOWER_INLINE void setWeights(const PlacedPoints& points, bool floor, Conta
   }
 }
 
-// Writes what point `lane` resists with: `tangent` along the normal and, unless that is another, `across` by its friction.
+// Writes what point `lane` resists with: `tangent` along the normal, `across` by its friction; where that acts at the point
+// itself, both are one.
 void setStiffness(const PointStiffness& resists, double sign, std::size_t lane, ContactTangent& tangent, ContactTangent& across) {
   if (&across != &tangent) {
     tangent.alongNormal[lane] = sign * resists.normal;

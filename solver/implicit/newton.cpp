@@ -53,14 +53,15 @@ NewtonSystem& islandOf(IslandStep& step) {
   return step.engine.memo.newtonSystems.of(step.blocks.front());
 }
 
-// Finds the present active set, island.active. Before the first iteration nothing has moved yet, so points slip as they did in
-// the step before.
+// What there is to know of the present active set.
 struct ActiveSet {
   bool changed = false;  // differs from that in the factors
   bool slides = false;   // whether any point slips
   bool limited = false;  // whether the hand is at a limit of its forces
 };
 
+// Finds the present active set, island.active. Before the first iteration nothing has moved yet, so points slip as they did in
+// the step before.
 ActiveSet findActiveSet(const IslandStep& step, NewtonSystem& island) {
   island.active.resize(island.touching.size());
   const auto inRange = [&](std::size_t first, std::size_t last) {

@@ -3,8 +3,6 @@
 #include "solver/block/affine.h"
 #include "solver/world/newton_system.h"
 
-#include <array>
-
 namespace springtower {
 
 struct IslandStep;

@@ -24,7 +24,7 @@ struct PlacedBlocks {
   const BlockFrame* below;
 };
 
-/// The unit normal of a manifold, from lower to upper.
+/// The unit normal of a manifold, from lower to upper. Precondition: edges that cross are not parallel.
 SPRINGTOWER_INLINE void normalOf(const ContactView& m, const PlacedBlocks& blocks, double* normal) {
   normal[0] = normal[1] = 0.0;
   normal[2] = 1.0;
@@ -39,7 +39,7 @@ SPRINGTOWER_INLINE void normalOf(const ContactView& m, const PlacedBlocks& block
   for (std::size_t k = 0; k < 3; ++k) normal[k] = 2.0 * face.side * blocks.below->normal[face.across][k];
 }
 
-/// Four points at `u` and `v` of the upper face.
+/// Four points at `u` and `v` (-1/2..1/2) of the upper face; `normal` is the manifold's.
 SPRINGTOWER_INLINE void placeOnFaces(const ContactView& m, const PlacedBlocks& blocks, const double* normal, const Lanes& u,
                                      const Lanes& v, PlacedPoints& points) {
   const Lanes zero = {0.0, 0.0, 0.0, 0.0};
@@ -64,7 +64,7 @@ SPRINGTOWER_INLINE void placeOnFaces(const ContactView& m, const PlacedBlocks& b
   }
 }
 
-/// The point where two edges cross, in all lanes.
+/// The point where two edges cross, in all lanes. Preconditions: a manifold of edges, `below` is not null.
 SPRINGTOWER_INLINE void placeOnEdges(const ContactView& m, const PlacedBlocks& blocks, PlacedPoints& points) {
   const Lanes zero = {0.0, 0.0, 0.0, 0.0};
   const EdgeAxes upper = edgeAxes(m.incidentFace);

@@ -68,11 +68,14 @@ double relativeMotion(const IslandStep& step, const RigidIsland& island, const P
   return (least + step.simulation.scene.gravity.magnitude * time_s) * time_s;
 }
 
-// The body with which the normal of a point turns. That of two edges turns with both: it is kept with the one that turns more,
-// whichever is named first.
+// The body with which the normal of a point turns. That of two edges turns with both: it is kept with the one that spins more,
+// whichever is named first (of equal spins the second one).
 NormalOf turningWith(const RigidIsland& island, const PairBodies& of, const NearPoint& near) {
-  if (near.axis != kCrossingAxis || of.body[0] == unmovedBody(island) || of.body[1] == unmovedBody(island)) return near.normalOf;
-  const auto spin = [&](std::size_t side) { return island.bodies[static_cast<std::size_t>(of.body[side])].spin.squaredNorm(); };
+  if (near.axis != kCrossingAxis) return near.normalOf;
+  const auto spin = [&](std::size_t side) {
+    if (of.body[side] == unmovedBody(island)) return -1.0;
+    return island.bodies[static_cast<std::size_t>(of.body[side])].spin.squaredNorm();
+  };
   return spin(0) > spin(1) ? NormalOf::a : NormalOf::b;
 }
 

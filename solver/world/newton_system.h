@@ -55,7 +55,7 @@ struct NewtonWork {
   std::vector<ModeVectors> direction;      ///< m, the last Newton direction, in the world's frame, by node
   std::vector<double> affine;              ///< right-hand sides and solutions, [nodes][12]
   AlignedVector<ContactTangent> tangents;  ///< differences to the contacts in the factors; may be empty
-  std::vector<ActiveSetBits> active;       ///< active set of each touching pair after the last evaluation of an iteration
+  std::vector<ActiveSetBits> active;       ///< active set of each touching pair as the present iteration begins
   std::vector<std::int32_t> tangentStart;  ///< of each touching pair, where tangents are found on many threads
   std::vector<std::int32_t> coupled;       ///< of `solveCoupled`: nodes that the tangents act on
   std::vector<std::int32_t> coupledIndex;  ///< index of each node among them

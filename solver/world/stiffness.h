@@ -15,9 +15,10 @@ namespace springtower {
 BlockStiffness stiffnessForTolerance(const LoadEstimate& loads, double tolerance_m);
 
 /// Makes the springs of explicit methods stiff enough for the speeds of a scene: four edges along a block's least side are
-/// strained by tuning::kMaxMotionStrain at most where they stop the speed of the scene's fastest corner, and what a fall from its
-/// highest block adds. Slow scenes keep what the loads ask for. Implicit and rigid methods do not need it: their blocks take
-/// impulses as rigid bodies. `edge_n_m`: [blocks], as in BlockStiffness.
+/// strained by tuning::kMaxMotionStrain at most where they stop the speed of the scene's fastest corner at its start, and what a
+/// fall from its highest centre to the floor adds; not what forces, hands and drives add. Slow scenes keep what their loads need.
+/// Implicit and rigid methods do not need it: their blocks take impulses as rigid bodies. `referenceLength_m`: m, of the edges
+/// that `edge_n_m` (N/m, [blocks]) is of, as in BlockStiffness.
 void stiffenForMotion(const Scene& scene, double referenceLength_m, std::vector<double>& edge_n_m);
 
 /// Whether a block equals the one before it in dimensions, mass and stiffness of its springs, so that what follows from these
