@@ -7,6 +7,7 @@
 #include "tests/support/two_walls.h"
 #include "tests/support/uneven_tower.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <gtest/gtest.h>
 #include <oneapi/tbb/global_control.h>
@@ -20,6 +21,7 @@ namespace {
 
 constexpr int kThreadCounts[] = {1, 2, 3, 5, 8, 16, 32, 64};
 constexpr int kFramesOnThreads = 6;
+constexpr int kRuns = 4;
 
 struct Timed {
   std::uint64_t hash = 0;
@@ -45,6 +47,17 @@ Timed timedOn(const Scene& scene, int threads) {
   });
 }
 
+// The same with the least time of several runs: a run takes some milliseconds, and what else the machine does adds to it.
+Timed leastTimedOn(const Scene& scene, int threads) {
+  Timed least = timedOn(scene, threads);
+  for (int run = 1; run < kRuns; ++run) {
+    const Timed again = timedOn(scene, threads);
+    EXPECT_EQ(again.hash, least.hash) << threads << " threads, run " << run;
+    least.processor_s = std::min(least.processor_s, again.processor_s);
+  }
+  return least;
+}
+
 // A wide island that sways, two of them, and towers that fall, each an island of its own.
 std::vector<std::pair<std::string, Scene>> wideAndMany() {
   return {{"wall that sways", awake(swaying(wallScene(24, 16), 0.3, 2.0))},
@@ -57,9 +70,9 @@ std::vector<std::pair<std::string, Scene>> wideAndMany() {
 TEST(ManyThreads, SixtyFourAreAsGoodAsOne) {
   constexpr double kMostSlower = 3.0;
   for (const auto& [name, scene] : wideAndMany()) {
-    const Timed one = timedOn(scene, 1);
+    const Timed one = leastTimedOn(scene, 1);
     for (const int threads : kThreadCounts) {
-      const Timed many = timedOn(scene, threads);
+      const Timed many = leastTimedOn(scene, threads);
       EXPECT_EQ(many.hash, one.hash) << name << ", " << threads << " threads";
       EXPECT_EQ(many.looked, one.looked) << name << ", " << threads << " threads";
       EXPECT_LT(many.processor_s, kMostSlower * one.processor_s) << name << ", " << threads << " threads";
