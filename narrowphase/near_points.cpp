@@ -15,6 +15,7 @@ namespace {
 // Numbers of the separating axes.
 constexpr std::uint8_t kFaceOfA = 0;
 constexpr std::uint8_t kFaceOfB = 1;
+constexpr std::uint8_t kCrossing = 2;
 
 // The corner of an outline from which its points are listed: rounding may decide with which corner clipping begins, and the order
 // of points is that in which they are solved. The first one counterclockwise of a direction in which no corner of rectangles that
@@ -83,7 +84,7 @@ void addCrossing(const CornerView& a, const CornerView& b, const Separation& apa
   const double onA = (bb * between.dot(alongA) - ab * between.dot(alongB)) / determinant;
   const double onB = (ab * between.dot(alongA) - aa * between.dot(alongB)) / determinant;
   points.add({fromA + std::clamp(onA, 0.0, 1.0) * alongA, fromB + std::clamp(onB, 0.0, 1.0) * alongB, apart.normalEdge,
-              NormalOf::b, kCrossingAxis});
+              NormalOf::both, kCrossing});
 }
 
 double gapOf(const NearPoint& point) {

@@ -8,8 +8,8 @@
 
 namespace springtower {
 
-/// Which of two blocks a normal turns with: the one whose face it is perpendicular to.
-enum class NormalOf : std::uint8_t { a, b, world };
+/// Which of two blocks a normal turns with: the one whose face it is perpendicular to, or both, where two edges cross.
+enum class NormalOf : std::uint8_t { a, b, both, world };
 
 /// A point at which two blocks touch, or may touch after a short way: a place on each, and the unit normal from b to a. The gap
 /// there is normal . (onA - onB), m, negative where they overlap.
@@ -23,7 +23,6 @@ struct NearPoint {
 };
 
 inline constexpr std::size_t kSeparatingAxes = 3;
-inline constexpr std::uint8_t kCrossingAxis = 2;  ///< number of that of two edges
 
 /// The outlines of both blocks' nearest faces have at most eight corners each, and a pair of edges crosses once.
 inline constexpr std::size_t kMostNearPoints = 17;

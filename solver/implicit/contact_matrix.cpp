@@ -1,6 +1,7 @@
 #include "solver/implicit/contact_matrix.h"
 
 #include "core/lanes.h"
+#include "solver/algebra/block_kernels.h"
 #include "solver/implicit/friction_tangent.h"
 #include "solver/law/point_places.h"
 #include "solver/world/over_island.h"
@@ -13,8 +14,6 @@ namespace springtower {
 namespace {
 
 constexpr std::size_t kQuads = kNodeSize / 4;
-
-using QuadOfFloats = float __attribute__((vector_size(16)));
 
 // Three numbers, repeated along the twelve of a row of the matrix, [vector][component].
 struct Pattern {
@@ -120,9 +119,9 @@ SPRINGTOWER_INLINE void addBlock(const BlockCoupling& sum, const Basis& basis, d
       for (std::size_t g = 0; g < kQuads; ++g) {
         const Lanes total = normal.quad[g] * basis.pattern[0].quad[g] + first.quad[g] * basis.pattern[1].quad[g] +
                             second.quad[g] * basis.pattern[2].quad[g];
-        QuadOfFloats old;
+        Quad old;
         __builtin_memcpy(&old, to + 4 * g, sizeof old);
-        old += __builtin_convertvector(total, QuadOfFloats);
+        old += __builtin_convertvector(total, Quad);
         __builtin_memcpy(to + 4 * g, &old, sizeof old);
       }
     }

@@ -68,10 +68,10 @@ double relativeMotion(const IslandStep& step, const RigidIsland& island, const P
   return (least + step.simulation.scene.gravity.magnitude * time_s) * time_s;
 }
 
-// The body with which the normal of a point turns. That of two edges turns with both: it is kept with the one that spins more,
+// The body with which the normal of a point turns in the step. One that turns with both is kept with the one that spins more,
 // whichever is named first (of equal spins the second one).
 NormalOf turningWith(const RigidIsland& island, const PairBodies& of, const NearPoint& near) {
-  if (near.axis != kCrossingAxis) return near.normalOf;
+  if (near.normalOf != NormalOf::both) return near.normalOf;
   const auto spin = [&](std::size_t side) {
     if (of.body[side] == unmovedBody(island)) return -1.0;
     return island.bodies[static_cast<std::size_t>(of.body[side])].spin.squaredNorm();
