@@ -16,12 +16,6 @@ using namespace block_modes;
 using Full = Eigen::Matrix<double, 24, 24>;
 using Small = Eigen::Matrix<double, 12, 12>;
 
-// The coefficient of vector m in a corner's position.
-double share(std::size_t corner, std::size_t m) {
-  const double half = m >= 1 && m < kAffine ? 0.5 : 1.0;
-  return half * sign(corner, kPattern[m]);
-}
-
 Eigen::Index at(std::size_t vector, std::size_t component) {
   return static_cast<Eigen::Index>(3 * vector + component);
 }
@@ -31,18 +25,27 @@ Eigen::Index warpAt(std::size_t vector, std::size_t component) {
   return at(vector - kAffine, component);
 }
 
+// A matrix by corner and component as one by vector and component: each of its columns transformed, and written as a row. Of a
+// symmetric matrix the same done twice is the matrix of the vectors.
+Full columnsToVectors(const Full& matrix) {
+  Full result;
+  for (Eigen::Index column = 0; column < matrix.cols(); ++column) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      double corners[kCorners];
+      double t[kCorners];
+      for (std::size_t c = 0; c < kCorners; ++c) corners[c] = matrix(at(c, a), column);
+      transform(corners, t);
+      for (std::size_t m = 0; m < kCorners; ++m) result(column, at(m, a)) = (m >= 1 && m < kAffine ? 0.5 : 1.0) * t[kPattern[m]];
+    }
+  }
+  return result;
+}
+
 }  // namespace
 
 BlockJacobian blockJacobian(const BlockModel& model, Inertia inertia, std::size_t block, double massFactor, double springFactor) {
-  Full basis = Full::Zero();
-  for (std::size_t c = 0; c < kCorners; ++c) {
-    for (std::size_t m = 0; m < kCorners; ++m) {
-      basis.block<3, 3>(static_cast<Eigen::Index>(3 * c), static_cast<Eigen::Index>(3 * m)) =
-          share(c, m) * Eigen::Matrix3d::Identity();
-    }
-  }
   BlockJacobian result;
-  Full whole = springFactor * (basis.transpose() * springStiffnessMatrix(model, block) * basis);
+  Full whole = springFactor * columnsToVectors(columnsToVectors(springStiffnessMatrix(model, block)));
   const double corner = model.mass[block] / inverseMass(inertia).own;  // mass of a corner's deviation from the mean
   for (std::size_t m = 0; m < kCorners; ++m) {
     result.mass[m] = m == 0 ? model.mass[block] : corner * static_cast<double>(kCorners) * (m < kAffine ? 0.25 : 1.0);

@@ -1,6 +1,7 @@
 #include "solver/implicit/correction.h"
 
 #include "core/lanes.h"
+#include "core/tuning.h"
 #include "solver/block/modes.h"
 #include "solver/implicit/friction_tangent.h"
 #include "solver/implicit/gmres.h"
@@ -51,10 +52,10 @@ void recoverDirections(NewtonSystem& island, std::size_t first, std::size_t last
   }
 }
 
-// The Newton direction up to a residual of `allowed_n`; returns whether that was reached.
-bool solveForCorrection(IslandStep& step, NewtonSystem& island, double allowed_n) {
+// The Newton direction; returns whether it is exact enough.
+bool solveForCorrection(IslandStep& step, NewtonSystem& island, const GmresTolerance& tolerance) {
   overBlocks(step, [&](std::size_t first, std::size_t last) { reduceResiduals(island, first, last); });
-  const bool reached = solveCoupled(step, island, allowed_n);
+  const bool reached = solveCoupled(step, island, tolerance);
   overBlocks(step, [&](std::size_t first, std::size_t last) { recoverDirections(island, first, last); });
   return reached;
 }
@@ -63,6 +64,15 @@ double lightest(const IslandStep& step) {
   double mass = std::numeric_limits<double>::infinity();
   for (const std::int32_t block : step.blocks) mass = std::min(mass, step.simulation.model.mass[static_cast<std::size_t>(block)]);
   return mass;
+}
+
+// Far from the solution the line search shortens the step, and the active set is another in the next iteration: a rough direction
+// is enough there (inexact Newton method, Dembo, Eisenstat & Steihaug 1982).
+GmresTolerance toleranceFor(const IslandStep& step, double residual) {
+  const double far = tuning::kGmresToleranceGrowth * residual / tuning::kFarResidual;
+  const double weight_n = lightest(step) * std::max(step.simulation.scene.gravity.magnitude, 1.0);
+  return {std::clamp(far, tuning::kGmresRelativeTolerance, tuning::kMaxGmresTolerance),
+          tuning::kGmresAbsoluteTolerance * tuning::kNewtonResidual * weight_n};
 }
 
 }  // namespace
@@ -79,15 +89,15 @@ double directionalDerivative(const IslandStep& step, const NewtonSystem& island)
   });
 }
 
-bool findCorrection(IslandStep& step, NewtonSystem& island, double effective_s, double allowed, bool differ) {
-  const double allowed_n = allowed * lightest(step) * std::max(step.simulation.scene.gravity.magnitude, 1.0);
+bool findCorrection(IslandStep& step, NewtonSystem& island, double effective_s, double residual, bool differ) {
+  const GmresTolerance tolerance = toleranceFor(step, residual);
   island.tangents.clear();
   if (differ) findTangents(step, island, effective_s);
-  const bool reached = solveForCorrection(step, island, allowed_n);
+  const bool reached = solveForCorrection(step, island, tolerance);
   // With the symmetric matrix alone the derivative is always positive.
   if (!island.tangents.empty() && !(directionalDerivative(step, island) > 0.0)) {
     island.tangents.clear();
-    solveForCorrection(step, island, allowed_n);
+    solveForCorrection(step, island, tolerance);
   }
   return reached;
 }

@@ -193,7 +193,7 @@ ActiveSetBits activeSetBits(const IslandStep& step, const NewtonSystem& island, 
   const ConstPointRows& slid = island.trialIsAhead ? trial : before;
   const auto count = static_cast<std::size_t>(contacts.shape(contact).count);
   if (island.assumesSupport) return allPush(count);
-  const double least = island.useConsistentTangent ? 1.0 : kTouchingWithoutForce;
+  const double least = island.isNear ? 1.0 : kTouchingWithoutForce;
   ActiveSetBits mask = 0;
   for (std::size_t first = 0; first < count; first += kRowPoints) {
     const PenaltyRow& now = trial[rowOf(first)]->penalty;

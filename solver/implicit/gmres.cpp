@@ -154,15 +154,15 @@ std::size_t mostDirections(const NewtonSystem& island) {
                     tuning::kMaxGmresDirections);
 }
 
-bool solveCoupled(IslandStep& step, NewtonSystem& island, double allowed_n) {
+bool solveCoupled(IslandStep& step, NewtonSystem& island, const GmresTolerance& tolerance) {
   island.directions = 0;
   if (island.tangents.empty()) {
     solve(step, island);
     return true;
   }
   const std::size_t all = island.affine.size();
-  const double allowed = std::max(
-      allowed_n, tuning::kGmresRelativeTolerance * std::sqrt(dot(step, island.affine.data(), island.affine.data(), all)));
+  const double allowed =
+      std::max(tolerance.absolute_n, tolerance.relative * std::sqrt(dot(step, island.affine.data(), island.affine.data(), all)));
   solve(step, island);
   findCoupledNodes(island);
   const std::size_t count = kNodeSize * island.coupled.size();

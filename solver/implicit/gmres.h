@@ -11,11 +11,17 @@ struct NewtonSystem;
 /// takes two to four), up to thirty in a wide one, whose factors cost as much as that many solutions.
 std::size_t mostDirections(const NewtonSystem& island);
 
+/// Residual of `solveCoupled` that is small enough (2-norm): either.
+struct GmresTolerance {
+  double relative;  ///< share of the right-hand side
+  double absolute_n;
+};
+
 /// Solves for island.affine in place as `solve` does, but with the contacts of island.tangents: their differences to those in the
 /// factors, and the coupling of friction to the normal force, which a symmetric matrix cannot represent. GMRES (Saad & Schultz
-/// 1986), with the factors as right preconditioner, until the residual is within `allowed_n` (2-norm, N) or 2/1000 of the
-/// right-hand side. Returns false if the allowed number of directions does not reach that, because the contacts differ too much
-/// from those in the factors; island.affine is then the best approximation. Precondition: island.factorised.
-bool solveCoupled(IslandStep& step, NewtonSystem& island, double allowed_n);
+/// 1986), with the factors as right preconditioner, until the residual is within `tolerance`. Returns false if the
+/// allowed number of directions does not reach that, because the contacts differ too much from those in the factors;
+/// island.affine is then the best approximation. Precondition: island.factorised.
+bool solveCoupled(IslandStep& step, NewtonSystem& island, const GmresTolerance& tolerance);
 
 }  // namespace springtower

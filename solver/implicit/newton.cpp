@@ -31,8 +31,6 @@ namespace {
 // Stopping criteria of Newton's iteration, and what it linearises.
 struct NewtonOptions {
   int mostContactIterations;    // while the active set changes: a load front takes one iteration a row
-  double near;                  // residual below which the consistent friction tangent is used, and points that touch
-                                // without a normal force count as open
   double enough;                // relative tolerance, of the initial residual
   bool assumesSupport = false;  // in the first iteration all points push and stick
   double leastEnough = tuning::kNewtonTolerance;
@@ -45,9 +43,9 @@ struct NewtonOptions {
 
 // Newton settings in motion. A share of the initial residual may remain, up to tuning::kMaxMotionResidual: a ten-thousandth of a
 // weight changes a speed by 4 micrometres a second, and the next step corrects it.
-const NewtonOptions kInMotion{tuning::kMaxActiveSetIterations, tuning::kConsistentTangentResidual, tuning::kRelativeResidual};
+const NewtonOptions kInMotion{tuning::kMaxActiveSetIterations, tuning::kRelativeResidual};
 // If finer steps can follow: a step that does not converge in a few iterations converges in fewer with finer steps.
-const NewtonOptions kBeforeFiner{tuning::kMaxNewtonIterations, tuning::kConsistentTangentResidual, tuning::kRelativeResidual};
+const NewtonOptions kBeforeFiner{tuning::kMaxNewtonIterations, tuning::kRelativeResidual};
 
 NewtonSystem& islandOf(IslandStep& step) {
   return step.engine.memo.newtonSystems.of(step.blocks.front());
@@ -268,10 +266,11 @@ LineSearch searchLine(IslandStep& step, NewtonSystem& island, double effective_s
   return {residual, share};
 }
 
-// Moves these blocks to the positions extrapolated from velocities and accelerations.
-void extrapolate(IslandStep& step, std::span<const std::int32_t> blocks, double effective_s) {
+// Moves these blocks to the positions extrapolated from velocities and, where `accelerates`, accelerations.
+void extrapolate(IslandStep& step, std::span<const std::int32_t> blocks, bool accelerates, double effective_s) {
   Engine& engine = step.engine;
   const double h = step.drift_s;
+  const double ofChange = accelerates ? 0.5 : 0.0;
   for (const std::int32_t block : blocks) {
     const auto b = static_cast<std::size_t>(block);
     for (std::size_t a = 0; a < 3; ++a) {
@@ -282,17 +281,19 @@ void extrapolate(IslandStep& step, std::span<const std::int32_t> blocks, double 
       double* x = step.simulation.state.position.values(a, b);
       for (std::size_t c = 0; c < kCorners; ++c) {
         const double change = 3.0 * ((target[c] - pull - history[c]) / effective_s - v[c]);  // of velocity, in the last step
-        x[c] += h * (v[c] + 0.5 * change);
+        x[c] += h * (v[c] + ofChange * change);
       }
     }
     updateVelocities(step, b, effective_s);
   }
 }
 
-// Moves all blocks to their extrapolated positions. Returns the residual there.
+// Moves all blocks to their extrapolated positions. Returns the residual there. Accelerations of a step in which points went on
+// to change between sticking, sliding and open are those of blocks that stop or let go, and do not last.
 double predict(IslandStep& step, NewtonSystem& island, double effective_s, StageClock& clock) {
+  const bool accelerates = island.activeSetChanges <= tuning::kMaxSteadyChanges;
   overBlocks(step, [&](std::size_t first, std::size_t last) {
-    extrapolate(step, step.blocks.subspan(first, last - first), effective_s);
+    extrapolate(step, step.blocks.subspan(first, last - first), accelerates, effective_s);
   });
   island.trialIsAhead = true;
   return evaluateResidual(step, island, effective_s, clock);
@@ -300,9 +301,9 @@ double predict(IslandStep& step, NewtonSystem& island, double effective_s, Stage
 
 // Initial guess when something moves: the extrapolated positions, unless those are far from the solution and the present ones
 // nearer, as when contacts have just opened or closed and the history no longer applies. Returns the residual there.
-double beginPredicted(IslandStep& step, NewtonSystem& island, double effective_s, const NewtonOptions& how, StageClock& clock) {
+double beginPredicted(IslandStep& step, NewtonSystem& island, double effective_s, StageClock& clock) {
   const double carried = predict(step, island, effective_s, clock);
-  if (how.near == 0.0 || !(carried > how.near)) return carried;
+  if (!(carried > tuning::kFarResidual)) return carried;
   restoreStep(step);
   updateAllVelocities(step, effective_s);
   const double still = evaluateResidual(step, island, effective_s, clock);
@@ -352,13 +353,12 @@ enum class Begin {
 };
 
 // Places the blocks where the iteration begins. Returns the residual there.
-double beginStep(IslandStep& step, NewtonSystem& island, double effective_s, Begin begin, const NewtonOptions& how,
-                 StageClock& clock) {
+double beginStep(IslandStep& step, NewtonSystem& island, double effective_s, Begin begin, StageClock& clock) {
   island.trialIsAhead = begin == Begin::placed;
   if (begin == Begin::placed) return evaluateResidual(step, island, effective_s, clock);
   const double residual = begin == Begin::carried ? 0.0 : findResidual(step, island, effective_s);
   if (begin == Begin::resting && !(residual > tuning::kPredictorResidual)) return residual;
-  return beginPredicted(step, island, effective_s, how, clock);
+  return beginPredicted(step, island, effective_s, clock);
 }
 
 // Newton's iteration for the state at the step's end, from engine.scratch.freePosition and engine.scratch.pastPosition.
@@ -370,7 +370,7 @@ bool solveStep(IslandStep& step, double effective_s, Begin begin, const NewtonOp
   layOut(step, island);
   island.trialIsAhead = false;
   if (island.step_s != effective_s || tetherStiffness(step, effective_s) != island.tether) island.factorised = false;
-  double residual = island.exceedsFill ? 0.0 : beginStep(step, island, effective_s, begin, how, clock);
+  double residual = island.exceedsFill ? 0.0 : beginStep(step, island, effective_s, begin, clock);
   const double enough = std::clamp(how.enough * residual, how.leastEnough, std::max(how.leastEnough, tuning::kMaxMotionResidual));
   const bool wide = step.blocks.size() > tuning::kNarrowBlocks && !island.exceedsFill;
   if (wide && !island.trialIsAhead) residual = evaluateInPlace(step, island, effective_s, clock);
@@ -378,11 +378,13 @@ bool solveStep(IslandStep& step, double effective_s, Begin begin, const NewtonOp
   int most = island.exceedsFill || converged ? 0 : tuning::kMaxNewtonIterations;
   bool slow = false;
   LeastResidual least{residual};
+  island.activeSetChanges = 0;
   for (int iteration = 0; iteration < most && !isStopped(step.monitor); ++iteration) {
-    island.useConsistentTangent = residual < how.near;
+    island.isNear = residual < tuning::kFarResidual;
     island.assumesSupport = iteration == 0 && how.assumesSupport;
     if (island.assumesSupport) island.factorised = false;
     const ActiveSet now = findActiveSet(step, island);
+    if (now.changed && iteration > 0) ++island.activeSetChanges;
     if (now.changed || how.mostStalled > 0) most = std::min(how.mostContactIterations, iteration + tuning::kMaxNewtonIterations);
     const bool old =
         iteration == 0 && island.directions >= tuning::kRefactorDirectionShare * static_cast<double>(mostDirections(island));
@@ -391,11 +393,10 @@ bool solveStep(IslandStep& step, double effective_s, Begin begin, const NewtonOp
         stale || !island.factorised || step.smoothing_j > 0.0;  // smoothed contacts are of another stiffness each time
     if (renewed && !refactorise(step, island, effective_s)) break;
     const double before = residual;
-    const bool differs = island.useConsistentTangent && (now.changed || now.slides || !island.factorTangents.empty());
-    if (!findCorrection(step, island, effective_s, tuning::kGmresAbsoluteTolerance * tuning::kNewtonResidual, differs) &&
-        !renewed) {
+    const bool differs = now.changed || now.slides || !island.factorTangents.empty();
+    if (!findCorrection(step, island, effective_s, residual, differs) && !renewed) {
       if (!refactorise(step, island, effective_s)) break;
-      findCorrection(step, island, effective_s, tuning::kGmresAbsoluteTolerance * tuning::kNewtonResidual, differs);
+      findCorrection(step, island, effective_s, residual, differs);
     }
     island.assumesSupport = false;
     const LineSearch line = searchLine(step, island, effective_s, enough, clock);
@@ -492,7 +493,7 @@ bool stepFromRest(IslandStep& step, double effective_s, StepFromRest kind) {
   NewtonOptions how{kind == StepFromRest::supported
                         ? std::max(tuning::kMaxActiveSetIterations, static_cast<int>(step.blocks.size()))
                         : tuning::kMaxActiveSetIterations,
-                    tuning::kConsistentTangentResidual, 0.0};
+                    0.0};
   // Smoothed contacts have an energy, which should get less in each iteration; the residual need not, so these have all
   // iterations.
   how.mostStalled = kind == StepFromRest::smoothed ? how.mostContactIterations : tuning::kMaxStalledIterations;

@@ -77,15 +77,16 @@ struct NewtonSystem : NewtonWork {
   std::uint64_t pattern = 0;  ///< hash of the pairs that touch, for which the matrix is laid out
   bool exceedsFill = false;   ///< whether fill exceeds kMaxFillProducts, so that there are no factors
   bool factorised = false;
-  double step_s = 0.0;                ///< step times the method's factor, for which the factors were computed
-  TetherStiffness tether;             ///< the hand's springs in the factors
-  bool limited = false;               ///< whether one of them was at its limit then
-  int directions = 0;                 ///< GMRES directions that the last correction took beside the factors
-  bool trialIsAhead = false;          ///< whether the trial points belong to a state after the step's start
-  bool trialLags = false;             ///< whether the trial points are those with which the last accepted step began
-  bool useConsistentTangent = false;  ///< whether the residual is small enough for the consistent friction tangent
-  bool assumesSupport = false;        ///< whether every point of every manifold counts as pushing and sticking
-  bool forcesKnown = false;           ///< whether engine.memo.force holds the forces at the island's present state
+  double step_s = 0.0;          ///< step times the method's factor, for which the factors were computed
+  TetherStiffness tether;       ///< the hand's springs in the factors
+  bool limited = false;         ///< whether one of them was at its limit then
+  int directions = 0;           ///< GMRES directions that the last correction took beside the factors
+  bool trialIsAhead = false;    ///< whether the trial points belong to a state after the step's start
+  bool trialLags = false;       ///< whether the trial points are those with which the last accepted step began
+  bool isNear = false;          ///< whether the residual is so small that points without a normal force count as open
+  int activeSetChanges = 0;     ///< iterations of the last step, after its first, with another active set than the factors
+  bool assumesSupport = false;  ///< whether every point of every manifold counts as pushing and sticking
+  bool forcesKnown = false;     ///< whether engine.memo.force holds the forces at the island's present state
   BlockCholesky matrix;
   std::vector<std::int32_t> touching;                      ///< touching pairs, as positions in engine.pairs
   std::vector<BlockSlot> slot;                             ///< of each of these; at = -1 where one side is the floor or asleep
@@ -114,6 +115,7 @@ inline void reset(NewtonSystem& island) {
   island.jacobianStep_s = 0.0;
   island.blockClassOf.clear();
   island.directions = 0;
+  island.activeSetChanges = 0;
 }
 
 /// Whether any point slides.

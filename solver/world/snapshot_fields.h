@@ -234,10 +234,10 @@ void fieldsOf(Stream& stream, NewtonWork& work) {
 template <class Stream>
 void fieldsOf(Stream& stream, NewtonSystem& system) {
   // It has a base with members, so no structured binding; a new member changes its size.
-  static_assert(sizeof(NewtonSystem) == sizeof(NewtonWork) + 976);
+  static_assert(sizeof(NewtonSystem) == sizeof(NewtonWork) + 984);
   fieldsOf(stream, static_cast<NewtonWork&>(system));
   stream(system.pattern, system.exceedsFill, system.factorised, system.step_s, system.tether, system.limited, system.directions,
-         system.trialIsAhead, system.trialLags, system.useConsistentTangent, system.assumesSupport, system.forcesKnown,
+         system.trialIsAhead, system.trialLags, system.isNear, system.activeSetChanges, system.assumesSupport, system.forcesKnown,
          system.matrix, system.touching, system.slot, system.taskPairs, system.taskPairStart, system.mask, system.axes,
          system.blockClasses, system.blockClassOf, system.jacobianStep_s, system.factorTangents, system.order, system.members,
          system.orderProducts, system.edges);
