@@ -132,6 +132,8 @@ bool followGame(Game& game, const Simulation& simulation, BlockId held, std::uin
     if (moving || game.onFloor[b] != 0 || !touchesFloor(simulation, b)) continue;
     game.phase = Phase::over;
     game.fallen = blockId(b);
+    // Whose block lies on top when it falls has brought it down, as long as the next player has touched nothing.
+    if (game.held == kFloor && game.laid != kFloor) game.player = (game.player + game.players - 1) % game.players;
     return false;
   }
   if (game.phase != Phase::moving) return false;
@@ -139,6 +141,7 @@ bool followGame(Game& game, const Simulation& simulation, BlockId held, std::uin
   game.quiet_s = onTop && quiet(simulation) ? game.quiet_s + simulation.scene.settings.frame_s : 0.0;
   if (game.quiet_s < kQuietTime_s) return false;
   ++game.moves;
+  game.laid = game.block;
   game.player = (game.player + 1) % game.players;
   game.onFloor[index(game.block)] = 0;
   beginTurn(game, simulation, frame);
@@ -160,15 +163,24 @@ std::string describe(const Game& game) {
     case Phase::over:
       if (game.players == 1)
         return fmt::format("It fell after {}: block {} lies below.", counted(game.moves, "move"), index(game.fallen));
+      if (causeOf(game) == kFloor) return fmt::format("Nobody loses: block {} fell.", index(game.fallen));
       return fmt::format("Player {} loses after {}: block {} fell.", game.player + 1, counted(game.moves, "move"),
                          index(game.fallen));
   }
   return {};
 }
 
+BlockId causeOf(const Game& game) {
+  if (game.phase != Phase::over) return kFloor;
+  return game.held != kFloor ? game.held : game.laid;
+}
+
 std::string causeInWords(const Game& game) {
-  if (game.phase != Phase::over || game.held == kFloor) return {};
-  return fmt::format("Block {} did it: it was {} last.", index(game.held), game.block == game.held ? "taken out" : "pulled");
+  if (game.phase != Phase::over) return {};
+  const BlockId cause = causeOf(game);
+  if (cause == kFloor) return "It fell by itself: nobody had touched a block.";
+  const char* const how = game.held == kFloor ? "laid on top" : (game.block == game.held ? "taken out" : "pulled");
+  return fmt::format("Block {} did it: it was {} last.", index(cause), how);
 }
 
 std::vector<Hint> hints(const Simulation& simulation, std::span<const ContactForce> contacts) {

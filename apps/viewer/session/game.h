@@ -33,6 +33,7 @@ struct Game {
   std::vector<int> turnRow;           ///< the row each block was in when it began, or -1
   std::vector<std::uint8_t> onFloor;  ///< 1 where a block may touch the floor: it did when the game began
   BlockId held = kFloor;              ///< the last block that was held in this turn
+  BlockId laid = kFloor;              ///< the block that the turn before laid on top; kFloor: the first turn
   BlockId fallen = kFloor;            ///< over: a block that touches the floor
 };
 
@@ -55,7 +56,11 @@ bool followGame(Game& game, const Simulation& simulation, BlockId held, std::uin
 /// may be.
 std::string describe(const Game& game);
 
-/// What brought the tower down, in a sentence; empty where no block was held.
+/// The block that brought the tower down: the last one that was held in the turn; where none was, the one laid on top before,
+/// whose player then loses. kFloor where nothing has fallen, or nobody has touched anything.
+BlockId causeOf(const Game& game);
+
+/// The same in a sentence; empty where nothing has fallen.
 std::string causeInWords(const Game& game);
 
 /// How a block could be taken, judged from the forces.

@@ -62,7 +62,7 @@ bool followFall(Viewer& viewer, double elapsed_s) {
   if (fall.stage == FallStage::none) {
     const bool lost = session.game.phase == Phase::over && viewer.mode == Mode::play && !viewer.replay;
     if (!lost || viewer.poses.count() == 0) return false;
-    fall.cause = session.game.held;
+    fall.cause = causeOf(session.game);
     fall.end = session.frame + framesOf(viewer, kFallAfter_s);
     start(viewer);
   }

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 #include <limits>
 #include <numbers>
+#include <string>
 
 namespace springtower {
 namespace {
@@ -83,6 +84,45 @@ TEST(ViewerGame, WhoBringsTheTowerDownLoses) {
   EXPECT_THAT(describe(session.game), HasSubstr("Player 1 loses"));
   EXPECT_EQ(causeInWords(session.game), "Block 7 did it: it was taken out last.");
   for (std::size_t b = 0; b < 12; ++b) EXPECT_FALSE(mayTake(session.game, blockId(b)));
+}
+
+// Puts a block on the floor beside the tower, as it lies after a fall.
+void layBeside(Simulation& simulation, std::size_t block) {
+  const Vec3 way = Vec3(0.5, 0.0, 0.5 * kBlockHeight_m) - centre(simulation.state.position, block);
+  for (std::size_t c = 0; c < kCorners; ++c)
+    simulation.state.position.set(block, c, simulation.state.position.at(block, c) + Vec3(way.x(), 0.0, way.z()));
+}
+
+// As long as the next player has touched nothing, the tower stands or falls by what was laid on it last.
+TEST(ViewerGame, WhatFallsUntouchedFallsByTheBlockLaidLast) {
+  Session session(bitCodeScene(kLooseTower), 2);
+  wait(session, 60);
+  drawAndPlace(session, kLooseBlock, -1.0, kTop_m, true);
+  wait(session, 90);
+  ASSERT_EQ(session.game.moves, 1);
+  ASSERT_EQ(session.game.player, 1);
+  layBeside(session.simulation, 8);
+  Game touched = session.game;
+  EXPECT_FALSE(followGame(session.game, session.simulation, kFloor, session.frame));
+  EXPECT_EQ(session.game.phase, Phase::over);
+  EXPECT_THAT(describe(session.game), HasSubstr("Player 1 loses after 1 move: block 8 fell."));
+  EXPECT_EQ(causeOf(session.game), blockId(kLooseBlock));
+  EXPECT_EQ(causeInWords(session.game), "Block " + std::to_string(kLooseBlock) + " did it: it was laid on top last.");
+
+  touched.held = blockId(3);
+  EXPECT_FALSE(followGame(touched, session.simulation, kFloor, session.frame));
+  EXPECT_THAT(describe(touched), HasSubstr("Player 2 loses"));
+  EXPECT_EQ(causeInWords(touched), "Block 3 did it: it was pulled last.");
+}
+
+TEST(ViewerGame, WhatFallsBeforeAnybodyHasTouchedItFallsByItself) {
+  Session session(bitCodeScene(kLooseTower), 2);
+  EXPECT_EQ(causeInWords(session.game), "");
+  layBeside(session.simulation, 5);
+  EXPECT_FALSE(followGame(session.game, session.simulation, kFloor, session.frame));
+  EXPECT_EQ(describe(session.game), "Nobody loses: block 5 fell.");
+  EXPECT_EQ(causeOf(session.game), kFloor);
+  EXPECT_EQ(causeInWords(session.game), "It fell by itself: nobody had touched a block.");
 }
 
 TEST(ViewerGame, TheDrawnBlockMayTouchTheFloor) {
