@@ -135,8 +135,10 @@ std::array<double, kManifoldPoints> depthsAt(const IslandStep& step, const Conta
   return pointForces(manifold, {&upper, &still, &still}, {manifold.lower < 0 ? nullptr : &lower, &still, &still}, step.law).depth;
 }
 
-// Overlap of the blocks of a pair along their best separating direction, m; negative where they are apart.
+// Overlap of the blocks of a pair along their best separating direction, or of a block and the floor, m; negative where they are
+// apart.
 double overlapOf(const BlockPair& pair, const ParticleArray& position) {
+  if (pair.b < 0) return -gapOf(pair, Vec3::UnitZ(), position);
   return -findSeparation(cornersOf(position, static_cast<std::size_t>(pair.a)),
                          cornersOf(position, static_cast<std::size_t>(pair.b)))
               .best();
@@ -156,7 +158,7 @@ bool hasImpact(const IslandStep& step, std::size_t at, double displacement, doub
     touches = touches || touchingAt(trial, i) != 0.0;
     begins = begins || (touchingAt(trial, i) != 0.0 && touchingAt(manifold, i) == 0.0);
   }
-  const bool late = pair.b >= 0 && (!touches || displacement > refreshTravel(step.simulation));
+  const bool late = !touches || displacement > refreshTravel(step.simulation);
   if (!begins && !late) return false;
   const ParticleArray& now = step.simulation.state.position;
   const std::array<double, kManifoldPoints> depth = depthsAt(step, manifold, now);
