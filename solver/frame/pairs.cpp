@@ -278,4 +278,12 @@ void findNearPairs(Simulation& simulation) {
   engine.scratch.watchedPairs.resize(engine.memo.islandPairs.size());  // also where a snapshot has restored other lists
 }
 
+void growSweepMargins(Engine& engine) {
+  for (std::size_t i = 0; i < engine.memo.islands.count(); ++i) {
+    if (engine.scratch.islandOutcome[i] >= 0) continue;
+    for (const std::int32_t block : engine.memo.islands.island(i))
+      engine.memo.sweepMargin[static_cast<std::size_t>(block)] *= tuning::kReplayMarginGrowth;
+  }
+}
+
 }  // namespace springtower

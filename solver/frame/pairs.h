@@ -9,4 +9,8 @@ namespace springtower {
 /// DivergenceError where the state of an awake block is not finite.
 void findNearPairs(Simulation& simulation);
 
+/// Where a block has left its swept box (scratch.islandOutcome is negative), larger ones for all blocks of its island at the next
+/// sweep.
+void growSweepMargins(Engine& engine);
+
 }  // namespace springtower

@@ -24,15 +24,6 @@ void resetSweepMargins(Simulation& simulation) {
   }
 }
 
-// Where a block has left its box, larger ones for all blocks of its island.
-void growSweepMargins(Engine& engine) {
-  for (std::size_t i = 0; i < engine.memo.islands.count(); ++i) {
-    if (engine.scratch.islandOutcome[i] >= 0) continue;
-    for (const std::int32_t block : engine.memo.islands.island(i))
-      engine.memo.sweepMargin[static_cast<std::size_t>(block)] *= tuning::kReplayMarginGrowth;
-  }
-}
-
 // In how many parts islands in rigid steps move through the frame, so that in a part none of their blocks moves much farther than
 // its box allows for what contacts add. Marks their blocks.
 int chooseParts(Simulation& simulation) {

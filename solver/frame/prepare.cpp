@@ -16,6 +16,7 @@
 
 #include <cstdint>
 #include <fmt/format.h>
+#include <vector>
 
 namespace springtower {
 
@@ -42,7 +43,7 @@ void unloadOverlaps(IslandStep& step) {
 }
 
 // Finds an island's contacts and its equilibrium, unless it is equal to one before it; `substeps` of the result is 1 where there
-// is an equilibrium, 0 where it starts as placed.
+// is an equilibrium, 0 where it starts as placed. `inside` is false where none was found and a block left its swept box.
 IslandOutcome prepareIsland(IslandStep& step) {
   const std::int32_t island = step.engine.memo.islands.islandOf[static_cast<std::size_t>(step.blocks.front())];
   if (step.engine.scratch.firstEqualIsland[static_cast<std::size_t>(island)] != island) return {};
@@ -53,11 +54,21 @@ IslandOutcome prepareIsland(IslandStep& step) {
   IslandOutcome outcome;
   if (traitsOf(settings.method).family != MethodFamily::rigid && startInEquilibrium(step)) {
     outcome.substeps = 1;
+  } else if (step.leftBox) {
+    outcome.inside = false;
+    return outcome;
   } else {
     unloadOverlaps(step);
   }
   step.monitor->islandDone(step.blocks.size());
   return outcome;
+}
+
+// The same for an island that is not searched again.
+IslandOutcome leaveAsPlaced(IslandStep& step) {
+  unloadOverlaps(step);
+  step.monitor->islandDone(step.blocks.size());
+  return {};
 }
 
 // Gives the islands that are equal to one before them what was found for it.
@@ -67,13 +78,67 @@ void copyToEqualIslands(Simulation& simulation, SearchMonitor& monitor) {
   forRanges(scratch.firstEqualIsland.size(), 1, true, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const auto first = static_cast<std::size_t>(scratch.firstEqualIsland[i]);
-      if (first == i) continue;
+      if (first == i || scratch.takesPart[i] == 0) continue;
       IslandStep step = islandStep(simulation, law, i);
       copyEquilibrium(islandStep(simulation, law, first), step);
       scratch.islandOutcome[i] = scratch.islandOutcome[first];
-      monitor.islandDone(step.blocks.size());
+      if (scratch.islandOutcome[i] >= 0) monitor.islandDone(step.blocks.size());
     }
   });
+}
+
+// Searches the islands that take part; of equal ones the first. Adds what has come of it to `result`. Returns false where a block
+// left its swept box: its island is then as placed, and its outcome negative.
+bool searchIslands(Simulation& simulation, SearchMonitor& monitor, PrepareResult& result) {
+  Engine& engine = *simulation.engine;
+  engine.scratch.firstEqualIsland = firstEqualIslands(simulation);
+  overIslands(simulation, prepareIsland, &monitor);
+  copyToEqualIslands(simulation, monitor);
+  engine.scratch.firstEqualIsland = {};
+  bool inside = true;
+  for (std::size_t i = 0; i < engine.memo.islands.count(); ++i) {
+    if (engine.scratch.takesPart[i] == 0) continue;
+    inside = inside && engine.scratch.islandOutcome[i] >= 0;
+    if (engine.scratch.islandOutcome[i] > 0) result.blocksInBalance += engine.memo.islands.island(i).size();
+    engine.scratch.islandCounters[i].newtonFailures = 0;  // the search has other ways to go on, and takes no explicit steps
+    simulation.counters += engine.scratch.islandCounters[i];
+  }
+  return inside;
+}
+
+// Where a block has left its swept box, the island takes part again, with larger ones. (Boxes for the whole way of every block
+// would find far more pairs than ever meet.)
+void takePartAgain(Simulation& simulation) {
+  Engine& engine = *simulation.engine;
+  growSweepMargins(engine);
+  std::vector<std::uint8_t> again(simulation.model.blockCount(), 0);
+  for (std::size_t i = 0; i < engine.memo.islands.count(); ++i) {
+    if (engine.scratch.islandOutcome[i] >= 0) continue;
+    for (const std::int32_t block : engine.memo.islands.island(i)) again[static_cast<std::size_t>(block)] = 1;
+  }
+  findNearPairs(simulation);
+  engine.scratch.takesPart.assign(engine.memo.islands.count(), 0);
+  for (std::size_t i = 0; i < engine.memo.islands.count(); ++i) {
+    for (const std::int32_t block : engine.memo.islands.island(i))
+      engine.scratch.takesPart[i] |= again[static_cast<std::size_t>(block)];
+  }
+}
+
+// Searches all islands, those that leave their boxes again.
+void searchAll(Simulation& simulation, SearchMonitor& monitor, PrepareResult& result) {
+  Engine& engine = *simulation.engine;
+  findNearPairs(simulation);  // with the margins of the setup
+  engine.scratch.takesPart.assign(engine.memo.islands.count(), 1);
+  for (std::size_t i = 0; i < engine.memo.islands.count(); ++i) result.blocks += engine.memo.islands.island(i).size();
+  bool inside = searchIslands(simulation, monitor, result);
+  if (!inside && !monitor.isStopped()) {
+    takePartAgain(simulation);
+    inside = searchIslands(simulation, monitor, result);
+  }
+  if (inside) return;
+  for (std::size_t i = 0; i < engine.memo.islands.count(); ++i)
+    engine.scratch.takesPart[i] = engine.scratch.islandOutcome[i] < 0 ? 1 : 0;
+  overIslands(simulation, leaveAsPlaced, &monitor);
 }
 
 }  // namespace
@@ -97,20 +162,8 @@ PrepareResult prepare(Simulation& simulation, const PrepareOptions& options) {
   SearchMonitor monitor(engine.sleep.awakeCount, options.budget_s, options.goesOn);
   // On its way into equilibrium the top of a tower sinks by the gaps of all rows.
   std::fill(engine.scratch.inParts.begin(), engine.scratch.inParts.end(), 0);
-  findNearPairs(simulation);           // with the margins of the setup
+  searchAll(simulation, monitor, result);
   simulation.counters.blockPairs = 0;  // counts the sweeps of frames
-  engine.scratch.firstEqualIsland = firstEqualIslands(simulation);
-  engine.scratch.takesPart.assign(engine.memo.islands.count(), 1);
-  overIslands(simulation, prepareIsland, &monitor);
-  copyToEqualIslands(simulation, monitor);
-  engine.scratch.firstEqualIsland = {};
-  for (std::size_t i = 0; i < engine.memo.islands.count(); ++i) {
-    const std::size_t blocks = engine.memo.islands.island(i).size();
-    result.blocks += blocks;
-    if (engine.scratch.islandOutcome[i] > 0) result.blocksInBalance += blocks;
-    engine.scratch.islandCounters[i].newtonFailures = 0;  // the search has other ways to go on, and takes no explicit steps
-    simulation.counters += engine.scratch.islandCounters[i];
-  }
   for (NewtonSystem& island : engine.memo.newtonSystems.all()) {
     island.forcesKnown = false;  // they are those of a law without dashpots
     // The search takes more directions and tangents than the frames to come.

@@ -59,7 +59,9 @@ double advance(IslandStep& step, double effective_s, StepFromRest kind) {
   if (!stepFromRest(step, effective_s, kind)) return kFailed;
   const double farthest = stop(step) / step.simulation.tolerance_m;
   const double travel_m = refreshTravel(step.simulation);
-  return updateContacts(step, {travel_m, travel_m, travel_m}) ? farthest : kFailed;
+  if (updateContacts(step, {travel_m, travel_m, travel_m})) return farthest;
+  step.leftBox = true;
+  return kFailed;
 }
 
 double lastStep_s(const IslandStep& step) {

@@ -42,6 +42,7 @@ struct IslandStep {
   SearchMonitor* monitor = nullptr;          ///< of the search for the equilibrium, or null
   float diagonalShare = 0.0F;           ///< by which the search last made the diagonal of its factors stiffer; 0 in other steps
   bool falls = false;                   ///< whether its last step failed because a block moved too far
+  bool leftBox = false;                 ///< whether the search for the equilibrium took a block out of its swept box
   std::span<const BlockPair> driven{};  ///< fixed blocks near it that drives move in this frame, as the second of each
   bool modeChanged = false;             ///< contacts have become springs or impulses since the part of the frame began
   bool unforced = false;                ///< neither user forces nor the hand act: the equilibrium before the first frame
