@@ -225,12 +225,20 @@ double evaluateResidual(IslandStep& step, NewtonSystem& island, double effective
   return findResidual(step, island, effective_s);
 }
 
-// The least residual of an iteration so far.
-struct LeastResidual {
-  double value;
-  int iteration = 0;
-  void note(double residual, int at) {
-    if (residual < value) *this = {residual, at};
+// What an iteration has reached so far, and how long ago.
+struct Progress {
+  double least;  // residual
+  int leastAt = 0;
+  int shortInRow = 0;  // iterations in succession in which the line search left little of the step
+  void note(double residual, int iteration, bool isShort) {
+    shortInRow = isShort ? shortInRow + 1 : 0;
+    if (!(residual < least)) return;
+    least = residual;
+    leastAt = iteration;
+  }
+  // `most`: of NewtonOptions::mostStalled.
+  [[nodiscard]] bool isStalled(int iteration, int most) const {
+    return most > 0 && (iteration - leastAt >= most || shortInRow >= tuning::kMaxShortIterations);
   }
 };
 
@@ -377,7 +385,7 @@ bool solveStep(IslandStep& step, double effective_s, Begin begin, const NewtonOp
   bool converged = wide && residual <= std::min(tuning::kNewtonTolerance, how.aim);
   int most = island.exceedsFill || converged ? 0 : tuning::kMaxNewtonIterations;
   bool slow = false;
-  LeastResidual least{residual};
+  Progress progress{residual};
   island.activeSetChanges = 0;
   for (int iteration = 0; iteration < most && !isStopped(step.monitor); ++iteration) {
     island.isNear = residual < tuning::kFarResidual;
@@ -407,13 +415,14 @@ bool solveStep(IslandStep& step, double effective_s, Begin begin, const NewtonOp
     ++step.counters.implicitIterations;
     if (step.monitor != nullptr) step.monitor->iterationDone();
     converged = residual <= enough;
-    least.note(residual, iteration);
+    const bool isShort = line.share < tuning::kShortLineSearch && step.smoothing_j == 0.0 && !hasUnlikeLoads(step);
+    progress.note(residual, iteration, isShort);
     if (std::isfinite(how.mostMoved_m) && farthestMoved_m(step) > how.mostMoved_m) {
       step.falls = true;
       return false;
     }
     if (converged && residual > how.aim && residual < tuning::kFastConvergence * before) continue;
-    const bool stalled = how.mostStalled > 0 && iteration - least.iteration >= how.mostStalled;
+    const bool stalled = progress.isStalled(iteration, how.mostStalled);
     // What the rounded factors of towers of a thousand rows leave is no more than a step in motion may leave. (Between unlike
     // loads, which have an aim, so much of a heavy block is the weight of a light one.)
     converged = converged || (stalled && !std::isfinite(how.aim) && residual <= tuning::kMaxMotionResidual);
