@@ -25,8 +25,8 @@ Eigen::Index warpAt(std::size_t vector, std::size_t component) {
   return at(vector - kAffine, component);
 }
 
-// A matrix by corner and component as one by vector and component: each of its columns transformed, and written as a row. Of a
-// symmetric matrix the same done twice is the matrix of the vectors.
+// Each column of a matrix by corner and component, transformed to vectors and written as a row. The same done twice is the matrix
+// by vector and component.
 Full columnsToVectors(const Full& matrix) {
   Full result;
   for (Eigen::Index column = 0; column < matrix.cols(); ++column) {

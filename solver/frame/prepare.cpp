@@ -14,19 +14,23 @@
 #include "solver/implicit/system.h"
 #include "solver/world/checkpoint.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <fmt/format.h>
+#include <span>
 #include <vector>
 
 namespace springtower {
 
 namespace {
 
-// Where no equilibrium is known, what overlaps at the start is without force as it lies: it would be thrown apart otherwise.
-void unloadOverlaps(IslandStep& step) {
+// Where no equilibrium is known, what overlaps at the start is without force as it lies: it would be thrown apart otherwise. Of
+// pairs for which isWithout(block) holds.
+template <class IsWithout>
+void unloadOverlaps(IslandStep& step, const IsWithout& isWithout) {
   for (const std::int32_t pair : step.pairs) {
     const auto at = static_cast<std::size_t>(pair);
-    if (!step.engine.pairs.touches(at)) continue;
+    if (!step.engine.pairs.touches(at) || !isWithout(static_cast<std::size_t>(step.engine.pairs.key[at].a))) continue;
     const ContactView manifold = contactOf(step.engine, at);
     const PointForces points = forcesNow(step.simulation, manifold);
     const PointRows rows = step.engine.contacts.points(step.engine.pairs.contact[at]);
@@ -58,16 +62,20 @@ IslandOutcome prepareIsland(IslandStep& step) {
     outcome.inside = false;
     return outcome;
   } else {
-    unloadOverlaps(step);
+    unloadOverlaps(step, [](std::size_t) { return true; });
   }
   step.monitor->islandDone(step.blocks.size());
   return outcome;
 }
 
-// The same for an island that is not searched again.
+// Ends the preparation of blocks whose islands left their swept boxes and are not searched again: they start as placed. (With the
+// larger boxes they may be in one island with others that have their equilibrium.)
 IslandOutcome leaveAsPlaced(IslandStep& step) {
-  unloadOverlaps(step);
-  step.monitor->islandDone(step.blocks.size());
+  const std::vector<std::uint8_t>& leftBox = step.engine.scratch.leftBox;
+  const auto left = [&](std::size_t b) { return leftBox[b] != 0; };
+  unloadOverlaps(step, left);
+  step.monitor->islandDone(static_cast<std::size_t>(std::count_if(
+      step.blocks.begin(), step.blocks.end(), [&](std::int32_t block) { return left(static_cast<std::size_t>(block)); })));
   return {};
 }
 
@@ -87,57 +95,71 @@ void copyToEqualIslands(Simulation& simulation, SearchMonitor& monitor) {
   });
 }
 
-// Searches the islands that take part; of equal ones the first. Adds what has come of it to `result`. Returns false where a block
-// left its swept box: its island is then as placed, and its outcome negative.
+// Searches the islands that take part; of equal ones the first. Adds what has come of it to `result`, and marks the blocks of
+// those that left their swept boxes: they are then as placed. Returns whether there are none.
 bool searchIslands(Simulation& simulation, SearchMonitor& monitor, PrepareResult& result) {
   Engine& engine = *simulation.engine;
-  engine.scratch.firstEqualIsland = firstEqualIslands(simulation);
+  std::vector<std::int32_t>& first = engine.scratch.firstEqualIsland;
+  first = firstEqualIslands(simulation);
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    if (engine.scratch.takesPart[static_cast<std::size_t>(first[i])] == 0) first[i] = static_cast<std::int32_t>(i);
+  }
   overIslands(simulation, prepareIsland, &monitor);
   copyToEqualIslands(simulation, monitor);
-  engine.scratch.firstEqualIsland = {};
+  first = {};
+  std::fill(engine.scratch.leftBox.begin(), engine.scratch.leftBox.end(), 0);
   bool inside = true;
   for (std::size_t i = 0; i < engine.memo.islands.count(); ++i) {
     if (engine.scratch.takesPart[i] == 0) continue;
-    inside = inside && engine.scratch.islandOutcome[i] >= 0;
-    if (engine.scratch.islandOutcome[i] > 0) result.blocksInBalance += engine.memo.islands.island(i).size();
+    const std::span<const std::int32_t> blocks = engine.memo.islands.island(i);
+    if (engine.scratch.islandOutcome[i] < 0) {
+      inside = false;
+      for (const std::int32_t block : blocks) engine.scratch.leftBox[static_cast<std::size_t>(block)] = 1;
+    }
+    if (engine.scratch.islandOutcome[i] > 0) result.blocksInBalance += blocks.size();
     engine.scratch.islandCounters[i].newtonFailures = 0;  // the search has other ways to go on, and takes no explicit steps
     simulation.counters += engine.scratch.islandCounters[i];
   }
   return inside;
 }
 
-// Where a block has left its swept box, the island takes part again, with larger ones. (Boxes for the whole way of every block
-// would find far more pairs than ever meet.)
-void takePartAgain(Simulation& simulation) {
-  Engine& engine = *simulation.engine;
-  growSweepMargins(engine);
-  std::vector<std::uint8_t> again(simulation.model.blockCount(), 0);
-  for (std::size_t i = 0; i < engine.memo.islands.count(); ++i) {
-    if (engine.scratch.islandOutcome[i] >= 0) continue;
-    for (const std::int32_t block : engine.memo.islands.island(i)) again[static_cast<std::size_t>(block)] = 1;
-  }
-  findNearPairs(simulation);
+// The islands of which all blocks left their swept boxes, or any, take part.
+void takePartAgain(Engine& engine, bool all) {
   engine.scratch.takesPart.assign(engine.memo.islands.count(), 0);
   for (std::size_t i = 0; i < engine.memo.islands.count(); ++i) {
-    for (const std::int32_t block : engine.memo.islands.island(i))
-      engine.scratch.takesPart[i] |= again[static_cast<std::size_t>(block)];
+    const std::span<const std::int32_t> blocks = engine.memo.islands.island(i);
+    const auto left = [&](std::int32_t block) { return engine.scratch.leftBox[static_cast<std::size_t>(block)] != 0; };
+    const bool takesPart =
+        all ? std::all_of(blocks.begin(), blocks.end(), left) : std::any_of(blocks.begin(), blocks.end(), left);
+    engine.scratch.takesPart[i] = takesPart ? 1 : 0;
   }
 }
 
-// Searches all islands, those that leave their boxes again.
+// Searches all islands, and those that left their swept boxes once more, with larger ones. Boxes for the whole way of every block
+// would find far more pairs than ever meet. One that is then joined with an island that has its equilibrium is left as placed.
 void searchAll(Simulation& simulation, SearchMonitor& monitor, PrepareResult& result) {
   Engine& engine = *simulation.engine;
-  findNearPairs(simulation);  // with the margins of the setup
+  engine.scratch.leftBox.assign(simulation.model.blockCount(), 0);
+  // With the margins of the setup: on its way into equilibrium the top of a tower sinks by the gaps of all rows.
+  findNearPairs(simulation);
   engine.scratch.takesPart.assign(engine.memo.islands.count(), 1);
   for (std::size_t i = 0; i < engine.memo.islands.count(); ++i) result.blocks += engine.memo.islands.island(i).size();
-  bool inside = searchIslands(simulation, monitor, result);
-  if (!inside && !monitor.isStopped()) {
-    takePartAgain(simulation);
-    inside = searchIslands(simulation, monitor, result);
+  if (searchIslands(simulation, monitor, result)) return;
+  if (!monitor.isStopped()) {
+    growSweepMargins(engine);
+    findNearPairs(simulation);
+    const std::vector<std::uint8_t> before = engine.scratch.leftBox;
+    takePartAgain(engine, true);
+    const std::vector<std::uint8_t> searched = engine.scratch.takesPart;
+    searchIslands(simulation, monitor, result);
+    // Those that were joined with others have not been searched.
+    for (std::size_t i = 0; i < engine.memo.islands.count(); ++i) {
+      if (searched[i] != 0) continue;
+      for (const std::int32_t block : engine.memo.islands.island(i))
+        engine.scratch.leftBox[static_cast<std::size_t>(block)] = before[static_cast<std::size_t>(block)];
+    }
   }
-  if (inside) return;
-  for (std::size_t i = 0; i < engine.memo.islands.count(); ++i)
-    engine.scratch.takesPart[i] = engine.scratch.islandOutcome[i] < 0 ? 1 : 0;
+  takePartAgain(engine, false);
   overIslands(simulation, leaveAsPlaced, &monitor);
 }
 
@@ -160,12 +182,12 @@ PrepareResult prepare(Simulation& simulation, const PrepareOptions& options) {
   const StageTimes before = simulation.stageTimes;
   const double processorStart_s = processorTime_s();
   SearchMonitor monitor(engine.sleep.awakeCount, options.budget_s, options.goesOn);
-  // On its way into equilibrium the top of a tower sinks by the gaps of all rows.
   std::fill(engine.scratch.inParts.begin(), engine.scratch.inParts.end(), 0);
   searchAll(simulation, monitor, result);
   simulation.counters.blockPairs = 0;  // counts the sweeps of frames
   for (NewtonSystem& island : engine.memo.newtonSystems.all()) {
     island.forcesKnown = false;  // they are those of a law without dashpots
+    island.changedIterations = 0;
     // The search takes more directions and tangents than the frames to come.
     static_cast<NewtonWork&>(island) = {};
     layOutWork(island);

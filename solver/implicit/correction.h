@@ -6,9 +6,8 @@ struct IslandStep;
 struct NewtonSystem;
 
 /// Computes the Newton direction (island.direction) for island.residual with the present factors and, where the contacts `differ`
-/// from those in the factors, with their tangents. `residual`, the largest of a block in tuning::kNewtonResidual: how far from
-/// the solution that is, and how exact the direction has to be. Returns false if GMRES is less exact. Precondition:
-/// island.factorised.
+/// from those in the factors, with their tangents. `residual`: largest of a block, in tuning::kNewtonResidual; the larger it is,
+/// the more GMRES may leave of it. Returns false if GMRES leaves more. Precondition: island.factorised.
 bool findCorrection(IslandStep& step, NewtonSystem& island, double effective_s, double residual, bool differ);
 
 /// Directional derivative: the residual times the Newton direction, J.

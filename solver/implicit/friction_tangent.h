@@ -9,8 +9,8 @@
 namespace springtower {
 
 /// Active set of a pair (position in island.touching) after an evaluation of forces. Until the blocks have moved
-/// (island.trialIsAhead), the slipping points are those of the step before; and unless the consistent tangent is in use, a point
-/// that touches without force counts as active.
+/// (island.trialIsAhead), the slipping points are those of the step before; and far from the solution (not
+/// island.isNear) a point that touches without force counts as active.
 ActiveSetBits activeSetBits(const IslandStep& step, const NewtonSystem& island, std::size_t at);
 
 /// Stiffness of an active point, symmetric part.

@@ -11,7 +11,7 @@ struct NewtonSystem;
 /// takes two to four), up to thirty in a wide one, whose factors cost as much as that many solutions.
 std::size_t mostDirections(const NewtonSystem& island);
 
-/// Residual of `solveCoupled` that is small enough (2-norm): either.
+/// `solveCoupled` has reached its tolerance where the residual (2-norm) is below one of these.
 struct GmresTolerance {
   double relative;  ///< share of the right-hand side
   double absolute_n;

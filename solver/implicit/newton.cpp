@@ -225,11 +225,11 @@ double evaluateResidual(IslandStep& step, NewtonSystem& island, double effective
   return findResidual(step, island, effective_s);
 }
 
-// What an iteration has reached so far, and how long ago.
+// The least residual of a solution so far, and when it was.
 struct Progress {
   double least;  // residual
   int leastAt = 0;
-  int shortInRow = 0;  // iterations in succession in which the line search left little of the step
+  int shortInRow = 0;  // iterations in succession that moved by less than kShortLineSearch of their direction
   void note(double residual, int iteration, bool isShort) {
     shortInRow = isShort ? shortInRow + 1 : 0;
     if (!(residual < least)) return;
@@ -296,10 +296,11 @@ void extrapolate(IslandStep& step, std::span<const std::int32_t> blocks, bool ac
   }
 }
 
-// Moves all blocks to their extrapolated positions. Returns the residual there. Accelerations of a step in which points went on
-// to change between sticking, sliding and open are those of blocks that stop or let go, and do not last.
+// Moves all blocks to their extrapolated positions. Returns the residual there. Accelerations of a step with whose factors the
+// points did not agree, as they changed between sticking, sliding and open, are those of blocks that stop or let go: they do not
+// last.
 double predict(IslandStep& step, NewtonSystem& island, double effective_s, StageClock& clock) {
-  const bool accelerates = island.activeSetChanges <= tuning::kMaxSteadyChanges;
+  const bool accelerates = island.changedIterations <= tuning::kMaxSteadyChanges;
   overBlocks(step, [&](std::size_t first, std::size_t last) {
     extrapolate(step, step.blocks.subspan(first, last - first), accelerates, effective_s);
   });
@@ -386,13 +387,13 @@ bool solveStep(IslandStep& step, double effective_s, Begin begin, const NewtonOp
   int most = island.exceedsFill || converged ? 0 : tuning::kMaxNewtonIterations;
   bool slow = false;
   Progress progress{residual};
-  island.activeSetChanges = 0;
+  island.changedIterations = 0;
   for (int iteration = 0; iteration < most && !isStopped(step.monitor); ++iteration) {
     island.isNear = residual < tuning::kFarResidual;
     island.assumesSupport = iteration == 0 && how.assumesSupport;
     if (island.assumesSupport) island.factorised = false;
     const ActiveSet now = findActiveSet(step, island);
-    if (now.changed && iteration > 0) ++island.activeSetChanges;
+    if (now.changed && iteration > 0) ++island.changedIterations;
     if (now.changed || how.mostStalled > 0) most = std::min(how.mostContactIterations, iteration + tuning::kMaxNewtonIterations);
     const bool old =
         iteration == 0 && island.directions >= tuning::kRefactorDirectionShare * static_cast<double>(mostDirections(island));

@@ -95,8 +95,8 @@ std::size_t ofScratch(const Scratch& s) {
                           s.pastPosition, s.freePosition, s.lostNeighbours, s.toWake, s.wakeRoots, s.pushed, s.loadChange,
                           s.support.start, s.support.pairs, s.support.blocks, s.support.parent, s.support.open, s.support.groups,
                           s.support.beneath, s.support.supports, s.touchingEdges, s.restless, s.parent, s.touched, s.joined,
-                          s.islandCounters, s.islandTimes, s.islandOutcome, s.inParts, s.takesPart, s.byDuration, s.islandEdges,
-                          s.covered, s.drivenNow, s.sweepAsleep, s.nearDriven, s.drivenOfIslands, s.drivenMean);
+                          s.islandCounters, s.islandTimes, s.islandOutcome, s.inParts, s.takesPart, s.leftBox, s.byDuration,
+                          s.islandEdges, s.covered, s.drivenNow, s.sweepAsleep, s.nearDriven, s.drivenOfIslands, s.drivenMean);
   for (const MotionState& stage : s.stage) sum += bytesOf(stage);
   for (const ParticleArray& acceleration : s.stageAcceleration) sum += bytesOf(acceleration);
   sum += s.rigidIslands.indexBytes();

@@ -84,7 +84,7 @@ struct NewtonSystem : NewtonWork {
   bool trialIsAhead = false;    ///< whether the trial points belong to a state after the step's start
   bool trialLags = false;       ///< whether the trial points are those with which the last accepted step began
   bool isNear = false;          ///< whether the residual is so small that points without a normal force count as open
-  int activeSetChanges = 0;     ///< iterations of the last step, after its first, with another active set than the factors
+  int changedIterations = 0;    ///< iterations of the last solution, after its first, whose active set is not that of the factors
   bool assumesSupport = false;  ///< whether every point of every manifold counts as pushing and sticking
   bool forcesKnown = false;     ///< whether engine.memo.force holds the forces at the island's present state
   BlockCholesky matrix;
@@ -115,7 +115,7 @@ inline void reset(NewtonSystem& island) {
   island.jacobianStep_s = 0.0;
   island.blockClassOf.clear();
   island.directions = 0;
-  island.activeSetChanges = 0;
+  island.changedIterations = 0;
 }
 
 /// Whether any point slides.

@@ -31,8 +31,8 @@ void poisonScratch(Engine& engine) {
             s.stageAcceleration[3], s.pastPosition, s.freePosition, s.lostNeighbours, s.toWake, s.wakeRoots, s.pushed,
             s.loadChange, s.support.start, s.support.pairs, s.support.blocks, s.support.parent, s.support.open, s.support.groups,
             s.support.beneath, s.support.supports, s.touchingEdges, s.restless, s.parent, s.touched, s.joined, s.islandCounters,
-            s.islandTimes, s.islandOutcome, s.inParts, s.takesPart, s.byDuration, s.islandEdges, s.covered, s.drivenNow,
-            s.sweepAsleep, s.nearDriven, s.drivenOfIslands, s.drivenMean);
+            s.islandTimes, s.islandOutcome, s.inParts, s.takesPart, s.leftBox, s.byDuration, s.islandEdges, s.covered,
+            s.drivenNow, s.sweepAsleep, s.nearDriven, s.drivenOfIslands, s.drivenMean);
   for (MotionState& stage : s.stage) poisonAll(stage.position, stage.velocity);
   for (NewtonSystem& work : engine.memo.newtonSystems.all())
     poisonAll(work.residual, work.direction, work.affine, work.tangents, work.tangentStart, work.coupled, work.coupledIndex,

@@ -68,6 +68,7 @@ struct Scratch {
   FramePart part;                          ///< that is run now
   std::vector<std::uint8_t> inParts;       ///< 1 where a block moves through the frame in several parts, [blocks]
   std::vector<std::uint8_t> takesPart;     ///< 1 for the islands that are run now, [islands]
+  std::vector<std::uint8_t> leftBox;       ///< 1 for blocks whose island left its swept boxes as `prepare` searched it, [blocks]
   std::vector<std::int32_t> byDuration;    ///< awake blocks, those in parts first
   std::vector<BlockPair> islandEdges;      ///< swept pairs of blocks that are at the same time of the frame
   std::vector<std::int32_t> drivenNow;     ///< fixed blocks that drives move in this frame, ascending

@@ -237,10 +237,10 @@ void fieldsOf(Stream& stream, NewtonSystem& system) {
   static_assert(sizeof(NewtonSystem) == sizeof(NewtonWork) + 984);
   fieldsOf(stream, static_cast<NewtonWork&>(system));
   stream(system.pattern, system.exceedsFill, system.factorised, system.step_s, system.tether, system.limited, system.directions,
-         system.trialIsAhead, system.trialLags, system.isNear, system.activeSetChanges, system.assumesSupport, system.forcesKnown,
-         system.matrix, system.touching, system.slot, system.taskPairs, system.taskPairStart, system.mask, system.axes,
-         system.blockClasses, system.blockClassOf, system.jacobianStep_s, system.factorTangents, system.order, system.members,
-         system.orderProducts, system.edges);
+         system.trialIsAhead, system.trialLags, system.isNear, system.changedIterations, system.assumesSupport,
+         system.forcesKnown, system.matrix, system.touching, system.slot, system.taskPairs, system.taskPairStart, system.mask,
+         system.axes, system.blockClasses, system.blockClassOf, system.jacobianStep_s, system.factorTangents, system.order,
+         system.members, system.orderProducts, system.edges);
 }
 
 /// The matrix; its factors are those of it.

@@ -132,7 +132,7 @@ bool followGame(Game& game, const Simulation& simulation, BlockId held, std::uin
     if (moving || game.onFloor[b] != 0 || !touchesFloor(simulation, b)) continue;
     game.phase = Phase::over;
     game.fallen = blockId(b);
-    // Whose block lies on top when it falls has brought it down, as long as the next player has touched nothing.
+    // Until the next player touches a block, the tower falls by the one laid last.
     if (game.held == kFloor && game.laid != kFloor) game.player = (game.player + game.players - 1) % game.players;
     return false;
   }

@@ -174,8 +174,9 @@ void goTo(Session& session, std::uint64_t frame) {
 std::optional<std::uint64_t> undoFrame(const Session& session) {
   const Game& game = session.game;
   if (game.players == 0) return {};
-  const bool begun = game.phase != Phase::choose;
-  if (begun) return game.turnFrame;
+  // What falls before this turn's player has touched anything falls by the turn before.
+  const bool fellBefore = game.phase == Phase::over && game.held == kFloor && game.laid != kFloor;
+  if (game.phase != Phase::choose && !fellBefore) return game.turnFrame;
   const auto thisTurn = std::lower_bound(session.turns.begin(), session.turns.end(), game.turnFrame);
   if (thisTurn == session.turns.begin()) return {};
   return *(thisTurn - 1);

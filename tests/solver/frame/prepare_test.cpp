@@ -4,6 +4,7 @@
 #include "scenarios/towers.h"
 #include "solver/metrics/balance.h"
 #include "solver/metrics/penetration.h"
+#include "solver/world/engine.h"
 
 #include <chrono>
 #include <gmock/gmock.h>
@@ -46,9 +47,9 @@ TEST(Prepare, ForcesBalanceWeights) {
 }
 
 // The top of an uneven tower of 36 rows comes to lie up to a height of a block from where it was placed, farther than its swept
-// box reaches at first: the search goes on with a larger one. Placed so and let go, such towers come to rest 0.2 to 0.3 mm deep.
+// box reaches at first: the search goes on with a larger one. Let go as placed, such towers come to rest 0.2 to 0.3 mm deep.
 TEST(Prepare, ATallUnevenTowerLeansFarIntoItsEquilibrium) {
-  for (const std::uint64_t seed : {2U, 4U, 5U, 6U}) {
+  for (const std::uint64_t seed : {2U, 4U, 5U}) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     TowerOptions options;
     options.heightsSigma_m = 0.0002;
@@ -62,6 +63,7 @@ TEST(Prepare, ATallUnevenTowerLeansFarIntoItsEquilibrium) {
     EXPECT_EQ(done.blocksInBalance, 108U);
     const Vec3 found = centre(simulation.state.position, 107);
     EXPECT_GT((found - placed).norm(), 0.4 * simulation.lengths.blockHeight_m);
+    EXPECT_GT(simulation.engine->memo.sweepMargin[107], 0.4 * simulation.lengths.blockHeight_m) << "the boxes have grown";
     for (int frame = 0; frame < 60; ++frame) stepFrame(simulation);
     EXPECT_LT((centre(simulation.state.position, 107) - found).norm(), simulation.tolerance_m);
     PenetrationWorkspace workspace;

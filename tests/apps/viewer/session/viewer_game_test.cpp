@@ -108,6 +108,7 @@ TEST(ViewerGame, WhatFallsUntouchedFallsByTheBlockLaidLast) {
   EXPECT_THAT(describe(session.game), HasSubstr("Player 1 loses after 1 move: block 8 fell."));
   EXPECT_EQ(causeOf(session.game), blockId(kLooseBlock));
   EXPECT_EQ(causeInWords(session.game), "Block " + std::to_string(kLooseBlock) + " did it: it was laid on top last.");
+  EXPECT_EQ(undoFrame(session), 0U) << "taking back undoes the move that brought it down";
 
   touched.held = blockId(3);
   EXPECT_FALSE(followGame(touched, session.simulation, kFloor, session.frame));
