@@ -158,8 +158,8 @@ bool hasImpact(const IslandStep& step, std::size_t at, double displacement, doub
     touches = touches || touchingAt(trial, i) != 0.0;
     begins = begins || (touchingAt(trial, i) != 0.0 && touchingAt(manifold, i) == 0.0);
   }
-  const bool late = !touches || displacement > refreshTravel(step.simulation);
-  if (!begins && !late) return false;
+  const bool listIsOld = !touches || displacement > refreshTravel(step.simulation);
+  if (!begins && !listIsOld) return false;
   const ParticleArray& now = step.simulation.state.position;
   const std::array<double, kManifoldPoints> depth = depthsAt(step, manifold, now);
   if (begins) {
@@ -169,7 +169,7 @@ bool hasImpact(const IslandStep& step, std::size_t at, double displacement, doub
       if (touchingAt(trial, i) != 0.0 && touchingAt(manifold, i) == 0.0 && depth[i] - before[i] > maxClosing) return true;
     }
   }
-  if (!late) return false;
+  if (!listIsOld) return false;
   const double known = std::max(0.0, *std::max_element(depth.begin(), depth.begin() + manifold.count));
   const double overlap = overlapOf(pair, now);
   return overlap > known + most && overlap > overlapOf(pair, step.engine.memo.previous) + most;

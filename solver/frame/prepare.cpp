@@ -107,15 +107,13 @@ bool searchIslands(Simulation& simulation, SearchMonitor& monitor, PrepareResult
   overIslands(simulation, prepareIsland, &monitor);
   copyToEqualIslands(simulation, monitor);
   first = {};
-  std::fill(engine.scratch.leftBox.begin(), engine.scratch.leftBox.end(), 0);
   bool inside = true;
   for (std::size_t i = 0; i < engine.memo.islands.count(); ++i) {
     if (engine.scratch.takesPart[i] == 0) continue;
     const std::span<const std::int32_t> blocks = engine.memo.islands.island(i);
-    if (engine.scratch.islandOutcome[i] < 0) {
-      inside = false;
-      for (const std::int32_t block : blocks) engine.scratch.leftBox[static_cast<std::size_t>(block)] = 1;
-    }
+    const bool left = engine.scratch.islandOutcome[i] < 0;
+    inside = inside && !left;
+    for (const std::int32_t block : blocks) engine.scratch.leftBox[static_cast<std::size_t>(block)] = left ? 1 : 0;
     if (engine.scratch.islandOutcome[i] > 0) result.blocksInBalance += blocks.size();
     engine.scratch.islandCounters[i].newtonFailures = 0;  // the search has other ways to go on, and takes no explicit steps
     simulation.counters += engine.scratch.islandCounters[i];
@@ -148,16 +146,8 @@ void searchAll(Simulation& simulation, SearchMonitor& monitor, PrepareResult& re
   if (!monitor.isStopped()) {
     growSweepMargins(engine);
     findNearPairs(simulation);
-    const std::vector<std::uint8_t> before = engine.scratch.leftBox;
     takePartAgain(engine, true);
-    const std::vector<std::uint8_t> searched = engine.scratch.takesPart;
     searchIslands(simulation, monitor, result);
-    // Those that were joined with others have not been searched.
-    for (std::size_t i = 0; i < engine.memo.islands.count(); ++i) {
-      if (searched[i] != 0) continue;
-      for (const std::int32_t block : engine.memo.islands.island(i))
-        engine.scratch.leftBox[static_cast<std::size_t>(block)] = before[static_cast<std::size_t>(block)];
-    }
   }
   takePartAgain(engine, false);
   overIslands(simulation, leaveAsPlaced, &monitor);

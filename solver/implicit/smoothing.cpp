@@ -63,7 +63,7 @@ bool approach(IslandStep& step, double first, double last) {
     if (!converged) break;
     stop(step);
     converged = addTravel(step);
-    step.leftBox = step.leftBox || !converged;
+    if (!converged) step.leftBox = true;
   }
   return converged;
 }
