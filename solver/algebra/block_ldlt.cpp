@@ -9,6 +9,7 @@
 #include "solver/algebra/eliminate_column.h"
 
 #include <algorithm>
+#include <iterator>
 
 namespace springtower {
 
@@ -36,6 +37,13 @@ void findColumns(std::span<const BlockPair> edges, BlockCholesky& matrix) {
     const auto [column, row] = ends(edge);
     matrix.edgeRow[static_cast<std::size_t>(matrix.edgeStart[column + 1]++)] = row;
   }
+}
+
+void setOrder(std::span<const std::int32_t> order, BlockCholesky& matrix) {
+  matrix.node.assign(order.begin(), order.end());
+  matrix.position.resize(order.size());
+  for (std::size_t k = 0; k < order.size(); ++k)
+    matrix.position[static_cast<std::size_t>(order[k])] = static_cast<std::int32_t>(k);
 }
 
 SPRINGTOWER_KERNEL
@@ -83,12 +91,24 @@ void solveInOrder(BlockCholesky& matrix, std::span<double> values) {
 
 }  // namespace
 
+void layOutPattern(std::span<const std::int32_t> order, std::span<const BlockPair> edges, BlockCholesky& matrix) {
+  setOrder(order, matrix);
+  findColumns(edges, matrix);
+  matrix.columnStart.assign(1, 0);
+  matrix.row.clear();
+  for (std::size_t j = 0; j < order.size(); ++j) {
+    const auto first = matrix.edgeRow.begin() + matrix.edgeStart[j];
+    const auto last = matrix.edgeRow.begin() + matrix.edgeStart[j + 1];
+    std::sort(first, last);
+    std::unique_copy(first, last, std::back_inserter(matrix.row));
+    matrix.columnStart.push_back(static_cast<std::int32_t>(matrix.row.size()));
+  }
+}
+
 bool findPattern(std::span<const std::int32_t> order, std::span<const BlockPair> edges, std::size_t mostProducts,
                  BlockCholesky& matrix) {
   const std::size_t count = order.size();
-  matrix.node.assign(order.begin(), order.end());
-  matrix.position.resize(count);
-  for (std::size_t k = 0; k < count; ++k) matrix.position[static_cast<std::size_t>(order[k])] = static_cast<std::int32_t>(k);
+  setOrder(order, matrix);
   findColumns(edges, matrix);
 
   // The pattern of L: column j is the union of its own part of A and the remainders of the columns whose first row below the
@@ -137,6 +157,7 @@ bool analyse(std::span<const std::int32_t> order, std::span<const BlockPair> edg
 
 void listUpdates(BlockCholesky& matrix) {
   const std::size_t count = matrix.node.size();
+  matrix.isWithoutFill = false;
   matrix.target.clear();
   matrix.targetStart.clear();
   for (std::size_t j = 0; j < count; ++j) {

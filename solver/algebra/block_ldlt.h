@@ -33,8 +33,11 @@ struct BlockCholesky {
   std::vector<std::int32_t> mark, firstChild, nextChild, edgeStart, edgeRow;  ///< working space of `analyse`
   AlignedVector<float> work;                                                  ///< working space of solutions, [nodes][12]
   EliminationTasks tasks;                                                     ///< of a wide matrix; else empty
-  AlignedVector<float> divided;  ///< working space of the top's eliminations, [tallest column][144]
-  AlignedVector<float> taken;    ///< working space of solutions: what tasks take from values of the top, [tasks][top][12]
+  AlignedVector<float> divided;      ///< working space of the top's eliminations, [tallest column][144]
+  AlignedVector<float> taken;        ///< working space of solutions: what tasks take from values of the top, [tasks][top][12]
+  bool isWithoutFill = false;        ///< see solver/algebra/gauss_seidel.h
+  AlignedVector<float> ownDiagonal;  ///< of a matrix without fill: the matrix itself, [nodes][144]
+  AlignedVector<float> ownLower;     ///< the same, [blocks][144]
 
   [[nodiscard]] std::size_t nodeCount() const { return node.size(); }
   [[nodiscard]] std::size_t blockCount() const { return row.size(); }
@@ -44,6 +47,9 @@ struct BlockCholesky {
 /// first part of `analyse`. Returns false if there are more than `mostProducts`.
 bool findPattern(std::span<const std::int32_t> order, std::span<const BlockPair> edges, std::size_t mostProducts,
                  BlockCholesky& matrix);
+
+/// The pattern of the matrix itself for this elimination order, without fill.
+void layOutPattern(std::span<const std::int32_t> order, std::span<const BlockPair> edges, BlockCholesky& matrix);
 
 /// Lists the updates of each elimination, divides a wide matrix into tasks, and sizes the matrix, for the pattern that
 /// `findPattern` found; the second part of `analyse`.

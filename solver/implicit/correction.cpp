@@ -60,6 +60,9 @@ bool solveForCorrection(IslandStep& step, NewtonSystem& island, const GmresToler
   return reached;
 }
 
+// GMRES ends with the first solution.
+constexpr GmresTolerance kPreconditionerAlone{std::numeric_limits<double>::infinity(), 0.0};
+
 double lightest(const IslandStep& step) {
   double mass = std::numeric_limits<double>::infinity();
   for (const std::int32_t block : step.blocks) mass = std::min(mass, step.simulation.model.mass[static_cast<std::size_t>(block)]);
@@ -94,10 +97,12 @@ bool findCorrection(IslandStep& step, NewtonSystem& island, double effective_s, 
   island.tangents.clear();
   if (differ) findTangents(step, island, effective_s);
   const bool reached = solveForCorrection(step, island, tolerance);
-  // With the symmetric matrix alone the derivative is always positive.
-  if (!island.tangents.empty() && !(directionalDerivative(step, island) > 0.0)) {
+  // With the symmetric matrix alone the derivative is always positive: with its exact solution, and with that of the
+  // preconditioner where there is no other.
+  const bool withoutFill = island.matrix.isWithoutFill;
+  if ((!island.tangents.empty() || withoutFill) && !(directionalDerivative(step, island) > 0.0)) {
     island.tangents.clear();
-    solveForCorrection(step, island, tolerance);
+    solveForCorrection(step, island, withoutFill ? kPreconditionerAlone : tolerance);
   }
   return reached;
 }

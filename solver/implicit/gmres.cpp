@@ -3,12 +3,14 @@
 #include "core/elementary.h"
 #include "core/lanes.h"
 #include "core/tuning.h"
+#include "solver/algebra/gauss_seidel.h"
 #include "solver/implicit/friction_tangent.h"
 #include "solver/implicit/system.h"
 #include "solver/world/over_island.h"
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace springtower {
 
@@ -16,7 +18,13 @@ namespace {
 
 // Low-rank structure: the tangent correction acts on few blocks, and right preconditioning makes the residual zero elsewhere, so
 // Krylov vectors of the residual are stored for those blocks only.
+// A matrix without fill differs from its preconditioner in all blocks.
 void findCoupledNodes(NewtonSystem& island) {
+  if (island.matrix.isWithoutFill) {
+    island.coupled.resize(island.residual.size());
+    std::iota(island.coupled.begin(), island.coupled.end(), 0);
+    return;
+  }
   island.coupledIndex.assign(island.residual.size(), -1);
   island.coupled.clear();
   const auto place = [&](std::int32_t& node) {
@@ -57,8 +65,9 @@ void addScaled(const IslandStep& step, double factor, const double* from, std::s
   });
 }
 
-// The tangent forces at the coupled nodes' displacements in island.affine.
-SPRINGTOWER_INLINE void applyTangents(NewtonSystem& island, double* force) {
+// The tangent forces at the coupled nodes' displacements in island.affine, which the factors or the preconditioner give for the
+// forces `right`; and those by which these are more than what the matrix itself has at these displacements.
+void applyTangents(NewtonSystem& island, const double* right, double* force) {
   const std::size_t count = kNodeSize * island.coupled.size();
   for (std::size_t c = 0; c < island.coupled.size(); ++c) {
     std::copy_n(island.affine.data() + kNodeSize * static_cast<std::size_t>(island.coupled[c]), kNodeSize,
@@ -66,6 +75,9 @@ SPRINGTOWER_INLINE void applyTangents(NewtonSystem& island, double* force) {
   }
   std::fill_n(force, count, 0.0);
   addTangentForces(island.tangents, {island.coupledMotion.data(), count}, {force, count});
+  if (!island.matrix.isWithoutFill) return;
+  multiply(island.matrix, island.affine, island.coupledMotion);
+  for (std::size_t i = 0; i < count; ++i) force[i] += right[i] - island.coupledMotion[i];
 }
 
 // Whether the displacements of each direction are stored. In a wide island they would be most of its memory, and one more
@@ -148,6 +160,7 @@ struct LeastSquares {
 }  // namespace
 
 std::size_t mostDirections(const NewtonSystem& island) {
+  if (island.matrix.isWithoutFill) return tuning::kMaxGmresDirections;
   if (island.residual.size() <= tuning::kNarrowBlocks) return tuning::kMinGmresDirections;
   const std::size_t blocks = std::max<std::size_t>(1, island.matrix.blockCount());
   return std::clamp(tuning::kGmresDirectionsPerProduct * island.matrix.products / blocks, tuning::kMinGmresDirections,
@@ -156,14 +169,13 @@ std::size_t mostDirections(const NewtonSystem& island) {
 
 bool solveCoupled(IslandStep& step, NewtonSystem& island, const GmresTolerance& tolerance) {
   island.directions = 0;
-  if (island.tangents.empty()) {
+  if (island.tangents.empty() && !island.matrix.isWithoutFill) {
     solve(step, island);
     return true;
   }
   const std::size_t all = island.affine.size();
   const double allowed =
       std::max(tolerance.absolute_n, tolerance.relative * std::sqrt(dot(step, island.affine.data(), island.affine.data(), all)));
-  solve(step, island);
   findCoupledNodes(island);
   const std::size_t count = kNodeSize * island.coupled.size();
   island.coupledMotion.resize(count);
@@ -172,8 +184,10 @@ bool solveCoupled(IslandStep& step, NewtonSystem& island, const GmresTolerance& 
   const auto correction = [&](std::size_t j) { return island.correction.data() + (j + 1) * all; };
 
   LeastSquares squares;
+  if (island.matrix.isWithoutFill) std::copy(island.affine.begin(), island.affine.end(), force(1));
+  solve(step, island);
   keepFirst(step, island);
-  applyTangents(island, force(0));
+  applyTangents(island, force(1), force(0));
   squares.right[0] = std::sqrt(dot(step, force(0), force(0), count));
   if (!(squares.right[0] > allowed)) return true;
   for (std::size_t i = 0; i < count; ++i) force(0)[i] /= squares.right[0];
@@ -186,7 +200,7 @@ bool solveCoupled(IslandStep& step, NewtonSystem& island, const GmresTolerance& 
     solveForCoupled(step, island, force(j));
     if (keepsCorrections(step)) std::copy(island.affine.begin(), island.affine.end(), correction(j));
     double* next = force(j + 1);
-    applyTangents(island, next);
+    applyTangents(island, force(j), next);
     for (std::size_t i = 0; i < count; ++i) next[i] = force(j)[i] - next[i];
     for (std::size_t k = 0; k <= j; ++k) {
       squares.column[j][k] = dot(step, next, force(k), count);

@@ -397,13 +397,13 @@ bool solveStep(IslandStep& step, double effective_s, Begin begin, const NewtonOp
     if (now.changed || how.mostStalled > 0) most = std::min(how.mostContactIterations, iteration + tuning::kMaxNewtonIterations);
     const bool old =
         iteration == 0 && island.directions >= tuning::kRefactorDirectionShare * static_cast<double>(mostDirections(island));
-    const bool stale = (slow || old) && (now.changed || now.slides || now.limited);
+    const bool stale = ((slow || old) && (now.changed || now.slides || now.limited)) || (step.withoutFill && now.changed);
     const bool renewed =
         stale || !island.factorised || step.smoothing_j > 0.0;  // smoothed contacts are of another stiffness each time
     if (renewed && !refactorise(step, island, effective_s)) break;
     const double before = residual;
     const bool differs = now.changed || now.slides || !island.factorTangents.empty();
-    if (!findCorrection(step, island, effective_s, residual, differs) && !renewed) {
+    if (!findCorrection(step, island, effective_s, residual, differs) && !renewed && !step.withoutFill) {
       if (!refactorise(step, island, effective_s)) break;
       findCorrection(step, island, effective_s, residual, differs);
     }

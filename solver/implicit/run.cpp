@@ -274,6 +274,8 @@ IslandOutcome runImplicitSteps(IslandStep& step, bool mostlyFallen, double& reac
     step.drift_s = (end_s - reached_s) / count;
     begins = true;
   };
+  // Contacts of a heap change in nearly every iteration: factors that fill in would be made for one solution each.
+  step.withoutFill = mostlyFallen && step.blocks.size() >= tuning::kParallelBlocks && !engine.memo.sparseFactors.isUsed();
   takeSteps(stepsInPart(step, steps));
   step.maxStiffening = 1.0;
   beginWithForces(step, known);

@@ -3,6 +3,7 @@
 #include "core/hash.h"
 #include "core/lanes.h"
 #include "core/tuning.h"
+#include "solver/algebra/gauss_seidel.h"
 #include "solver/contact/evaluate_forces.h"
 #include "solver/implicit/contact_matrix.h"
 #include "solver/implicit/friction_tangent.h"
@@ -116,6 +117,12 @@ void findEdges(const IslandStep& step, NewtonSystem& island) {
   }
 }
 
+void listCentres(const IslandStep& step, EliminationOrder& order) {
+  order.centre.clear();
+  for (const std::int32_t block : step.blocks)
+    order.centre.push_back(centre(step.simulation.state.position, static_cast<std::size_t>(block)));
+}
+
 // Finds the elimination order and the pattern of the factors: from the bottom up, or by dissection where that gives less fill.
 // Returns false where both take too many products.
 bool findOrder(NewtonSystem& island) {
@@ -132,6 +139,14 @@ bool findOrder(NewtonSystem& island) {
   return bandFits && fits(tuning::kMaxFillProducts);
 }
 
+// The order from the bottom up, of matrices without fill.
+void layOutMatrixWithoutFill(const IslandStep& step, NewtonSystem& island) {
+  listCentres(step, island.order);
+  orderBottomUp(island.order);
+  layOutWithoutFill(island.order.nodes, island.edges, island.matrix);
+  island.members = 0;
+}
+
 // Lays out the matrix for island.edges; false where it would take too many products. A wide island keeps its elimination order
 // while its blocks are the same, and the whole layout while that has room for all edges: contacts come and go far more often than
 // the best order changes. `members` is a hash of the blocks.
@@ -143,9 +158,7 @@ bool layOutMatrix(const IslandStep& step, NewtonSystem& island, std::uint64_t me
       static_cast<double>(matrix.products) <= tuning::kMaxFillGrowth * static_cast<double>(island.orderProducts))
     return true;
   island.members = 0;
-  island.order.centre.clear();
-  for (const std::int32_t block : step.blocks)
-    island.order.centre.push_back(centre(step.simulation.state.position, static_cast<std::size_t>(block)));
+  listCentres(step, island.order);
   if (!findOrder(island)) return false;
   listUpdates(matrix);
   island.members = members;
@@ -208,6 +221,7 @@ void layOut(IslandStep& step, NewtonSystem& island) {
   Engine& engine = step.engine;
   const std::vector<std::uint8_t>& asleep = step.simulation.asleep;
   Hash hash;
+  hash.word(step.withoutFill ? 1U : 0U);
   for (const std::int32_t block : step.blocks) hash.word(static_cast<std::uint64_t>(block));
   const std::uint64_t members = hash.value();
   for (const std::int32_t at : step.pairs) {
@@ -230,7 +244,8 @@ void layOut(IslandStep& step, NewtonSystem& island) {
   island.pattern = pattern;
   island.factorised = false;
   if (engine.memo.sparseFactors.isUsed()) engine.memo.sparseFactors.of(step.blocks.front()).analysed = false;
-  island.exceedsFill = !layOutMatrix(step, island, members);
+  island.exceedsFill = !step.withoutFill && !layOutMatrix(step, island, members);
+  if (step.withoutFill) layOutMatrixWithoutFill(step, island);
   if (island.exceedsFill) return;
   findSlots(step, island);
   listByTask(step, island);
@@ -271,6 +286,7 @@ void fillMatrix(IslandStep& step, NewtonSystem& island, double step_s, float sti
 
 bool factoriseMatrix(IslandStep& step, NewtonSystem& island) {
   ++step.counters.factorisations;
+  if (island.matrix.isWithoutFill) return island.factorised = factoriseWithoutFill(island.matrix);
   ByIsland<SparseFactors>& sparse = step.engine.memo.sparseFactors;
   island.factorised =
       !sparse.isUsed() ? factorise(island.matrix) : factorise(island.matrix, island.slot, sparse.of(step.blocks.front()));

@@ -45,6 +45,7 @@ struct IslandStep {
   bool leftBox = false;                 ///< whether the search for the equilibrium took a block out of its swept box
   std::span<const BlockPair> driven{};  ///< fixed blocks near it that drives move in this frame, as the second of each
   bool modeChanged = false;             ///< contacts have become springs or impulses since the part of the frame began
+  bool withoutFill = false;             ///< a wide island's equations are solved without fill (solver/algebra/gauss_seidel.h)
   bool unforced = false;                ///< neither user forces nor the hand act: the equilibrium before the first frame
 };
 

@@ -52,8 +52,8 @@ std::size_t ofFactors(const Memo& memo) {
     const BlockCholesky& matrix = island.matrix;
     const EliminationTasks& tasks = matrix.tasks;
     sum += sumOf(matrix.position, matrix.node, matrix.columnStart, matrix.row, matrix.targetStart, matrix.target, matrix.diagonal,
-                 matrix.lower, tasks.columnStart, tasks.column, tasks.taskOf, tasks.firstTop, tasks.top, tasks.sourceStart,
-                 tasks.source);
+                 matrix.lower, matrix.ownDiagonal, matrix.ownLower, tasks.columnStart, tasks.column, tasks.taskOf, tasks.firstTop,
+                 tasks.top, tasks.sourceStart, tasks.source);
   }
   for (const SparseFactors& sparse : memo.sparseFactors.all()) sum += bytesOf(sparse);
   return sum;

@@ -185,9 +185,10 @@ void fieldsOf(Stream& stream, EliminationTasks& tasks) {
 template <class Stream>
 void fieldsOf(Stream& stream, BlockCholesky& matrix) {
   auto& [position, node, columnStart, row, targetStart, target, products, diagonal, lower, mark, firstChild, nextChild, edgeStart,
-         edgeRow, work, tasks, divided, taken] = matrix;
+         edgeRow, work, tasks, divided, taken, isWithoutFill, ownDiagonal, ownLower] = matrix;
   stream(position, node, columnStart, row, targetStart, target, products, diagonal, lower, sizeOf(mark), sizeOf(firstChild),
-         sizeOf(nextChild), sizeOf(edgeStart), sizeOf(edgeRow), sizeOf(work), tasks, sizeOf(divided), sizeOf(taken));
+         sizeOf(nextChild), sizeOf(edgeStart), sizeOf(edgeRow), sizeOf(work), tasks, sizeOf(divided), sizeOf(taken),
+         isWithoutFill, ownDiagonal, ownLower);
 }
 
 template <class Stream>
@@ -234,7 +235,7 @@ void fieldsOf(Stream& stream, NewtonWork& work) {
 template <class Stream>
 void fieldsOf(Stream& stream, NewtonSystem& system) {
   // It has a base with members, so no structured binding; a new member changes its size.
-  static_assert(sizeof(NewtonSystem) == sizeof(NewtonWork) + 984);
+  static_assert(sizeof(NewtonSystem) == sizeof(NewtonWork) + 1040);
   fieldsOf(stream, static_cast<NewtonWork&>(system));
   stream(system.pattern, system.exceedsFill, system.factorised, system.step_s, system.tether, system.limited, system.directions,
          system.trialIsAhead, system.trialLags, system.isNear, system.changedIterations, system.assumesSupport,
