@@ -158,6 +158,8 @@ bool analyse(std::span<const std::int32_t> order, std::span<const BlockPair> edg
 void listUpdates(BlockCholesky& matrix) {
   const std::size_t count = matrix.node.size();
   matrix.isWithoutFill = false;
+  matrix.ownDiagonal = {};
+  matrix.ownLower = {};
   matrix.target.clear();
   matrix.targetStart.clear();
   for (std::size_t j = 0; j < count; ++j) {

@@ -13,7 +13,7 @@ namespace springtower {
 namespace {
 
 SPRINGTOWER_KERNEL
-bool divideColumns(BlockCholesky& matrix, std::size_t first, std::size_t last) {
+bool divideByDiagonal(BlockCholesky& matrix, std::size_t first, std::size_t last) {
   bool positive = true;
   for (std::size_t j = first; j < last; ++j) {
     float* inverse = blockAt(matrix.diagonal, j);
@@ -67,7 +67,7 @@ bool factoriseWithoutFill(BlockCholesky& matrix) {
   const std::size_t count = matrix.nodeCount();
   return mergeRanges(
       count, tuning::kBlockGrain, count >= tuning::kParallelBlocks, true,
-      [&](std::size_t first, std::size_t last) { return divideColumns(matrix, first, last); },
+      [&](std::size_t first, std::size_t last) { return divideByDiagonal(matrix, first, last); },
       [](bool a, bool b) { return a && b; });
 }
 

@@ -27,11 +27,19 @@ Scene toppling() {
   return leaning(grid(towerScene(4), 4, 2, kTowerSpacing_m), 30.0);
 }
 
+// A wall of 306 blocks that slides over the floor until friction stops it: what has fallen is solved without fill.
+Scene slidingWall() {
+  Scene scene = awake(wallScene(25, 12));
+  for (BlockSpec& block : scene.blocks) block.velocity = Vec3(0.3, 0.0, 0.0);
+  return scene;
+}
+
 }  // namespace
 
 std::vector<PinnedScene> pinnedLarge() {
   return {
       {"WallOf246", 30, [] { return awake(wallScene(20, 12)); }},
+      {"SlidingWallOf306", 24, slidingWall},
       {"SmallWallFallsAsleep", 200, [] { return wallScene(5, 6); }},
       {"PyramidOf10", 60, [] { return awake(cubePyramidScene(10)); }},
       {"PyramidFallsAsleep", 200, [] { return cubePyramidScene(6); }},
