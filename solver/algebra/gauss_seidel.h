@@ -8,9 +8,9 @@
 
 namespace springtower {
 
-// A symmetric positive definite matrix A = L + D + L^T without fill, L its blocks below the diagonal in the elimination order,
-// and in place of its factors those of symmetric block Gauss-Seidel, M = (D + L) D^-1 (D + L)^T (Saad 2003): `solve` of
-// solver/algebra/block_ldlt.h solves M x = b. They take one product a block, whatever the order.
+// Symmetric block Gauss-Seidel as preconditioner of a symmetric positive definite matrix A = L + D + L^T, L its blocks below the
+// diagonal in the elimination order: M = (D + L) D^-1 (D + L)^T (Saad 2003). M = (I + L D^-1) D (I + L D^-1)^T has the form of
+// factors, so `solve` of solver/algebra/block_ldlt.h solves M x = b; making them takes one product a block, whatever the order.
 
 /// Lays out the matrix for an elimination order of nodes coupled by `edges`, without fill.
 void layOutWithoutFill(std::span<const std::int32_t> order, std::span<const BlockPair> edges, BlockCholesky& matrix);

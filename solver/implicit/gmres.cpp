@@ -17,8 +17,7 @@ namespace springtower {
 namespace {
 
 // Low-rank structure: the tangent correction acts on few blocks, and right preconditioning makes the residual zero elsewhere, so
-// Krylov vectors of the residual are stored for those blocks only.
-// A matrix without fill differs from its preconditioner in all blocks.
+// Krylov vectors of the residual are stored for those blocks only. A matrix without fill differs from its preconditioner in all.
 void findCoupledNodes(NewtonSystem& island) {
   if (island.matrix.isWithoutFill) {
     island.coupled.resize(island.residual.size());
@@ -65,8 +64,8 @@ void addScaled(const IslandStep& step, double factor, const double* from, std::s
   });
 }
 
-// The tangent forces at the coupled nodes' displacements in island.affine, which the factors or the preconditioner give for the
-// forces `right`; and those by which these are more than what the matrix itself has at these displacements.
+// The tangent forces at the coupled nodes' displacements in island.affine, the solution for the forces `right`. Without fill the
+// solution is that of the preconditioner: to these forces is added what of `right` it leaves.
 void applyTangents(NewtonSystem& island, const double* right, double* force) {
   const std::size_t count = kNodeSize * island.coupled.size();
   for (std::size_t c = 0; c < island.coupled.size(); ++c) {

@@ -20,7 +20,7 @@ TetherStiffness tetherStiffness(const IslandStep& step, double step_s);
 bool isTetherLimited(const IslandStep& step);
 
 /// Assembles and factorises for contacts with the active set island.mask. `step_s` is the step times the method's factor. Returns
-/// false where the matrix is not positive definite.
+/// false where the matrix is not positive definite (without fill: a block of its diagonal).
 bool assemble(IslandStep& step, NewtonSystem& island, double step_s);
 
 /// In the search for an equilibrium: the next factors are of a matrix whose diagonal is stiffer by the next larger share than
