@@ -103,8 +103,8 @@ SPRINGTOWER_INLINE void placePoint(const LanePlace& upper, const LanePlace& lowe
   LaneVector apart = onUpper;
   subtract(onLower, apart);
   dot(p.normal, apart, p.gap);
-  // In a heap 1 % of the overlap without force becomes, in each substep, overlap that is pushed out where its blocks are not
-  // slow, as far as energy lost in the frame pays for it. Otherwise what each impact leaves would add up.
+  // In a heap 1 % of the overlap without force becomes, in each substep, overlap that is pushed out, as far as energy lost in the
+  // frame pays for it. Otherwise what each impact leaves would add up.
   if (springs.heap) own.rest *= 1.0 - tuning::kRigidModeBaumgarte;
   p.gap += own.rest;
   p.softness = own.compliance / springs.step_s;
@@ -212,7 +212,7 @@ void moveGaps(RigidIsland& island) {
   }
 }
 
-void readBodies(double slow_m_s, RigidIsland& island) {
+void readBodies(RigidIsland& island) {
   const Lanes zero = {0.0, 0.0, 0.0, 0.0};
   island.places.resize(island.bodies.size() + 1);
   island.motions.resize(island.bodies.size() + 1);
@@ -226,7 +226,6 @@ void readBodies(double slow_m_s, RigidIsland& island) {
     }
     place.inverseMass = body.inverseMass;
     place.flies = body.pushed || body.inverseMass == 0.0 ? 0.0 : 1.0;
-    place.moves = fastestOf(body) < slow_m_s ? 0.0 : 1.0;
   });
   BodyPlace& still = island.places.back();
   still = BodyPlace{};

@@ -31,14 +31,8 @@ void placeConstraints(const RigidIsland& island, const Springs& springs, PackedP
 /// Gaps of all points after the bodies have moved by `moved` and `turned`, to first order.
 void moveGaps(RigidIsland& island);
 
-/// Speed of the fastest point of a sphere around a body, m/s.
-inline double fastestOf(const RigidBody& body) {
-  return body.velocity.norm() + body.radius_m * body.spin.norm();
-}
-
-/// Places and velocities of the island's bodies for the passes; the velocities alone; and back. `slow_m_s`: speed below which a
-/// body counts as slow, m/s.
-void readBodies(double slow_m_s, RigidIsland& island);
+/// Places and velocities of the island's bodies for the passes; the velocities alone; and back.
+void readBodies(RigidIsland& island);
 void readVelocities(RigidIsland& island);
 void writeBodies(RigidIsland& island);
 

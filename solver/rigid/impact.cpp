@@ -25,19 +25,15 @@ void setImpactsOf(const RigidIsland& island, const Vec3& gravity, double least, 
                   std::size_t last) {
   const Lanes zero = {0.0, 0.0, 0.0, 0.0};
   const LaneVector g = {zero + gravity[0], zero + gravity[1], zero + gravity[2]};
-  const auto placeOf = [&](const PackedIndex& at, int lane) -> const BodyPlace& {
-    return island.places[static_cast<std::size_t>(at[static_cast<std::size_t>(lane)])];
+  const auto flies = [&](const PackedIndex& at, int lane) {
+    return island.places[static_cast<std::size_t>(at[static_cast<std::size_t>(lane)])].flies;
   };
-  const auto flies = [&](const PackedIndex& at, int lane) { return placeOf(at, lane).flies; };
-  const auto moves = [&](const PackedIndex& at, int lane) { return placeOf(at, lane).moves; };
   for (std::size_t i = first; i < last; ++i) {
-    PackedPair& pair = packed.pairs[i];
+    const PackedPair& pair = packed.pairs[i];
     PackMotion motion;
     gather(island.motions.data(), pair, motion);
     Lanes flying;
     for (int lane = 0; lane < kPackedPairs; ++lane) flying[lane] = -2.0 * (flies(pair.upper, lane) - flies(pair.lower, lane));
-    for (int lane = 0; lane < kPackedPairs; ++lane)
-      pair.pushesOut[lane] = std::max(moves(pair.upper, lane), moves(pair.lower, lane));
     for (PackedPoint& p : pointsOf(packed, pair)) {
       LaneVector relative;
       relativeAt(motion, p, relative);

@@ -20,7 +20,7 @@ struct Aim {
   Lanes released;
 };
 
-SPRINGTOWER_INLINE void aimOf(const Pass& pass, const PackedPair& pair, const PackedPoint& p, Aim& aim) {
+SPRINGTOWER_INLINE void aimOf(const Pass& pass, const PackedPoint& p, Aim& aim) {
   Lanes slack, open;
   slackOf(p, slack);
   largerOf(slack, kNone, open);
@@ -31,11 +31,10 @@ SPRINGTOWER_INLINE void aimOf(const Pass& pass, const PackedPair& pair, const Pa
   const Lanes stiff = 1.0 / (1.0 + softness / pass.step_s);
   if (pass.push) {
     const Lanes most = kNone + pass.most;
-    const Lanes rate = pass.soft.rate * pair.pushesOut;
     Lanes pushed;
-    smallerOf(-rate * slack, most, pushed);
+    smallerOf(-pass.soft.rate * slack, most, pushed);
     aim.least = apart ? approach : pushed;
-    aim.share = apart ? stiff : pass.soft.mass / (1.0 + rate * softness);
+    aim.share = apart ? stiff : pass.soft.mass / (1.0 + pass.soft.rate * softness);
     aim.released = apart ? kNone : kNone + pass.soft.impulse;
     return;
   }
@@ -115,7 +114,7 @@ SPRINGTOWER_INLINE void solvePoints(const Pass& pass, const PackedPair& pair, co
   relativeAt(motion, p, relative);
   dot(p.normal, relative, opening);
   Aim aim;
-  aimOf(pass, pair, p, aim);
+  aimOf(pass, p, aim);
   LaneMask rests = p.idle & (opening >= aim.least);
   // What blocks may still approach by is for the next substep, which begins with the speed at which they meet.
   if (!pass.push) rests |= p.idle & (p.gap > kNone);

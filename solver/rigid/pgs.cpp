@@ -26,16 +26,14 @@ Softness softness(double step_s) {
   return {omega / a, b / (1.0 + b), 1.0 / (1.0 + b)};
 }
 
-// Depth of the deepest overlap beyond what compresses the springs, of those that are pushed out, m.
+// Depth of the deepest overlap beyond what compresses the springs, m.
 double deepestOverlap(const RigidIsland& island) {
   Lanes least = {0.0, 0.0, 0.0, 0.0};
   for (const PackedPoints* packed : packsOf(island)) {
-    for (const PackedPair& pair : packed->pairs) {
-      for (const PackedPoint& p : pointsOf(*packed, pair)) {
-        Lanes slack;
-        slackOf(p, slack);
-        smallerOf(pair.pushesOut * slack, least, least);
-      }
+    for (const PackedPoint& p : packed->points) {
+      Lanes slack;
+      slackOf(p, slack);
+      smallerOf(slack, least, least);
     }
   }
   return -std::min(std::min(least[0], least[1]), std::min(least[2], least[3]));
@@ -125,31 +123,22 @@ void runPasses(IslandStep& step, RigidIsland& island, Pass pass, int passes) {
   if (impact > 0.0) solveImpacts(step, island, pass, impact);
 }
 
-// Blocks slower than this keep their overlaps, m/s, as they will in implicit steps: a heap at rest sinks a little in each
-// substep, as its passes do not converge, and where that paid for push-out it would sink and rise for ever.
-double slowSpeed(const IslandStep& step) {
-  if (isRigid(step.simulation.scene.settings.method) || isWorkedOn(step)) return 0.0;
-  return tuning::kRigidExitSpeed * step.simulation.lengths.blockHeight_m / step.simulation.lengths.fallTime_s;
-}
-
 // Work of the impulses so far where overlap is pushed out at a rate (1/s): what that lifts, J.
 double workOfPushOut(const RigidIsland& island, double rate) {
   Lanes sum4 = {0.0, 0.0, 0.0, 0.0};
   for (const PackedPoints* packed : packsOf(island)) {
-    for (const PackedPair& pair : packed->pairs) {
-      for (const PackedPoint& p : pointsOf(*packed, pair)) {
-        Lanes slack;
-        slackOf(p, slack);
-        const Lanes overlap = slack < 0.0 ? -slack : Lanes{0.0, 0.0, 0.0, 0.0};
-        sum4 += p.push * overlap * pair.pushesOut;
-      }
+    for (const PackedPoint& p : packed->points) {
+      Lanes slack;
+      slackOf(p, slack);
+      const Lanes overlap = slack < 0.0 ? -slack : Lanes{0.0, 0.0, 0.0, 0.0};
+      sum4 += p.push * overlap;
     }
   }
   return rate * sum(sum4);
 }
 
 // The share of the usual rate at which overlap is pushed out. In rigid mode it is paid by energy that the frame has lost before,
-// and by as little beside it as lets a pile come up again; a hand, a force or a driven block does work.
+// and by as little beside it as lets a pile at rest come up again; a hand, a force or a driven block does work.
 double shareOfPushOut(const IslandStep& step, const RigidIsland& island, double rate) {
   if (isRigid(step.simulation.scene.settings.method) || isWorkedOn(step)) return 1.0;
   const double work_j = workOfPushOut(island, rate);
@@ -255,7 +244,7 @@ void stepImpulses(IslandStep& step, RigidIsland& island) {
     return;
   }
   island.energyBefore_j = kineticEnergy(island.bodies);
-  readBodies(slowSpeed(step), island);
+  readBodies(island);
   const Springs springs{step.drift_s, step.simulation.tolerance_m, step.simulation.lengths.contactError_m, !island.stands,
                         step.drift_s / (step.drift_s + scene.settings.frame_s)};
   for (PackedPoints* packed : packsOf(island)) placeConstraints(island, springs, *packed);

@@ -30,7 +30,6 @@ struct alignas(32) BodyPlace {
   Lanes inverseInertia[3];  ///< 1/(kg m2), columns, world axes
   double inverseMass;       ///< 1/kg; 0 of what does not move
   double flies;             ///< 1 where it moves and no contact pushed it in the substep before, else 0
-  double moves;             ///< 1 where it is not slow (`readBodies`), else 0
 };
 
 /// Symmetric 3 x 3 matrices.
@@ -54,7 +53,6 @@ struct alignas(32) PackedPair {
   Lanes staticFriction;
   Lanes kineticFriction;
   Lanes restitution;
-  Lanes pushesOut;         ///< 1 where a body moves faster than slowly, and overlaps are pushed out; else 0
   Lanes inverseMassUpper;  ///< 1/kg
   Lanes inverseMassLower;
   LaneMatrix inertiaUpper;  ///< 1/(kg m2), inverse, world axes
