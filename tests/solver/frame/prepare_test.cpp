@@ -56,21 +56,24 @@ TEST(Prepare, ForcesBalanceWeights) {
   EXPECT_LT(worst.force, 1e-3) << "of a block's weight";
 }
 
-// The top of an uneven tower of 36 rows comes to lie up to a height of a block from where it was placed, farther than its swept
-// box reaches at first: the search goes on with a larger one. Let go as placed, such towers come to rest 0.2 to 0.3 mm deep.
+// The top of an uneven tower of 36 rows comes to lie up to a height of a block from where it was placed, in three of four farther
+// than its swept box reaches at first: the search goes on with a larger one. Let go as placed, such towers come to rest 0.2 to
+// 0.3 mm deep.
 TEST(Prepare, ATallUnevenTowerLeansFarIntoItsEquilibrium) {
-  for (const std::uint64_t seed : {2U, 4U, 5U}) {
+  for (const std::uint64_t seed : {2U, 4U, 5U, 6U}) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     Scene scene = leaningTower(seed);
     scene.settings.sleep = Sleep::off;
     Simulation simulation(scene);
     const Vec3 placed = centre(simulation.state.position, 107);
+    const double margin_m = simulation.engine->memo.sweepMargin[107];
     const PrepareResult done = prepare(simulation);
     EXPECT_EQ(done.blocks, 108U);
     EXPECT_EQ(done.blocksInBalance, 108U);
     const Vec3 found = centre(simulation.state.position, 107);
     EXPECT_GT((found - placed).norm(), 0.4 * simulation.lengths.blockHeight_m);
-    EXPECT_GT(simulation.engine->memo.sweepMargin[107], 0.4 * simulation.lengths.blockHeight_m) << "the boxes have grown";
+    const bool hasGrown = simulation.engine->memo.sweepMargin[107] > 3.9 * margin_m;
+    EXPECT_EQ(hasGrown, seed != 6U) << "its boxes; those of seed 6 reach far enough at first";
     for (int frame = 0; frame < 60; ++frame) stepFrame(simulation);
     EXPECT_LT((centre(simulation.state.position, 107) - found).norm(), simulation.tolerance_m);
     PenetrationWorkspace workspace;
