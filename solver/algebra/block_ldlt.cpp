@@ -148,6 +148,11 @@ bool findPattern(std::span<const std::int32_t> order, std::span<const BlockPair>
   return true;
 }
 
+void releaseLayoutSpace(BlockCholesky& matrix) {
+  for (auto* space : {&matrix.mark, &matrix.firstChild, &matrix.nextChild, &matrix.edgeStart, &matrix.edgeRow})
+    *space = std::vector<std::int32_t>();
+}
+
 bool analyse(std::span<const std::int32_t> order, std::span<const BlockPair> edges, std::size_t mostProducts,
              BlockCholesky& matrix) {
   if (!findPattern(order, edges, mostProducts, matrix)) return false;

@@ -55,6 +55,9 @@ void layOutPattern(std::span<const std::int32_t> order, std::span<const BlockPai
 /// `findPattern` found; the second part of `analyse`.
 void listUpdates(BlockCholesky& matrix);
 
+/// Returns the working space of the layout.
+void releaseLayoutSpace(BlockCholesky& matrix);
+
 /// Lays out the matrix for an elimination order (a permutation: order[k] is the k-th node) of nodes coupled by `edges`, including
 /// all fill. Returns false, and lays out nothing, if factorising would take more than `mostProducts` products of 12 x 12 blocks.
 bool analyse(std::span<const std::int32_t> order, std::span<const BlockPair> edges, std::size_t mostProducts,

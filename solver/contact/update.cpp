@@ -160,6 +160,26 @@ double refreshTravelOf(const ContactView& manifold, const RefreshTravel& travel)
   return rolls(manifold) ? travel.rolling_m : travel.resting_m;
 }
 
+// The least extent of a face manifold along the sides of its face, m; 0 of an edge manifold.
+double leastExtent(const Simulation& simulation, const ContactView& manifold) {
+  if (manifold.phase != PairPhase::face) return 0.0;
+  double least[2] = {0.0, 0.0};  // of u and v
+  double most[2] = {0.0, 0.0};
+  for (std::int32_t i = 0; i < manifold.count; ++i) {
+    const auto point = static_cast<std::size_t>(i);
+    const PlaceRow& row = *manifold.place[rowOf(point)];
+    const double at[2] = {row.u[laneOf(point)], row.v[laneOf(point)]};
+    for (int k = 0; k < 2; ++k) {
+      least[k] = i == 0 ? at[k] : std::min(least[k], at[k]);
+      most[k] = i == 0 ? at[k] : std::max(most[k], at[k]);
+    }
+  }
+  const FaceAxes& face = kFaceAxes[static_cast<std::size_t>(manifold.incidentFace)];
+  const Vec3& lengths = simulation.model.dimensions[static_cast<std::size_t>(manifold.upper)];
+  return std::min((most[0] - least[0]) * lengths[static_cast<Eigen::Index>(face.u)],
+                  (most[1] - least[1]) * lengths[static_cast<Eigen::Index>(face.v)]);
+}
+
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
 // Relative pose of a pair: b's centre and sides along a's edges; if b is the floor, a's centre and sides in world axes, m.
@@ -202,24 +222,24 @@ double movedBetween(const RelativePose& before, const RelativePose& now) {
   return moved;
 }
 
-// Whether the relative pose of a pair has hardly changed since its manifold was refreshed: blocks that topple together have a
-// long travel without that.
+// Whether the relative pose of a pair has hardly changed since its manifold was refreshed: blocks that sway or topple together
+// have a long travel without that. Points that are springs hold their outline to this; in rigid steps points are listed anew.
 bool isPoseUnchanged(IslandStep& step, std::size_t at, double travel, double most) {
   PairTable& pairs = step.engine.pairs;
-  RelativePose& known = step.engine.contacts.pose(pairs.contact[at]);
+  const double share = step.pointKind == PointKind::penalty ? tuning::kUnchangedSpringPoseShare : tuning::kUnchangedPoseShare;
   const RelativePose pose = poseOf(step, pairs.key[at]);
-  const double moved = movedBetween(known, pose);
-  if (moved < tuning::kUnchangedPoseShare * most) {
+  const double moved = movedBetween(step.engine.contacts.pose(pairs.contact[at]), pose);
+  if (moved < share * most) {
     pairs.travelAtCheck[at] = travel - moved;
     return true;
   }
-  known = pose;
+  step.engine.contacts.setPose(pairs.contact[at], pose);
   return false;
 }
 
-// A manifold created otherwise than by a refresh in rigid steps is refreshed at the next check in such steps.
+// A manifold created otherwise than by a refresh is refreshed at the next check.
 void clearPose(Engine& engine, std::size_t at) {
-  if (engine.pairs.contact[at] >= 0) engine.contacts.pose(engine.pairs.contact[at]) = RelativePose{};
+  if (engine.pairs.contact[at] >= 0) engine.contacts.setPose(engine.pairs.contact[at], RelativePose{});
 }
 
 // Whether a pair may need a check: its travel has used up the clearance, or the least travel after which any manifold is
@@ -250,11 +270,14 @@ void updatePair(IslandStep& step, std::size_t at, const RefreshTravel& renewal, 
     clearPose(step.engine, at);
     return;
   }
-  const double most = refreshTravelOf(contactOf(step.engine, at), renewal);
+  const ContactView manifold = contactOf(step.engine, at);
+  const double most = refreshTravelOf(manifold, renewal);
   if (!(travel - pairs.travelAtCheck[at] > most)) return;
   savePair(step.engine, at);
-  if (step.pointKind != PointKind::penalty && isPoseUnchanged(step, at, travel, most)) return;
-  if (step.pointKind == PointKind::penalty) clearPose(step.engine, at);
+  // Blocks that touch along a line, or in a strip so narrow, may touch with other faces after the least motion.
+  const bool mayTurnOver = step.pointKind == PointKind::penalty && !(leastExtent(step.simulation, manifold) > 2.0 * most);
+  if (!mayTurnOver && isPoseUnchanged(step, at, travel, most)) return;
+  if (mayTurnOver) clearPose(step.engine, at);
   pairs.travelAtCheck[at] = travel;
   refreshManifold(step, at, counters);
 }

@@ -84,7 +84,7 @@ bool overIslands(Simulation& simulation, IslandOutcome (*advance)(IslandStep&), 
   engine.contacts.reserve(engine.pairs.size(), wide);
   if (engine.memo.topologyChanged) {
     for (const std::int32_t contact : engine.pairs.contact) {
-      if (contact >= 0) engine.contacts.pose(contact) = RelativePose{};
+      if (contact >= 0) engine.contacts.setPose(contact, RelativePose{});
     }
   }
   FirstDivergence divergence;

@@ -19,11 +19,6 @@ bool hasHistory(const Simulation& simulation) {
   return isImplicit(simulation.scene.settings.method);
 }
 
-// Whether the positions with which the last implicit step began are kept: in large scenes they would be a fifth of the copies.
-bool keepsStart(const Simulation& simulation) {
-  return hasHistory(simulation) && simulation.model.blockCount() < tuning::kParallelBlocks;
-}
-
 FrameStartIn& startOf(Engine& engine, std::int32_t block) {
   return engine.checkpoint.in[static_cast<std::size_t>(engine.memo.islands.islandOf[static_cast<std::size_t>(block)])];
 }
@@ -59,11 +54,7 @@ void rewindBlock(Simulation& simulation, std::size_t b, FrameStartIn in) {
   engine.memo.blockHistory[b] = engine.checkpoint.history[b];
   engine.memo.islandHistory[b] = engine.checkpoint.islandHistory[b];
   if (!hasHistory(simulation)) return;
-  if (keepsStart(simulation)) {
-    copyBlock(engine.checkpoint.previous, b, engine.memo.previous);
-  } else {
-    engine.memo.blockHistory[b].startKnown = false;
-  }
+  engine.memo.blockHistory[b].startKnown = false;
   copyBlock(engine.checkpoint.previousVelocity, b, engine.memo.previousVelocity);
 }
 
@@ -88,24 +79,33 @@ void rewindPair(Engine& engine, std::size_t at, FrameStartIn in) {
   }
 }
 
-// What the elimination orders of wide islands were found with.
+// What elimination orders and factors' layouts were found with.
 void releaseOrders(Engine& engine) {
   for (NewtonSystem& island : engine.memo.newtonSystems.all()) {
-    if (island.order.nodes.size() > tuning::kNarrowBlocks) releaseSpace(island.order);
+    releaseSpace(island.order);
+    releaseLayoutSpace(island.matrix);
   }
 }
 
-// Copies take as much as most of a wide island's other working space, and it needs none once it is at rest; nor what its
-// elimination order was found with.
+void releaseCopies(Engine& engine) {
+  engine.checkpoint.savedBlocks = PagePool<SavedBlocks>();
+  engine.contacts.releaseSaved();
+  releaseOrders(engine);
+}
+
+// Copies take as much as most of an island's other working space, and it needs none once it is at rest; nor what its elimination
+// order was found with. The first frame makes copies, as it takes several steps where accelerations are not yet known; what it
+// copied is returned. Later it is returned where a wide island is: what moves again in a smaller scene is not to allocate.
 void releaseUnused(Engine& engine) {
   FrameStart& start = engine.checkpoint;
+  if (!start.returned && !start.in.empty()) {
+    start.returned = true;
+    releaseCopies(engine);
+  }
   const bool copied = std::any_of(start.in.begin(), start.in.end(), [](FrameStartIn in) { return in == FrameStartIn::copy; });
   if (start.framesWithoutCopy == tuning::kFramesUntilRelease && !copied) return;  // they have been returned
   start.framesWithoutCopy = copied ? 0 : start.framesWithoutCopy + 1;
-  if (!engine.contacts.isWide() || start.framesWithoutCopy < tuning::kFramesUntilRelease) return;
-  start.savedBlocks = PagePool<SavedBlocks>();
-  engine.contacts.releaseSaved();
-  releaseOrders(engine);
+  if (engine.contacts.isWide() && start.framesWithoutCopy == tuning::kFramesUntilRelease) releaseCopies(engine);
 }
 
 }  // namespace
@@ -117,7 +117,6 @@ void prepareFrameStart(Simulation& simulation) {
     engine.checkpoint.islandHistory.resize(simulation.model.blockCount());
     engine.checkpoint.stepTravel.resize(simulation.model.blockCount());
     engine.checkpoint.savedBlock.resize(simulation.model.blockCount());
-    if (keepsStart(simulation)) engine.checkpoint.previous.resize(simulation.model.blockCount());
     if (hasHistory(simulation)) engine.checkpoint.previousVelocity.resize(simulation.model.blockCount());
   }
   engine.checkpoint.reportContacts = engine.report.contacts;
@@ -137,7 +136,6 @@ void saveFrameStart(IslandStep& step) {
       const auto b = static_cast<std::size_t>(block);
       engine.checkpoint.history[b] = engine.memo.blockHistory[b];
       engine.checkpoint.islandHistory[b] = engine.memo.islandHistory[b];
-      if (keepsStart(step.simulation)) copyBlock(engine.memo.previous, b, engine.checkpoint.previous);
       if (hasHistory(step.simulation)) copyBlock(engine.memo.previousVelocity, b, engine.checkpoint.previousVelocity);
     }
   });
@@ -190,10 +188,10 @@ Vec3 frameStartPosition(const Simulation& simulation, std::size_t block, std::si
 }
 
 void releaseFrameStart(Engine& engine) {
-  engine.checkpoint.savedBlocks = PagePool<SavedBlocks>();
   engine.checkpoint.savedPairs = PagePool<SavedPairs>();
-  engine.contacts.releaseSaved();
-  releaseOrders(engine);
+  engine.checkpoint.in.clear();
+  engine.checkpoint.returned = false;
+  releaseCopies(engine);
 }
 
 void savePair(Engine& engine, std::size_t at) {

@@ -9,11 +9,11 @@ namespace springtower {
 
 namespace {
 
-// Rows in pages with room for copies, but not more than are in use.
-template <class Page>
-std::size_t rowsCopied(const PagePool<Page>& pool) {
+// Rows in pages for which `has(page)`, but not more than are in use.
+template <class Page, class Has>
+std::size_t rowsWith(const PagePool<Page>& pool, const Has& has) {
   std::size_t rows = 0;
-  pool.forEachPage([&](const Page& page) { rows += page.start.get() != nullptr ? kPageRows : 0; });
+  pool.forEachPage([&](const Page& page) { rows += has(page) ? kPageRows : 0; });
   return std::min(rows, pool.rowsInUse());
 }
 
@@ -23,8 +23,8 @@ std::int32_t ContactPool::take() {
   const std::int32_t contact = first_.take();
   First& page = first_.page(contact);
   page.shape[Pool::slot(contact)] = StoredShape{};
-  page.sleepLoad[Pool::slot(contact)] = SleepLoad{};
-  page.pose[Pool::slot(contact)] = RelativePose{};
+  page.sleepLoad.write(Pool::slot(contact), SleepLoad{});
+  page.pose.write(Pool::slot(contact), RelativePose{});
   return contact;
 }
 
@@ -93,7 +93,7 @@ void ContactPool::saveShape(std::int32_t contact) {
   const std::size_t at = Pool::slot(contact);
   FirstStart& start = *first.start;
   start.shapeBefore[at] = first.shape[at];
-  start.poseBefore[at] = first.pose[at];
+  start.poseBefore[at] = first.pose.read(at);
   forRows(contact, [](auto& page, std::size_t slot) { (*page.start).placeBefore[slot] = page.place[slot]; });
 }
 
@@ -104,7 +104,7 @@ void ContactPool::restoreShape(std::int32_t contact) {
   const FirstStart& start = *first.start;
   first.shape[at] = start.shapeBefore[at];
   first.shape[at].secondRow = second;
-  first.pose[at] = start.poseBefore[at];
+  first.pose.write(at, start.poseBefore[at]);
   forRows(contact, [](auto& page, std::size_t slot) { page.place[slot] = (*page.start).placeBefore[slot]; });
 }
 
@@ -123,12 +123,15 @@ void ContactPool::poisonStartRows() {
 }
 
 std::size_t ContactPool::bytes() const {
-  return kFirstBytes * first_.rowsInUse() + kSecondBytes * second_.rowsInUse();
+  return kFirstBytes * first_.rowsInUse() + kSecondBytes * second_.rowsInUse() +
+         kSleepBytes * rowsWith(first_, [](const First& page) { return page.sleepLoad.isMade(); });
 }
 
 std::size_t ContactPool::stepBytes() const {
+  const auto copies = [](const auto& page) { return page.start.get() != nullptr; };
   return (kFirstStepBytes + (first_.isWide() ? kWideBytes : 0)) * first_.rowsInUse() + kSecondStepBytes * second_.rowsInUse() +
-         sizeof(FirstStart) / kPageRows * rowsCopied(first_) + sizeof(SecondStart) / kPageRows * rowsCopied(second_);
+         kPoseBytes * rowsWith(first_, [](const First& page) { return page.pose.isMade(); }) +
+         sizeof(FirstStart) / kPageRows * rowsWith(first_, copies) + sizeof(SecondStart) / kPageRows * rowsWith(second_, copies);
 }
 
 }  // namespace springtower

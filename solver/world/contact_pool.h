@@ -20,6 +20,7 @@ using RelativePose = std::array<float, 12>;
 struct SleepLoad {
   Vec3 force = Vec3::Zero();   ///< N
   Vec3 torque = Vec3::Zero();  ///< N m, about the world's origin
+  bool operator==(const SleepLoad&) const = default;
 };
 
 /// The shape of a contact without the indices of its blocks, which are in the pair table; eight bytes.
@@ -61,9 +62,11 @@ inline ManifoldShape shapeOf(const StoredShape& stored, const PairOfBlocks& pair
 class ContactPool {
  public:
   /// Bytes of a touching pair with up to four points; of a second row; and what frames and steps add to each.
-  static constexpr std::size_t kFirstBytes = sizeof(StoredShape) + sizeof(SleepLoad) + sizeof(PlaceRow) + sizeof(PointRow);
+  static constexpr std::size_t kFirstBytes = sizeof(StoredShape) + sizeof(PlaceRow) + sizeof(PointRow);
   static constexpr std::size_t kSecondBytes = sizeof(PlaceRow) + sizeof(PointRow);
-  static constexpr std::size_t kFirstStepBytes = sizeof(PointRow) + sizeof(RelativePose);
+  static constexpr std::size_t kSleepBytes = sizeof(SleepLoad);    ///< more in pages where a block has fallen asleep
+  static constexpr std::size_t kPoseBytes = sizeof(RelativePose);  ///< and in those where a manifold has been refreshed
+  static constexpr std::size_t kFirstStepBytes = sizeof(PointRow);
   static constexpr std::size_t kWideBytes = sizeof(PairForce);  ///< more in wide islands
   static constexpr std::size_t kSecondStepBytes = sizeof(PointRow);
 
@@ -151,13 +154,17 @@ class ContactPool {
         contact, [](const auto& page) -> const auto& { return page.trial; });
   }
 
-  [[nodiscard]] SleepLoad& sleepLoad(std::int32_t contact) { return first_.page(contact).sleepLoad[Pool::slot(contact)]; }
-  [[nodiscard]] const SleepLoad& sleepLoad(std::int32_t contact) const {
-    return first_.page(contact).sleepLoad[Pool::slot(contact)];
+  /// Load as one of the blocks fell asleep; zeros where none has. Any thread, one thread a contact.
+  [[nodiscard]] SleepLoad sleepLoad(std::int32_t contact) const {
+    return first_.page(contact).sleepLoad.read(Pool::slot(contact));
   }
-  /// Relative pose of the blocks when rigid steps last refreshed the manifold; zeros where they have not.
-  [[nodiscard]] RelativePose& pose(std::int32_t contact) { return first_.page(contact).pose[Pool::slot(contact)]; }
-  [[nodiscard]] const RelativePose& pose(std::int32_t contact) const { return first_.page(contact).pose[Pool::slot(contact)]; }
+  void setSleepLoad(std::int32_t contact, const SleepLoad& load) {
+    first_.page(contact).sleepLoad.write(Pool::slot(contact), load);
+  }
+  /// Relative pose of the blocks when the manifold was last refreshed; zeros where it has not been. Any thread, one thread a
+  /// contact.
+  [[nodiscard]] RelativePose pose(std::int32_t contact) const { return first_.page(contact).pose.read(Pool::slot(contact)); }
+  void setPose(std::int32_t contact, const RelativePose& pose) { first_.page(contact).pose.write(Pool::slot(contact), pose); }
   /// Forces of the pair, for the sums of a wide island. Precondition: reserved as wide.
   [[nodiscard]] PairForce& pairForce(std::int32_t contact) { return (*first_.page(contact).pairForce)[Pool::slot(contact)]; }
 
@@ -222,6 +229,36 @@ class ContactPool {
     std::atomic<T*> made_{nullptr};
   };
 
+  // A column that is allocated where a row is set to something else than T{}, on any thread. Copied with its page; what a copy
+  // is assigned to keeps its memory.
+  template <class T>
+  class RareColumn {
+   public:
+    RareColumn() = default;
+    RareColumn(const RareColumn& other) { *this = other; }
+    RareColumn& operator=(const RareColumn& other) {
+      if (this == &other) return *this;
+      if (const Column<T>* const theirs = other.rows_.get()) {
+        *rows_ = *theirs;
+      } else if (Column<T>* const mine = rows_.get()) {
+        mine->fill(T{});
+      }
+      return *this;
+    }
+    ~RareColumn() = default;
+    [[nodiscard]] T read(std::size_t slot) const {
+      const Column<T>* const rows = rows_.get();
+      return rows != nullptr ? (*rows)[slot] : T{};
+    }
+    void write(std::size_t slot, const T& value) {
+      if (rows_.get() != nullptr || !(value == T{})) (*rows_)[slot] = value;
+    }
+    [[nodiscard]] bool isMade() const { return rows_.get() != nullptr; }
+
+   private:
+    OnDemand<Column<T>> rows_;
+  };
+
   struct FirstStart {
     Column<PointRow> before;
     Column<PlaceRow> placeBefore;
@@ -234,11 +271,11 @@ class ContactPool {
   };
   struct First {
     Column<StoredShape> shape;
-    Column<SleepLoad> sleepLoad;
     Column<PlaceRow> place;
     Column<PointRow> points;
-    Column<RelativePose> pose;
     Column<PointRow> trial;
+    RareColumn<SleepLoad> sleepLoad;
+    RareColumn<RelativePose> pose;
     OnDemand<FirstStart> start;
     OnDemand<Column<SlipPatch>> patch;  // of those that slip
     Working<Column<PairForce>> pairForce;

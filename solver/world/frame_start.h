@@ -39,9 +39,9 @@ enum class FrameStartIn : std::uint8_t { state, step, copy };
 struct FrameStart {
   std::vector<FrameStartIn> in;  ///< [islands]
   int framesWithoutCopy = 0;     ///< runs of frames since an island copied its start, up to tuning::kFramesUntilRelease
+  bool returned = false;         ///< whether the memory that the first frame took for copies has been returned
   std::vector<BlockHistory> history;
   std::vector<IslandHistory> islandHistory;
-  ParticleArray previous;                ///< m, memo.previous: start positions of the last implicit step; empty in large scenes
   ParticleArray previousVelocity;        ///< m/s, memo.previousVelocity: at the start of the last implicit step
   std::vector<double> stepTravel;        ///< m, of each block as a rigid step began
   std::vector<std::int32_t> savedBlock;  ///< [blocks]: index of its saved row, where it is copied

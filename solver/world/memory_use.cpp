@@ -124,8 +124,8 @@ std::size_t rowBytes(const PagePool<Page>& pool, std::size_t most) {
 
 std::size_t ofFrameStart(const FrameStart& start) {
   return rowBytes(start.savedBlocks, start.savedBlock.size()) + rowBytes(start.savedPairs, start.savedPair.size()) +
-         sumOf(start.in, start.history, start.islandHistory, start.previous, start.previousVelocity, start.stepTravel,
-               start.savedBlock, start.reportContacts);
+         sumOf(start.in, start.history, start.islandHistory, start.previousVelocity, start.stepTravel, start.savedBlock,
+               start.reportContacts);
 }
 
 // Columns of the pair table and all lists with one entry a pair.

@@ -61,7 +61,11 @@ void readContacts(ByteReader& reader, PairTable& pairs, ContactPool& pool) {
     transferShape(reader, stored);
     const std::int32_t contact = pool.take();
     pairs.contact[at] = contact;
-    reader(pool.sleepLoad(contact), pool.pose(contact));
+    SleepLoad load;
+    RelativePose pose;
+    reader(load, pose);
+    pool.setSleepLoad(contact, load);
+    pool.setPose(contact, pose);
     Manifold manifold;
     static_cast<ManifoldShape&>(manifold) = shapeOf(stored, pairs[at]);
     std::array<PointRow, kManifoldRows> trial;

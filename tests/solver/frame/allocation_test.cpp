@@ -105,9 +105,9 @@ TEST(MemoryUse, OfABlockOfTheTower) {
   // The block of the scene, three sizes, a mass, and three numbers for each of seven groups of springs.
   EXPECT_EQ(each(use.model), sizeof(BlockSpec) + 3 * 8 + 8 + 7 * 3 * 8);
   EXPECT_GT(each(use.contacts), 500.0);
-  EXPECT_LT(each(use.contacts), 3000.0);
-  EXPECT_LT(each(use.factor), 3200.0);
-  EXPECT_LT(each(use.working), 7700.0);
+  EXPECT_LT(each(use.contacts), 1410.0);
+  EXPECT_LT(each(use.factor), 3120.0);
+  EXPECT_LT(each(use.working), 4280.0);
   EXPECT_EQ(use.total(), use.state + use.model + use.contacts + use.factor + use.working);
 }
 

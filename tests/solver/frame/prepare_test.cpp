@@ -124,6 +124,25 @@ TEST(Prepare, ATowerWhoseLargerBoxesReachAStackBeginsAsPlaced) {
   stepFrame(simulation);
 }
 
+// Ended while it searches with larger boxes: the tower begins as placed, as if it had been ended before.
+TEST(Prepare, EndedInTheSecondSearchATowerBeginsAsPlaced) {
+  Simulation simulation(leaningTower(2));
+  const ParticleArray placed = simulation.state.position;
+  const double margin_m = simulation.engine->memo.sweepMargin[107];
+  const auto hasGrown = [&] { return simulation.engine->memo.sweepMargin[107] > 3.9 * margin_m; };
+  const PrepareResult done =
+      prepare(simulation, {.goesOn = [&](const PrepareProgress&) {
+                std::this_thread::sleep_for(std::chrono::milliseconds(101));  // to be asked at each iteration
+                return !hasGrown();
+              }});
+  EXPECT_EQ(done.end, PrepareEnd::cancelled);
+  EXPECT_TRUE(hasGrown());
+  EXPECT_EQ(done.blocks, 108U);
+  EXPECT_EQ(done.blocksInBalance, 0U);
+  for (std::size_t b = 0; b < 108; ++b) EXPECT_EQ(centre(simulation.state.position, b), centre(placed, b));
+  stepFrame(simulation);
+}
+
 TEST(Prepare, ASecondCallDoesNothing) {
   Simulation simulation(towerScene(6));
   prepare(simulation);

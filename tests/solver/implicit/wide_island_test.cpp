@@ -42,6 +42,21 @@ const std::vector<std::int32_t>& eliminationOrder(const Simulation& simulation) 
   return simulation.engine->memo.newtonSystems.of(0).order.nodes;
 }
 
+// Factors of an island that would fill in by more than kMaxFillProducts (a solid of some 15,000 blocks) are not made: it rests in
+// rigid steps. Here a wall is told that its own would.
+TEST(WideIsland, WithoutFactorsAWallStandsInRigidSteps) {
+  Simulation simulation(awake(wallScene(20, 12)));
+  stepFor(simulation, 0.2);
+  const ParticleArray before = simulation.state.position;
+  const Counters then = simulation.counters;
+  simulation.engine->memo.newtonSystems.of(0).exceedsFill = true;
+  stepFor(simulation, 0.5);
+  EXPECT_EQ(simulation.counters.implicitSteps, then.implicitSteps);
+  EXPECT_EQ(simulation.counters.factorisations, then.factorisations);
+  EXPECT_LE(deepest(simulation), 2.0 * simulation.tolerance_m);
+  EXPECT_LE(farthest(before, simulation.state.position), simulation.tolerance_m);
+}
+
 // After a second nothing moves any more and no equation is solved: a frame only evaluates the forces. Before, it took 233
 // explicit steps a frame.
 TEST(WideIsland, AWallRestsWithoutASolution) {
