@@ -26,7 +26,7 @@ void refreshManifold(IslandStep& step, std::size_t at, Counters& counters);
 /// When blocks graze rather than meet.
 GrazingLimits grazingLimits(const Simulation& simulation);
 
-/// Travel (m, sum of both blocks) after which a manifold is refreshed.
+/// Travel (m, sum of both blocks) after which a manifold is refreshed, if the blocks have moved against each other.
 double refreshTravel(const Simulation& simulation);
 
 }  // namespace springtower

@@ -160,36 +160,46 @@ double refreshTravelOf(const ContactView& manifold, const RefreshTravel& travel)
   return rolls(manifold) ? travel.rolling_m : travel.resting_m;
 }
 
-// The least extent of a face manifold along the sides of its face, m; 0 of an edge manifold.
-double leastExtent(const Simulation& simulation, const ContactView& manifold) {
+// How wide a face manifold is where it is narrowest, m: twice the least standard deviation of its points, the shorter side of a
+// rectangle. 0 of points on a line, and of an edge manifold.
+double leastWidth(const Simulation& simulation, const ContactView& manifold) {
   if (manifold.phase != PairPhase::face) return 0.0;
-  double least[2] = {0.0, 0.0};  // of u and v
-  double most[2] = {0.0, 0.0};
+  const FaceAxes& face = kFaceAxes[static_cast<std::size_t>(manifold.incidentFace)];
+  const Vec3& lengths = simulation.model.dimensions[static_cast<std::size_t>(manifold.upper)];
+  const double lengthU = lengths[static_cast<Eigen::Index>(face.u)];
+  const double lengthV = lengths[static_cast<Eigen::Index>(face.v)];
+  double u = 0.0, v = 0.0, uu = 0.0, uv = 0.0, vv = 0.0;  // sums, m and m2
   for (std::int32_t i = 0; i < manifold.count; ++i) {
     const auto point = static_cast<std::size_t>(i);
     const PlaceRow& row = *manifold.place[rowOf(point)];
-    const double at[2] = {row.u[laneOf(point)], row.v[laneOf(point)]};
-    for (int k = 0; k < 2; ++k) {
-      least[k] = i == 0 ? at[k] : std::min(least[k], at[k]);
-      most[k] = i == 0 ? at[k] : std::max(most[k], at[k]);
-    }
+    const double atU = lengthU * row.u[laneOf(point)];
+    const double atV = lengthV * row.v[laneOf(point)];
+    u += atU;
+    v += atV;
+    uu += atU * atU;
+    uv += atU * atV;
+    vv += atV * atV;
   }
-  const FaceAxes& face = kFaceAxes[static_cast<std::size_t>(manifold.incidentFace)];
-  const Vec3& lengths = simulation.model.dimensions[static_cast<std::size_t>(manifold.upper)];
-  return std::min((most[0] - least[0]) * lengths[static_cast<Eigen::Index>(face.u)],
-                  (most[1] - least[1]) * lengths[static_cast<Eigen::Index>(face.v)]);
+  const double count = manifold.count;
+  const double varianceU = uu / count - u * u / (count * count);
+  const double varianceV = vv / count - v * v / (count * count);
+  const double covariance = uv / count - u * v / (count * count);
+  const double apart = varianceU - varianceV;
+  const double least = 0.5 * (varianceU + varianceV - std::sqrt(apart * apart + 4.0 * covariance * covariance));
+  return 2.0 * std::sqrt(std::max(0.0, least));
 }
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
-// Relative pose of a pair: b's centre and sides along a's edges; if b is the floor, a's centre and sides in world axes, m.
+// Relative pose of a pair: b's centre and sides along a's edges; if b is the floor, a's height and sides in world axes, as the
+// floor is everywhere the same. m; as the frames were computed last, in explicit steps where the step began.
 RelativePose poseOf(const IslandStep& step, const BlockPair& pair) {
   const auto a = static_cast<std::size_t>(pair.a);
   const BlockFrame& frame = step.engine.memo.frames[a];
   RelativePose pose;
   if (pair.b < 0) {
     for (std::size_t k = 0; k < 3; ++k) {
-      pose[k] = static_cast<float>(frame.place.centre[k]);
+      pose[k] = k < 2 ? 0.0F : static_cast<float>(frame.place.centre[k]);
       for (std::size_t i = 0; i < 3; ++i) pose[3 + 3 * i + k] = static_cast<float>(frame.place.side[i][k]);
     }
     return pose;
@@ -223,23 +233,14 @@ double movedBetween(const RelativePose& before, const RelativePose& now) {
 }
 
 // Whether the relative pose of a pair has hardly changed since its manifold was refreshed: blocks that sway or topple together
-// have a long travel without that. Points that are springs hold their outline to this; in rigid steps points are listed anew.
-bool isPoseUnchanged(IslandStep& step, std::size_t at, double travel, double most) {
+// have a long travel without that. Points that are springs hold their outline to this; sequential impulses list points anew.
+bool isPoseUnchanged(IslandStep& step, std::size_t at, const RelativePose& pose, double travel, double most) {
   PairTable& pairs = step.engine.pairs;
   const double share = step.pointKind == PointKind::penalty ? tuning::kUnchangedSpringPoseShare : tuning::kUnchangedPoseShare;
-  const RelativePose pose = poseOf(step, pairs.key[at]);
   const double moved = movedBetween(step.engine.contacts.pose(pairs.contact[at]), pose);
-  if (moved < share * most) {
-    pairs.travelAtCheck[at] = travel - moved;
-    return true;
-  }
-  step.engine.contacts.setPose(pairs.contact[at], pose);
-  return false;
-}
-
-// A manifold created otherwise than by a refresh is refreshed at the next check.
-void clearPose(Engine& engine, std::size_t at) {
-  if (engine.pairs.contact[at] >= 0) engine.contacts.setPose(engine.pairs.contact[at], RelativePose{});
+  if (!(moved < share * most)) return false;
+  pairs.travelAtCheck[at] = travel - moved;
+  return true;
 }
 
 // Whether a pair may need a check: its travel has used up the clearance, or the least travel after which any manifold is
@@ -267,7 +268,6 @@ void updatePair(IslandStep& step, std::size_t at, const RefreshTravel& renewal, 
     savePair(step.engine, at);
     pairs.travelAtCheck[at] = travel;
     updateSeparated(step, at, counters, times);
-    clearPose(step.engine, at);
     return;
   }
   const ContactView manifold = contactOf(step.engine, at);
@@ -275,11 +275,12 @@ void updatePair(IslandStep& step, std::size_t at, const RefreshTravel& renewal, 
   if (!(travel - pairs.travelAtCheck[at] > most)) return;
   savePair(step.engine, at);
   // Blocks that touch along a line, or in a strip so narrow, may touch with other faces after the least motion.
-  const bool mayTurnOver = step.pointKind == PointKind::penalty && !(leastExtent(step.simulation, manifold) > 2.0 * most);
-  if (!mayTurnOver && isPoseUnchanged(step, at, travel, most)) return;
-  if (mayTurnOver) clearPose(step.engine, at);
+  const bool mayTurnOver = step.pointKind == PointKind::penalty && !(leastWidth(step.simulation, manifold) > 2.0 * most);
+  const RelativePose pose = mayTurnOver ? RelativePose{} : poseOf(step, pairs.key[at]);
+  if (!mayTurnOver && isPoseUnchanged(step, at, pose, travel, most)) return;
   pairs.travelAtCheck[at] = travel;
   refreshManifold(step, at, counters);
+  if (pairs.touches(at)) step.engine.contacts.setPose(pairs.contact[at], pose);
 }
 
 // Lists the pairs that touch, and those that may use up their clearance in the coming steps. The list becomes invalid when a

@@ -11,8 +11,8 @@ bool addTravel(IslandStep& step);
 /// Before the first frame: creates the contacts of blocks that touch as placed (cubic tests without motion).
 void findTouching(IslandStep& step);
 
-/// Travel, m, of both blocks of a pair after which their manifold is refreshed: where no point slips, where one does, and where
-/// none does but only one or two touch, so that one block may roll on the other.
+/// Travel, m, of both blocks of a pair after which their manifold is refreshed if they have moved against each other: where no
+/// point slips, where one does, and where none does but only one or two touch, so that one block may roll on the other.
 struct RefreshTravel {
   double resting_m;
   double sliding_m;

@@ -104,7 +104,9 @@ void recordSleepLoads(Simulation& simulation, std::span<const std::uint8_t> stay
       if (force.norm() <= most && torque.norm() <= most * simulation.model.dimensions[s].minCoeff()) continue;
       engine.scratch.toWake.push_back({sleeper, WakeReason::unbalanced});
     }
-    if (engine.pairs.contact[at] >= 0) engine.contacts.setSleepLoad(engine.pairs.contact[at], {now.force, now.torque});
+    if (engine.pairs.contact[at] < 0) continue;
+    // Without negative zeros, which only a row that is there would keep.
+    engine.contacts.setSleepLoad(engine.pairs.contact[at], {now.force + Vec3::Zero(), now.torque + Vec3::Zero()});
   }
 }
 

@@ -96,9 +96,10 @@ void releaseCopies(Engine& engine) {
 // Copies take as much as most of an island's other working space, and it needs none once it is at rest; nor what its elimination
 // order was found with. The first frame makes copies, as it takes several steps where accelerations are not yet known; what it
 // copied is returned. Later it is returned where a wide island is: what moves again in a smaller scene is not to allocate.
-void releaseUnused(Engine& engine) {
+void releaseUnused(Simulation& simulation) {
+  Engine& engine = *simulation.engine;
   FrameStart& start = engine.checkpoint;
-  if (!start.returned && !start.in.empty()) {
+  if (!start.returned && !start.in.empty() && simulation.frame > 0) {
     start.returned = true;
     releaseCopies(engine);
   }
@@ -120,7 +121,7 @@ void prepareFrameStart(Simulation& simulation) {
     if (hasHistory(simulation)) engine.checkpoint.previousVelocity.resize(simulation.model.blockCount());
   }
   engine.checkpoint.reportContacts = engine.report.contacts;
-  releaseUnused(engine);
+  releaseUnused(simulation);
   engine.checkpoint.in.assign(engine.memo.islands.count(), FrameStartIn::state);
   engine.checkpoint.savedBlocks.clear();
   engine.checkpoint.savedBlocks.reserve(0, simulation.model.blockCount(), false);

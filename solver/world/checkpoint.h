@@ -8,8 +8,8 @@
 namespace springtower {
 
 // All rollbacks. A checkpoint of a frame covers the whole world and is saved island by island; that of a step covers one island.
-// Everything that a step may change and a rejected one must not is listed here and nowhere else. Of large scenes
-// memo.previous is not kept: BlockHistory::startKnown says so, and the next step does without.
+// Everything that a step may change and a rejected one must not is listed here and nowhere else. memo.previous
+// is not kept: BlockHistory::startKnown says so, and the next step does without.
 
 /// Sizes the checkpoint for the coming frame. Precondition: its near pairs are found.
 void prepareFrameStart(Simulation& simulation);

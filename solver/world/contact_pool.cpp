@@ -50,6 +50,7 @@ void ContactPool::store(std::int32_t contact, const PairOfBlocks& pair, const Ma
   stored.kind = manifold.kind;
   page.place[slot] = manifold.place[0];
   page.points[slot] = manifold.points[0];
+  page.pose.write(slot, RelativePose{});  // that of the manifold before
   if (rowsFor(manifold.count) < 2) return;
   if (stored.secondRow < 0) stored.secondRow = second_.take();
   Second& more = second_.page(stored.secondRow);

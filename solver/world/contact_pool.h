@@ -78,7 +78,7 @@ class ContactPool {
   /// while others take.
   void reserve(std::size_t most, bool wide);
 
-  /// Stores a manifold in a contact. Any thread, one thread a contact.
+  /// Stores a manifold in a contact, whose pose becomes unknown. Any thread, one thread a contact.
   void store(std::int32_t contact, const PairOfBlocks& pair, const Manifold& manifold);
 
   /// Read-only view of a contact. Precondition: its pair touches.
@@ -161,8 +161,8 @@ class ContactPool {
   void setSleepLoad(std::int32_t contact, const SleepLoad& load) {
     first_.page(contact).sleepLoad.write(Pool::slot(contact), load);
   }
-  /// Relative pose of the blocks when the manifold was last refreshed; zeros where it has not been. Any thread, one thread a
-  /// contact.
+  /// Relative pose of the blocks when the manifold was last refreshed; zeros where it was made otherwise. Any thread, one thread
+  /// a contact.
   [[nodiscard]] RelativePose pose(std::int32_t contact) const { return first_.page(contact).pose.read(Pool::slot(contact)); }
   void setPose(std::int32_t contact, const RelativePose& pose) { first_.page(contact).pose.write(Pool::slot(contact), pose); }
   /// Forces of the pair, for the sums of a wide island. Precondition: reserved as wide.

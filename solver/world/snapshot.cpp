@@ -65,7 +65,6 @@ void readContacts(ByteReader& reader, PairTable& pairs, ContactPool& pool) {
     RelativePose pose;
     reader(load, pose);
     pool.setSleepLoad(contact, load);
-    pool.setPose(contact, pose);
     Manifold manifold;
     static_cast<ManifoldShape&>(manifold) = shapeOf(stored, pairs[at]);
     std::array<PointRow, kManifoldRows> trial;
@@ -75,6 +74,7 @@ void readContacts(ByteReader& reader, PairTable& pairs, ContactPool& pool) {
       reader.raw(&trial[r], sizeof(PointRow));
     }
     pool.store(contact, pairs[at], manifold);
+    pool.setPose(contact, pose);
     pool.shape(contact).slips = stored.slips;
     const PointRows trialRows = pool.trial(contact);
     for (std::size_t r = 0; r < rowsOf(stored); ++r) *trialRows[r] = trial[r];

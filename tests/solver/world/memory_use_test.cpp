@@ -38,8 +38,8 @@ TEST(MemoryUse, ANearPairCostsAtMost96Bytes) {
   EXPECT_LE(each, 96.0);
 }
 
-// 328 bytes with up to four points, and a second row of 320 with more; steps add the trial points, 256. What falling asleep
-// and moving add, 48 each, is there only where blocks have slept or moved.
+// 328 bytes with up to four points, and a second row of 320 with more; steps add the trial points, 256, and a pose, 48,
+// where a manifold of the page has been refreshed; another 48 are there where a block has slept.
 TEST(MemoryUse, ATouchingPairAddsAtMost650Bytes) {
   EXPECT_LE(ContactPool::kFirstBytes, 330U);
   EXPECT_LE(ContactPool::kFirstBytes + ContactPool::kSecondBytes, 650U);
