@@ -42,8 +42,8 @@ const std::vector<std::int32_t>& eliminationOrder(const Simulation& simulation) 
   return simulation.engine->memo.newtonSystems.of(0).order.nodes;
 }
 
-// Factors of an island that would fill in by more than kMaxFillProducts (a solid of some 15,000 blocks) are not made: it rests in
-// rigid steps. Here a wall is told that its own would.
+// Factors that would take more than kMaxFillProducts are not made (those of a solid of 5000 blocks take a fifth of that): such an
+// island rests in rigid steps. Here a wall is told that its own would.
 TEST(WideIsland, WithoutFactorsAWallStandsInRigidSteps) {
   Simulation simulation(awake(wallScene(20, 12)));
   stepFor(simulation, 0.2);
