@@ -22,7 +22,7 @@ constexpr std::size_t kChunk = 1U << 16U;
 LineReader::LineReader(const std::string& path) : source_(path == "-" ? "standard input" : onOneLine(path)) {
   // A named pipe that nobody writes yet is opened all the same and waited for in `fill`, where a signal is seen: poll finds its
   // end only once somebody has written it.
-  file_ = path == "-" ? fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, 0) : open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  file_ = path == "-" ? fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, 0) : ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (file_ < 0) throw InputError(fmt::format("{}: cannot be read", source_));
 }
 

@@ -49,6 +49,16 @@ BlockFrame blockFrame(const ParticleArray& position, std::size_t block) {
   return result;
 }
 
+Vec3 velocityAt(const BlockFrame& frame, const AffineField& motion, const Vec3& place) {
+  Vec3 velocity(motion.centre[0], motion.centre[1], motion.centre[2]);
+  const Vec3 arm = place - Vec3(frame.place.centre[0], frame.place.centre[1], frame.place.centre[2]);
+  for (std::size_t a = 0; a < 3; ++a) {
+    const double along = Vec3(frame.dual[a][0], frame.dual[a][1], frame.dual[a][2]).dot(arm);
+    velocity += along * Vec3(motion.side[a][0], motion.side[a][1], motion.side[a][2]);
+  }
+  return velocity;
+}
+
 SPRINGTOWER_KERNEL
 void computeFrames(const ParticleArray& position, std::span<const std::int32_t> blocks, std::vector<BlockFrame>& frames) {
   for (const std::int32_t block : blocks) {

@@ -62,7 +62,10 @@ AffineField affineField(const ParticleArray& values, std::size_t block);
 /// Frame of one block. Precondition: it is not flat.
 BlockFrame blockFrame(const ParticleArray& position, std::size_t block);
 
-/// The same for many blocks; entries of other blocks are unchanged.
+/// Velocity of the affine part of a block at a place of the world, m/s.
+Vec3 velocityAt(const BlockFrame& frame, const AffineField& motion, const Vec3& place);
+
+/// The frames of many blocks; entries of other blocks are unchanged.
 void computeFrames(const ParticleArray& position, std::span<const std::int32_t> blocks, std::vector<BlockFrame>& frames);
 void computeMotions(const ParticleArray& velocity, std::span<const std::int32_t> blocks, std::vector<AffineField>& motions);
 

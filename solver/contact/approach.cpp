@@ -137,7 +137,7 @@ std::array<double, kManifoldPoints> depthsAt(const IslandStep& step, const Conta
 
 // Overlap of the blocks of a pair along their best separating direction, or of a block and the floor, m; negative where they are
 // apart.
-double overlapOf(const BlockPair& pair, const ParticleArray& position) {
+double overlapAt(const BlockPair& pair, const ParticleArray& position) {
   if (pair.b < 0) return -gapOf(pair, Vec3::UnitZ(), position);
   return -findSeparation(cornersOf(position, static_cast<std::size_t>(pair.a)),
                          cornersOf(position, static_cast<std::size_t>(pair.b)))
@@ -171,19 +171,8 @@ bool hasImpact(const IslandStep& step, std::size_t at, double displacement, doub
   }
   if (!listIsOld) return false;
   const double known = std::max(0.0, *std::max_element(depth.begin(), depth.begin() + manifold.count));
-  const double overlap = overlapOf(pair, now);
-  return overlap > known + most && overlap > overlapOf(pair, step.engine.memo.previous) + most;
-}
-
-// Velocity of a place on a block, m/s.
-Vec3 velocityAt(const BlockFrame& frame, const AffineField& motion, const Vec3& place) {
-  Vec3 velocity(motion.centre[0], motion.centre[1], motion.centre[2]);
-  const Vec3 arm = place - Vec3(frame.place.centre[0], frame.place.centre[1], frame.place.centre[2]);
-  for (std::size_t a = 0; a < 3; ++a) {
-    const double share = frame.dual[a][0] * arm[0] + frame.dual[a][1] * arm[1] + frame.dual[a][2] * arm[2];
-    velocity += share * Vec3(motion.side[a][0], motion.side[a][1], motion.side[a][2]);
-  }
-  return velocity;
+  const double overlap = overlapAt(pair, now);
+  return overlap > known + most && overlap > overlapAt(pair, step.engine.memo.previous) + most;
 }
 
 // Smallest opening or closing speed over the points of a manifold, m/s; over those that touched last, if any did. A point that is

@@ -24,17 +24,6 @@ bool anySticks(const ContactView& manifold) {
   return false;
 }
 
-// Velocity of a block's affine part at a place, m/s.
-Vec3 velocityAt(const BlockFrame& frame, const AffineField& motion, const Vec3& place) {
-  Vec3 velocity(motion.centre[0], motion.centre[1], motion.centre[2]);
-  const Vec3 arm = place - Vec3(frame.place.centre[0], frame.place.centre[1], frame.place.centre[2]);
-  for (std::size_t a = 0; a < 3; ++a) {
-    const double along = Vec3(frame.dual[a][0], frame.dual[a][1], frame.dual[a][2]).dot(arm);
-    velocity += along * Vec3(motion.side[a][0], motion.side[a][1], motion.side[a][2]);
-  }
-  return velocity;
-}
-
 // Mean distance from the origin of the points between two others in a plane, m (Gauss & Legendre, three points).
 double meanLength(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   constexpr double kOutside = 0.5 - 0.38729833462074170;  // (1 - sqrt(3 / 5)) / 2

@@ -162,7 +162,7 @@ double refreshTravelOf(const ContactView& manifold, const RefreshTravel& travel)
 
 // How wide a face manifold is where it is narrowest, m: twice the least standard deviation of its points, the shorter side of a
 // rectangle. 0 of points on a line, and of an edge manifold.
-double leastWidth(const Simulation& simulation, const ContactView& manifold) {
+double leastWidthOf(const Simulation& simulation, const ContactView& manifold) {
   if (manifold.phase != PairPhase::face) return 0.0;
   const FaceAxes& face = kFaceAxes[static_cast<std::size_t>(manifold.incidentFace)];
   const Vec3& lengths = simulation.model.dimensions[static_cast<std::size_t>(manifold.upper)];
@@ -275,7 +275,7 @@ void updatePair(IslandStep& step, std::size_t at, const RefreshTravel& renewal, 
   if (!(travel - pairs.travelAtCheck[at] > most)) return;
   savePair(step.engine, at);
   // Blocks that touch along a line, or in a strip so narrow, may touch with other faces after the least motion.
-  const bool mayTurnOver = step.pointKind == PointKind::penalty && !(leastWidth(step.simulation, manifold) > 2.0 * most);
+  const bool mayTurnOver = step.pointKind == PointKind::penalty && !(leastWidthOf(step.simulation, manifold) > 2.0 * most);
   const RelativePose pose = mayTurnOver ? RelativePose{} : poseOf(step, pairs.key[at]);
   if (!mayTurnOver && isPoseUnchanged(step, at, pose, travel, most)) return;
   pairs.travelAtCheck[at] = travel;

@@ -22,14 +22,14 @@ double stableRate(double rate_rad_s, const Simulation& simulation) {
 }
 
 // Support from below a block: its lifting force, N, and its extent along a line from the block's centre, m.
-struct Support {
+struct SupportAlong {
   double lift_n = 0.0;
   double from_m = 1e300;
   double to_m = -1e300;
 };
 
-Support supportOf(std::span<const ContactForce> contacts, BlockId block, const Vec3& middle, const Vec3& line) {
-  Support support;
+SupportAlong supportOf(std::span<const ContactForce> contacts, BlockId block, const Vec3& middle, const Vec3& line) {
+  SupportAlong support;
   for (const ContactForce& contact : contacts) {
     if (contact.upper != block && contact.lower != block) continue;
     const double sense = contact.upper == block ? 1.0 : -1.0;
@@ -56,7 +56,7 @@ double liftOf(std::span<const ContactForce> contacts, BlockId block) {
 // Share of a block's weight that the hand has to support. A drawing hand leaves all of it to what lies under the block, as long
 // as that supports half of it; otherwise it would hold the block at the height of its first support, and lift light blocks off
 // their other supports.
-double unsupportedShare(std::span<const ContactForce> contacts, const Support& support, const Hand& hand, double weight) {
+double unsupportedShare(std::span<const ContactForce> contacts, const SupportAlong& support, const Hand& hand, double weight) {
   if (!(weight > 0.0)) return 0.0;
   const double supported = hand.line.isZero(0.0) ? liftOf(contacts, hand.block) : 2.0 * support.lift_n;
   return std::clamp(1.0 - supported / weight, 0.0, 1.0);
@@ -100,7 +100,7 @@ void hold(const Hand& hand, std::span<const ContactForce> contacts, Grip& grip, 
   const Vec3 gravity = simulation.scene.gravity.at(simulation.time_s);
   const double weight = mass * std::max(-gravity.z(), 0.0);
   const bool draws = !hand.line.isZero(0.0);
-  const Support support = supportOf(contacts, hand.block, centre(simulation.state.position, b), hand.line);
+  const SupportAlong support = supportOf(contacts, hand.block, centre(simulation.state.position, b), hand.line);
   const double unsupported = unsupportedShare(contacts, support, hand, weight);
   if (grip.block != hand.block) {
     grip = {hand.block, unsupported, orientationOf(simulation.state.position, b), Vec3::Zero()};

@@ -32,7 +32,7 @@ namespace {
 constexpr Range kProfileSamplesRange{1, 1000, ""};
 constexpr Range kFramesRange{2, 100000, ""};
 constexpr Range kLimitRange{0.0, 1e6, "s"};
-constexpr const char* kUnfinished = "profile.unfinished.json";
+constexpr const char* kUnfinishedProfile = "profile.unfinished.json";
 
 constexpr std::string_view kProfileExamples =
     R"help(what is timed: the state is kept once the scene has settled; each sample restores it, leaves out one frame and times the
@@ -142,7 +142,7 @@ void writeFolder(const std::string& folder, const Profile& profile, bool measure
 // The results that a run that was broken off has left in the folder.
 std::vector<ProfileResult> keptResults(const ProfileCommand& command, const Profile& now) {
   if (!command.out || command.noResume) return {};
-  const std::filesystem::path path = std::filesystem::path(*command.out) / kUnfinished;
+  const std::filesystem::path path = std::filesystem::path(*command.out) / kUnfinishedProfile;
   if (!std::filesystem::exists(path)) return {};
   Profile then = readProfileJson(path.string());
   checkCommitted(then.provenance, now.provenance, onOneLine(path.string()));
@@ -180,7 +180,8 @@ bool measureAll(const ProfileCommand& command, const std::vector<ProfileCase>& c
           });
       std::erase_if(kept.results, [&](const ProfileResult& old) { return std::find(first, last, old.what) != last; });
       kept.results.insert(kept.results.end(), results.begin(), results.end());
-      if (command.out) writeOutputFile(*command.out, kUnfinished, [&](std::ostream& stream) { writeProfileJson(stream, kept); });
+      if (command.out)
+        writeOutputFile(*command.out, kUnfinishedProfile, [&](std::ostream& stream) { writeProfileJson(stream, kept); });
     }
     for (const ProfileCase& what : group) profile.results.push_back(*known(what));
     first = last;
@@ -265,7 +266,7 @@ int executeProfile(const ProfileCommand& command) {
   } catch (const Interrupted&) {
     if (!profile.results.empty()) printTable(profile);
     complain("springtower", fmt::format("interrupted; {} of {} cases are timed{}", profile.results.size(), cases.size(),
-                                        command.out ? fmt::format(" and kept in {}/{}", *command.out, kUnfinished) : ""));
+                                        command.out ? fmt::format(" and kept in {}/{}", *command.out, kUnfinishedProfile) : ""));
     throw;
   }
   printTable(profile);
@@ -276,7 +277,7 @@ int executeProfile(const ProfileCommand& command) {
     writeFolder(*command.out, profile, true);
     std::error_code ignored;
     // Cases of a run of others stay for that.
-    if (!othersKept) std::filesystem::remove(std::filesystem::path(*command.out) / kUnfinished, ignored);
+    if (!othersKept) std::filesystem::remove(std::filesystem::path(*command.out) / kUnfinishedProfile, ignored);
   }
   if (traceFile) {
     writeTrace(traceFile->stream(), profile.provenance, traced);

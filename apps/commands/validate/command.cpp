@@ -20,7 +20,7 @@
 namespace springtower {
 namespace {
 
-constexpr const char* kUnfinished = "validation.unfinished.json";
+constexpr const char* kUnfinishedParts = "validation.unfinished.json";
 constexpr Range kValidateThreads{1.0, 1024.0, ""};
 
 constexpr std::string_view kValidateExamples = R"help(examples:
@@ -129,7 +129,7 @@ int executeValidate(const ValidateCommand& command) {
   options.threads = command.threads;
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threadCount(options)));
   const Provenance provenance = provenanceNow();
-  const std::string unfinished = (std::filesystem::path(command.out) / kUnfinished).string();
+  const std::string unfinished = (std::filesystem::path(command.out) / kUnfinishedParts).string();
   std::vector<KeptPart> kept;
   if (!command.noResume) kept = readKeptParts(unfinished, plan, provenance);
   std::vector<ValidationSection> sections;
@@ -140,7 +140,8 @@ int executeValidate(const ValidateCommand& command) {
       if (!isKept) {
         std::erase_if(kept, [&](const KeptPart& old) { return old.name == part.name; });
         kept.push_back({std::string(part.name), measured(part, plan, provenance, command.out)});
-        writeOutputFile(command.out, kUnfinished, [&](std::ostream& stream) { writeKeptParts(stream, kept, plan, provenance); });
+        writeOutputFile(command.out, kUnfinishedParts,
+                        [&](std::ostream& stream) { writeKeptParts(stream, kept, plan, provenance); });
         done = &kept.back().section;
       }
       sections.push_back(*done);

@@ -14,7 +14,7 @@ namespace springtower {
 namespace {
 
 constexpr double kSlides_m = 1e-3;  // moved by this it slides
-constexpr double kPullSpeed_m_s = 0.04;
+constexpr double kDrawSpeed_m_s = 0.04;
 constexpr double kLongestPull_s = 8.0;
 constexpr double kHeld_s = 1.0;  // after that the tower has to stand
 constexpr double kLongestSettling_s = 10.0;
@@ -61,7 +61,7 @@ DrawnOut drawOut(Scene scene, int row, Sleep sleep) {
   std::size_t block = 0;
   while (scene.blocks[block].row != row || scene.blocks[block].position != 2) ++block;
   const Vec3 direction = scene.blocks[block].orientation * Vec3::UnitX();
-  Draw draw = drawingFrom(simulation, blockId(block), direction, kPullSpeed_m_s);
+  Draw draw = drawingFrom(simulation, blockId(block), direction, kDrawSpeed_m_s);
   std::vector<std::uint8_t> leftOut(scene.blocks.size(), 0);
   leftOut[block] = 1;
   const std::vector<FittedBox> start = fittedBoxes(simulation.state.position);

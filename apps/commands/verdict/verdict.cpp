@@ -103,17 +103,17 @@ Json verdictJson(const VerdictLine& line, const Verdict& verdict) {
 
 // Prints how many clear lines agree; returns whether all do.
 bool printVerdictAgreement(const std::deque<JudgedLine>& lines) {
-  struct Count {
+  struct Agreement {
     std::size_t clear = 0;
     std::size_t agree = 0;
   };
-  Count stands;
-  Count falls;
+  Agreement stands;
+  Agreement falls;
   std::string differing;
   for (const JudgedLine& line : lines) {
     if (!line.done || !line.expected) continue;
     const bool expected = *line.expected;
-    Count& count = expected ? stands : falls;
+    Agreement& count = expected ? stands : falls;
     ++count.clear;
     const bool diverged = !line.divergence.empty();
     if (!diverged && line.stands == expected) {
