@@ -22,14 +22,25 @@ PEERS = ROOT / "bench" / "data" / "peers"
 
 def measurements(peers_stacks):
     """Tables of docs/performance.md, of what docs/measure.py has recorded so far."""
-    tables = {"runs": recorded.runs, "rows": recorded.rows, "motion": recorded.motion, "game": recorded.motion,
-              "towers": recorded.towers, "stacks": lambda rows: recorded.stacks(rows, peers_stacks), "falls": recorded.falls}
+    tables = {"runs": recorded.runs, "rows": recorded.rows, "motion": recorded.motion, "game": recorded.motion, "game_parts": recorded.game_parts,
+              "towers": recorded.towers, "roofline": recorded.roofline, "factors": recorded.factors,
+              "stacks": lambda rows: recorded.stacks(rows, peers_stacks), "falls": recorded.falls}
     parts = {}
     for name, table in tables.items():
-        if (DATA / f"{name}.csv").exists():
-            rows = recorded.read_csv(DATA / f"{name}.csv")
+        file = DATA / ("kernels.csv" if name in ("roofline", "factors") else f"{name}.csv")
+        if file.exists():
+            rows = recorded.read_csv(file)
             parts[name] = table(rows) + "\n\n" + recorded.condition(rows)
     return parts
+
+
+def charted(peers_falls):
+    """Tables of docs/accuracy.md, of the chart that docs/measure.py has recorded."""
+    rows = recorded.read_csv(DATA / "accuracy.csv")
+    here = recorded.condition(rows)
+    tables = {"chart-methods": recorded.chart_methods(rows), "chart-fastest": recorded.chart_fastest(rows), "chart-pull": recorded.chart_pull(rows),
+              "chart-falls": recorded.chart_falls(rows, peers_falls), "chart-engines": recorded.chart_engines(rows)}
+    return {name: text + "\n\n" + here for name, text in tables.items()}
 
 
 def marked_parts(commands, viewer, scenes, settings):
@@ -46,7 +57,8 @@ def marked_parts(commands, viewer, scenes, settings):
         "docs/sensitivity.md": {"constants": recorded.constants(recorded.read_csv(DATA / "constants.csv"))},
         "docs/accuracy.md": {"peers-at-rest": recorded.peers_at_rest(peers_at_rest),
                              "peers-stacks": recorded.peers_stacks(peers_stacks),
-                             "peers-falls": recorded.peers_falls(recorded.read_csv(PEERS / "falls.csv"))},
+                             "peers-falls": recorded.peers_falls(recorded.read_csv(PEERS / "falls.csv")),
+                             **charted(recorded.read_csv(PEERS / "falls.csv"))},
     }
 
 

@@ -2,16 +2,18 @@
 """Records what the tables of docs/ are made of: docs/measure.py BIN_DIR [PART ...], all parts in some tens of minutes.
 
 BIN_DIR holds springtower (build/release/bin, of a commit without changes; run ./run.sh before). Each part writes files of
-docs/data, as the program wrote them; docs/generate.py makes tables of them. Beside builds times came out up to twice as long: run it
+docs/data, as the program wrote them (of the chart what was measured here); docs/generate.py makes tables of them. Beside builds times came out up to twice as long: run it
 on a quiet machine. Parts:
 
   runs      docs/data/runs.csv         18 rows at rest in nine ways: reports of `run`
   rows      docs/data/rows.csv         towers of 9 to 144 rows, implicit and explicit
   motion    docs/data/motion.csv       18 rows in motion
-  game      docs/data/game.csv         the recorded game
+  game      docs/data/game.csv         the recorded game, and game_parts.csv: parts of it, one sample
   towers    docs/data/towers.csv       64 and 640 towers, one thread and two
   stacks    docs/data/stacks.csv       walls and pyramids, with Bullet
   falls     docs/data/falls.csv        what moves in large numbers, with Bullet
+  kernels   docs/data/kernels.csv      kernels, factorisations and what the machine can do (springtower_benchmarks)
+  accuracy  docs/data/accuracy.csv     the chart of speed against accuracy, every method and scene
   validate  docs/data/validation.json  the claims, in the long form
 """
 import csv
@@ -44,11 +46,12 @@ PARTS = {
     "rows": ("profile --scenes rest --rows 9,18,36,72,144 --methods implicit,semi-implicit-euler", "profile.csv", "rows.csv"),
     "motion": ("profile --rows 18 --tolerances 1e-5 --methods implicit --scenes rest,sway,heights,pull,pull-sleep,collapse,asleep",
                "profile.csv", "motion.csv"),
-    "game": ("profile --scenes game", "profile.csv", "game.csv"),
+    "game": ("profile --scenes game --trace TRACE", "profile.csv", "game.csv"),
     "towers": ("profile --scenes towers --towers 64,640 --threads 1,2 --tolerances 1e-5 --methods implicit", "profile.csv",
                "towers.csv"),
     "stacks": ("profile --scenes walls,pyramids", "stacks.csv", "stacks.csv"),
     "falls": ("profile --scenes topple,hit,heaps,piles,rain", "falls.csv", "falls.csv"),
+    "accuracy": ("chart --no-resume", "chart.csv", "accuracy.csv"),
     "validate": ("validate --full", "validation.json", "validation.json"),
 }
 
@@ -77,23 +80,94 @@ def record_runs(program, scratch):
         writer.writerows(rows)
 
 
+# Kernels that docs/performance.md compares with what the machine can do, and factorisations.
+KERNELS = "^(springs/1|contacts/1|frames/1|accelerations|multiplyAdd.*|triad.*|factoriseOurs|factoriseEigen.*|solveOurs|solveEigen.*)$"
+
+
+def processor():
+    """As reports name it: model name, family and model."""
+    first = pathlib.Path("/proc/cpuinfo").read_text().split("\n\n", 1)[0]
+    fields = dict((name.strip(), value.strip()) for name, _, value in (line.partition(":") for line in first.splitlines()))
+    return f"{fields['model name']}, family {fields['cpu family']} model {fields['model']}"
+
+
+def record_kernels(folder):
+    command = [str(pathlib.Path(folder, "springtower_benchmarks")), f"--benchmark_filter={KERNELS}", "--benchmark_format=json", "--benchmark_repetitions=5",
+               "--benchmark_min_time=0.2"]
+    print(" ".join(command), flush=True)
+    printed = subprocess.run(command, check=True, capture_output=True, text=True).stdout
+    version = subprocess.run([str(pathlib.Path(folder, "springtower")), "--version"], check=True, capture_output=True, text=True).stdout
+    date = datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%dT%H:%M:%SZ")
+    fastest = {}
+    for row in json.loads(printed)["benchmarks"]:
+        name = row["run_name"]
+        if row["run_type"] == "iteration" and not row.get("error_occurred") and row["cpu_time"] <= fastest.get(name, row)["cpu_time"]:
+            fastest[name] = row
+    rows = list(fastest.values())
+    columns = ["name", "cpu_time", "time_unit", "bytes_per_second", "items_per_second", "flops", "commit", "cpu", "date"]
+    with open(DATA / "kernels.csv", "w", newline="") as file:
+        writer = csv.DictWriter(file, columns, extrasaction="ignore", lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(row | {"commit": version.split("(")[1].split(",")[0], "cpu": processor(), "date": date} for row in rows)
+
+
+# Frames of the recorded game, from 1, and what happens in them.
+GAME_PARTS = [(91, 210, "the first block is drawn out"), (211, 515, "it is lifted, carried, laid on top"), (640, 770, "the second is drawn out"),
+              (771, 991, "it is lifted, carried, laid on top"), (1094, 1153, "the third is drawn out; the tower slides, leans and begins to fall"),
+              (1154, 1263, "the hand has let go; the rest of the fall")]
+
+
+def keep_game_parts(trace, game):
+    """Frames of the recorded game by part, of the last sample of a trace; `game`: game.csv of the same run."""
+    frames = [event["dur"] / 1000 for event in json.loads(trace.read_text())["traceEvents"] if event.get("name") == "frame"]
+    with open(game, newline="") as file:
+        measured = next(csv.DictReader(file))
+    with open(DATA / "game_parts.csv", "w", newline="") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(["first", "last", "what", "ms_median", "ms_p99", "ms_max", "over_3_ms", "commit", "cpu", "date"])
+        for first, last, what in GAME_PARTS:
+            part = sorted(frames[first - 2:last - 1])  # the first frame is not timed
+            writer.writerow([first, last, what, part[len(part) // 2], part[min(len(part) - 1, int(0.99 * len(part)))], part[-1],
+                             sum(frame > 3 for frame in part), *(measured[name] for name in ("commit", "cpu", "date"))])
+
+
+def keep_chart(written):
+    """What was measured here, without what is the same in all lines."""
+    with open(written, newline="") as file:
+        rows = [row for row in csv.DictReader(file) if row["measured"] == "here"]
+    columns = [name for name in rows[0] if name not in ("measured", "compiler", "flags", "cpu_s_per_simulated_s")]
+    with open(DATA / "accuracy.csv", "w", newline="") as file:
+        writer = csv.DictWriter(file, columns, extrasaction="ignore", lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(rows)
+
+
 def main():
     if len(sys.argv) < 2 or sys.argv[1] in ("-h", "--help"):
         sys.exit(__doc__)
     program = str(pathlib.Path(sys.argv[1], "springtower").resolve())
-    parts = sys.argv[2:] or ["runs", *PARTS]
-    unknown = [part for part in parts if part != "runs" and part not in PARTS]
+    parts = sys.argv[2:] or ["runs", "kernels", *PARTS]
+    unknown = [part for part in parts if part not in ("runs", "kernels", *PARTS)]
     if unknown:
-        sys.exit(f"measure.py: expected parts among runs, {', '.join(PARTS)}, got {unknown[0]}")
+        sys.exit(f"measure.py: expected parts among runs, kernels, {', '.join(PARTS)}, got {unknown[0]}")
     DATA.mkdir(exist_ok=True)
     for part in parts:
         with tempfile.TemporaryDirectory() as scratch:
             if part == "runs":
                 record_runs(program, scratch)
                 continue
+            if part == "kernels":
+                record_kernels(sys.argv[1])
+                continue
             command, written, kept = PARTS[part]
-            run(program, [*command.split(), "--out", scratch])
-            shutil.copyfile(pathlib.Path(scratch, written), DATA / kept)
+            trace = pathlib.Path(scratch, "trace.json")
+            run(program, [*(word if word != "TRACE" else str(trace) for word in command.split()), "--out", scratch])
+            if part == "accuracy":
+                keep_chart(pathlib.Path(scratch, written))
+            else:
+                shutil.copyfile(pathlib.Path(scratch, written), DATA / kept)
+            if part == "game":
+                keep_game_parts(trace, DATA / kept)
 
 
 if __name__ == "__main__":

@@ -200,6 +200,160 @@ def peers_falls(recorded):
                    _extent(rows, "penetration_max_mm", 2)) for (scene, blocks, engine, settings), rows in _by_setting(recorded)])
 
 
+def game_parts(recorded):
+    """Parts of the recorded game, for docs/performance.md."""
+    return table(["frames", "what happens in them", "median", "99th percentile", "slowest", "above 3 ms"],
+                 [(f"{row['first']} to {row['last']}", row["what"], number(row["ms_median"]), number(row["ms_p99"]), number(row["ms_max"]), row["over_3_ms"])
+                  for row in recorded])
+
+
+KERNELS = {"springs/1": "springs", "contacts/1": "contact points", "frames/1": "frames of blocks", "accelerations": "accelerations of blocks"}
+
+
+def roofline(recorded):
+    """Kernels beside what the machine can do, for docs/performance.md."""
+    rows = {row["name"]: row for row in recorded}
+    def giga(name, column):
+        return float(rows[name][column]) / 1e9
+    separate = giga("multiplyAdd/separate", "flops")
+    caches = sorted(giga(name, "bytes_per_second") for name in rows if name.startswith("triad/"))[1:]
+    lines = []
+    for name, words in KERNELS.items():
+        flops, bytes_, items = (float(rows[name][column]) for column in ("flops", "bytes_per_second", "items_per_second"))
+        lines.append((words, f"{flops / items:.0f}", f"{bytes_ / items:.0f}", f"{flops / bytes_:.1f}", number(flops / 1e9), number(bytes_ / 1e9),
+                      f"{100 * giga(name, 'flops') / separate:.0f} % of arithmetic, "
+                      f"{100 * bytes_ / 1e9 / max(caches):.0f} to {100 * bytes_ / 1e9 / min(caches):.0f} % of cache bandwidth"))
+    triads = ", ".join(f"{number(giga(name, 'bytes_per_second'))} GB/s ({_size(int(name.split('/')[1]))})" for name in rows if name.startswith("triad/"))
+    fused = f" and {number(giga('multiplyAdd/fused', 'flops'))} with" if "multiplyAdd/fused" in rows else ""
+    return (table(["kernel", "flop an item", "bytes an item", "flop a byte", "Gflop/s", "GB/s", "of the machine's best"], lines)
+            + f"\n\nThe machine's own best, AVX2: {number(separate)} Gflop/s without fused multiply-adds{fused}; {triads}.")
+
+
+def _size(byte_count):
+    return f"{byte_count >> 20} MB" if byte_count >= 1 << 20 else f"{byte_count >> 10} kB"
+
+
+FACTORS = {"Ours": "ours, float, from the bottom up", "Eigen<LltFloat>": "Eigen `SimplicialLLT`, float, in our order",
+           "Eigen<LltNatural>": "Eigen `SimplicialLLT`, double, in our order", "Eigen<LltOrdered>": "Eigen `SimplicialLLT`, double, in its own order",
+           "Eigen<LdltOrdered>": "Eigen `SimplicialLDLT`, double, in its own order"}
+
+
+def factors(recorded):
+    """The factorisation of 18 rows beside Eigen's, for docs/performance.md."""
+    times = {row["name"]: f"{number(row['cpu_time'])}" for row in recorded}
+    return table(["factors", "factorisation, us", "solution, us"],
+                 [(words, times.get(f"factorise{name}", ""), times.get(f"solve{name}", "")) for name, words in FACTORS.items()])
+
+
+# Scenes of a chart that come to rest, as docs/accuracy.md calls them, and its falls.
+REST = {"uniform": "18 equal rows", "heights": "heights varying by 0.2 mm", "drop": "three rows dropped from 2 cm (impact included)",
+        "heavy-light": "every other row ten times as heavy", "wall": "wall of 40 columns and 25 courses", "pyramid": "pyramid of 40 rows of cubes"}
+FALLS = {"collapse": "collapse:18", "shot": "shot:18", "heap-200": "heap:200", "rain-200": "rain:200", "pile-3": "pile:3"}
+WITHIN_MM = (0.1, 0.01, 0.001)
+
+
+def _value(row):
+    """The setting of a case: a tolerance, or steps of a frame and iterations where it has some."""
+    if row["knob"] == "tolerance_m":
+        return f"{1000 * float(row['value']):g} mm"
+    iterations = f" of {row['iterations']} iterations" if row["iterations"] not in ("", "0") else ""
+    steps = f"{float(row['value']):g}"
+    return steps + (" step" if steps == "1" else " steps") + iterations
+
+
+ENGINES = {"bullet": "Bullet", "ode": "ODE"}
+
+
+def _meets(row, within_mm, outcomes):
+    """As the chart's index has it: one of these outcomes; no penetration, compression of a row or creep beyond it."""
+    figures = (row[name] for name in ("penetration_mm", "compression_mm", "creep_mm"))
+    return (row["outcome"] in outcomes and row["cpu_ms_per_frame"]
+            and not any(figure and float(figure) > within_mm for figure in figures))
+
+
+def _fastest(rows, within_mm, outcomes=("right",)):
+    """The fastest of these cases within a tolerance; None where none is."""
+    return min((row for row in rows if _meets(row, within_mm, outcomes)), key=lambda row: float(row["cpu_ms_per_frame"]), default=None)
+
+
+def _named(row):
+    return f"`{row['method']}`, {number(row['cpu_ms_per_frame'])} ms" if row else "none"
+
+
+def _unnamed(row):
+    if row is None:
+        return "none"
+    cut = f", {float(row['simulated_s']):.1f} s long" if row["outcome"] == "cut short" else ""
+    return f"{number(row['cpu_ms_per_frame'])} ms ({_value(row)}{cut})"
+
+
+def chart_fastest(recorded):
+    """The fastest case within a tolerance, scene by scene, for docs/accuracy.md."""
+    def of(scene):
+        return [row for row in recorded if row["scene"] == scene]
+    return table(["scene", *(f"fastest within {within:g} mm" for within in WITHIN_MM)],
+                 [(name, *(_named(_fastest(of(scene), within)) for within in WITHIN_MM)) for scene, name in REST.items()])
+
+
+def chart_methods(recorded):
+    """18 equal rows at rest: each method's fastest case within a tolerance, for docs/accuracy.md."""
+    rows = [row for row in recorded if row["scene"] == "uniform"]
+    lines = []
+    for method in dict.fromkeys(row["method"] for row in rows):
+        mine = [row for row in rows if row["method"] == method]
+        lines.append((ENGINES.get(method, f"`{method}`"), *(_unnamed(_fastest(mine, within, ("right", "cut short"))) for within in WITHIN_MM)))
+    return table(["method", *(f"within {within:g} mm" for within in WITHIN_MM)], lines)
+
+
+def chart_pull(recorded):
+    """A block pulled out: ms a frame by tolerance, for docs/accuracy.md."""
+    rows = [row for row in recorded if row["scene"] == "pull" and row["method"] in ("implicit", "implicit-euler")]
+    values = sorted({float(row["value"]) for row in rows}, reverse=True)
+    def cost(method, value):
+        row = next((row for row in rows if row["method"] == method and float(row["value"]) == value), None)
+        if row is None:
+            return ""
+        return number(row["cpu_ms_per_frame"]) if row["outcome"] == "right" else row["outcome"]
+    return table(["tolerance", *(f"{1000 * value:g} mm" for value in values)],
+                 [(f"`{method}`, ms", *(cost(method, value) for value in values)) for method in ("implicit", "implicit-euler")])
+
+
+def _fall(rows):
+    """Median, worst but the first and depth of these cases: their extent."""
+    if not rows:
+        return ""
+    median, worst, depth = (_extent(rows, name, 2) for name in ("cpu_ms_per_frame", "cpu_ms_worst_frame", "penetration_mm"))
+    return f"{median} ({worst}), {depth}" if worst else f"{median}, {depth}"
+
+
+def chart_falls(recorded, peers):
+    """What falls, ours and others, for docs/accuracy.md. peers: bench/data/peers/falls.csv."""
+    lines = []
+    for scene, name in FALLS.items():
+        here = [row for row in recorded if row["scene"] == scene and row["iterations"] == "0" and row["cpu_ms_per_frame"]]
+        def ours(method, value=None):
+            return [row for row in here if row["method"] == method and (value is None or float(row["value"]) == value)]
+        def theirs(engine, settings):
+            found = [row for row in peers if row["threads"] == "1" and row["scene"] == name and row["engine"] == engine and row["settings"] in settings]
+            return [{"cpu_ms_per_frame": row["median_ms"], "cpu_ms_worst_frame": row["worst_ms"], "penetration_mm": row["penetration_max_mm"]}
+                    for row in found]
+        jolt = [row["settings"] for row in peers if row["scene"] == name and row["engine"] == "Jolt"]
+        most = max(jolt, key=lambda settings: int(settings.split()[1]), default="")
+        lines.append((f"`{scene}`", _fall(ours("implicit")), _fall(ours("rigid-pgs", 16)), _fall(ours("bullet", 32)),
+                      _fall(theirs("Box3D", ["8 steps x 4 substeps"])), f"{most.split()[1]}: {_fall(theirs('Jolt', [most]))}" if most else ""))
+    return table(["fall", "`implicit`, tolerances from 0.2 to 0.001 mm", "`rigid-pgs`, 16 steps", "Bullet, 32 steps", "Box3D, 8 steps of 4",
+                  "Jolt: steps"], lines)
+
+
+def chart_engines(recorded):
+    """Bullet and ODE on 18 equal rows at rest, for docs/accuracy.md."""
+    rows = [row for row in recorded if row["scene"] == "uniform" and row["method"] in ENGINES]
+    return table(["engine", "settings", "ms a frame", "penetration, mm", "creep, mm", "jitter, mm/s", "simulated for, s", "verdict"],
+                 [(ENGINES[row["method"]], _value(row),
+                   *(number(row[name]) if row[name] else "" for name in ("cpu_ms_per_frame", "penetration_mm", "creep_mm", "jitter_mm_s", "simulated_s")),
+                   cell(row["note"] or "stands")) for row in rows])
+
+
 def read_json(path):
     with open(path) as file:
         return json.load(file)
