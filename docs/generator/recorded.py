@@ -127,15 +127,18 @@ def _ours(recorded, name):
 def stacks(recorded, peers):
     """Walls and pyramids at rest, for docs/performance.md. peers: bench/data/peers/stacks.csv."""
     ours, bullet = _ours(recorded, "stack")
-    box3d = {row["scene"]: row for row in peers if row["engine"] == "Box3D" and row["settings"] == "substeps 32"}
+    def box3d(stack):
+        found = [row for row in peers if (row["engine"], row["settings"], row["scene"], row["threads"]) == ("Box3D", "substeps 32", stack, "1")]
+        verdicts = " / ".join(sorted({row["verdict"].split("@")[0] for row in found}))
+        return f"{_extent(found, 'median_ms', 2)}, {_extent(found, 'penetration_end_mm', 2)}, {verdicts}" if found else ""
     lines = []
     for stack, row in ours.items():
-        one, two, other, theirs = row["1"], row.get("2"), bullet.get(stack), box3d.get(stack)
+        one, two, other = row["1"], row.get("2"), bullet.get(stack)
         lines.append((
             f"`{stack}`", one["blocks"], number(one["cpu_ms_median"]) + (f" ({one['required_ms']})" if one["required_ms"] else ""),
             number(two["wall_ms_median"]) if two else "", number(one["penetration_mm"], 1), number(one["equilibrium_s"]),
             f"{float(other['substeps']):g}, {number(other['cpu_ms_median'])}, {number(other['penetration_mm'])}" if other else "",
-            f"{number(theirs['median_ms'])}, {number(theirs['penetration_end_mm'])}, {theirs['verdict'].split('@')[0]}" if theirs else ""))
+            box3d(stack)))
     return table(["`--stacks`", "blocks", "ms, one thread (required)", "two threads", "penetration, mm", "equilibrium, s",
                   "Bullet: substeps, ms, penetration", "Box3D, 32 substeps: ms, penetration, verdict"], lines)
 
