@@ -36,6 +36,8 @@ def measurements(peers_stacks):
 
 def charted(peers_falls):
     """Tables of docs/accuracy.md, of the chart that docs/measure.py has recorded."""
+    if not (DATA / "accuracy.csv").exists():
+        return {}
     rows = recorded.read_csv(DATA / "accuracy.csv")
     here = recorded.condition(rows)
     tables = {"chart-methods": recorded.chart_methods(rows), "chart-fastest": recorded.chart_fastest(rows), "chart-pull": recorded.chart_pull(rows),

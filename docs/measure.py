@@ -19,6 +19,7 @@ on a quiet machine. Parts:
 import csv
 import datetime
 import json
+import math
 import pathlib
 import shutil
 import subprocess
@@ -38,13 +39,13 @@ RUNS = [
 ]
 RUN_COLUMNS = [
     "arguments", "max_penetration_mm", "bottom_row_compression_mm", "creep_mm", "jitter_mm_s", "cpu_ms_median", "stands",
-    "version", "commit", "date",
+    "version", "commit", "cpu", "date",
 ]
 
 # Part: command, file that it writes, file of docs/data.
 PARTS = {
     "rows": ("profile --scenes rest --rows 9,18,36,72,144 --methods implicit,semi-implicit-euler", "profile.csv", "rows.csv"),
-    "motion": ("profile --rows 18 --tolerances 1e-5 --methods implicit --scenes rest,sway,heights,pull,pull-sleep,collapse,asleep",
+    "motion": ("profile --rows 18 --tolerances 5e-5,1e-5 --methods implicit --scenes rest,sway,heights,pull,pull-sleep,collapse,asleep",
                "profile.csv", "motion.csv"),
     "game": ("profile --scenes game --trace TRACE", "profile.csv", "game.csv"),
     "towers": ("profile --scenes towers --towers 64,640 --threads 1,2 --tolerances 1e-5 --methods implicit", "profile.csv",
@@ -92,11 +93,12 @@ def processor():
 
 
 def record_kernels(folder):
-    command = [str(pathlib.Path(folder, "springtower_benchmarks")), f"--benchmark_filter={KERNELS}", "--benchmark_format=json", "--benchmark_repetitions=5",
+    folder = pathlib.Path(folder).resolve()
+    command = [str(folder / "springtower_benchmarks"), f"--benchmark_filter={KERNELS}", "--benchmark_format=json", "--benchmark_repetitions=5",
                "--benchmark_min_time=0.2"]
     print(" ".join(command), flush=True)
     printed = subprocess.run(command, check=True, capture_output=True, text=True).stdout
-    version = subprocess.run([str(pathlib.Path(folder, "springtower")), "--version"], check=True, capture_output=True, text=True).stdout
+    version = subprocess.run([str(folder / "springtower"), "--version"], check=True, capture_output=True, text=True).stdout
     date = datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%dT%H:%M:%SZ")
     fastest = {}
     for row in json.loads(printed)["benchmarks"]:
@@ -112,9 +114,10 @@ def record_kernels(folder):
 
 
 # Frames of the recorded game, from 1, and what happens in them.
-GAME_PARTS = [(91, 210, "the first block is drawn out"), (211, 515, "it is lifted, carried, laid on top"), (640, 770, "the second is drawn out"),
-              (771, 991, "it is lifted, carried, laid on top"), (1094, 1153, "the third is drawn out; the tower slides, leans and begins to fall"),
-              (1154, 1263, "the hand has let go; the rest of the fall")]
+GAME_PARTS = [(91, 210, "the first block is drawn out"), (211, 515, "it is lifted, carried, laid on top"),
+              (640, 770, "the second is drawn out"), (771, 991, "it is lifted, carried, laid on top"),
+              (1094, 1154, "the third is drawn out; the tower slides, leans and begins to fall"),
+              (1155, 1264, "the hand has let go; the rest of the fall")]
 
 
 def keep_game_parts(trace, game):
@@ -122,13 +125,17 @@ def keep_game_parts(trace, game):
     frames = [event["dur"] / 1000 for event in json.loads(trace.read_text())["traceEvents"] if event.get("name") == "frame"]
     with open(game, newline="") as file:
         measured = next(csv.DictReader(file))
+    if len(frames) != int(measured["frames"]):
+        sys.exit(f"measure.py: expected a trace of {measured['frames']} frames, got {len(frames)}")
+    def quantile(part, share):  # as the program has it
+        return part[max(0, math.ceil(share * len(part)) - 1)]
     with open(DATA / "game_parts.csv", "w", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(["first", "last", "what", "ms_median", "ms_p99", "ms_max", "over_3_ms", "commit", "cpu", "date"])
         for first, last, what in GAME_PARTS:
-            part = sorted(frames[first - 2:last - 1])  # the first frame is not timed
-            writer.writerow([first, last, what, part[len(part) // 2], part[min(len(part) - 1, int(0.99 * len(part)))], part[-1],
-                             sum(frame > 3 for frame in part), *(measured[name] for name in ("commit", "cpu", "date"))])
+            part = sorted(frames[first - 1:last])
+            writer.writerow([first, last, what, quantile(part, 0.5), quantile(part, 0.99), part[-1], sum(frame > 3 for frame in part),
+                             *(measured[name] for name in ("commit", "cpu", "date"))])
 
 
 def keep_chart(written):

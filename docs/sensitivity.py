@@ -24,6 +24,7 @@ import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 OUT = ROOT / "docs" / "data" / "constants.csv"
+PARTIAL = OUT.with_suffix(".csv.partial")  # what is recorded stays until all is measured
 
 COMMIT = subprocess.run(["git", "rev-parse", "--short=12", "HEAD"], cwd=ROOT, capture_output=True, text=True).stdout.strip()
 DATE = datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%dT%H:%M:%SZ")
@@ -126,7 +127,7 @@ def main():
     unknown = [name for name in named if name not in values]
     if unknown:
         sys.exit(f"sensitivity.py: expected constants of core/tuning.def that are no sizes of arrays, got {', '.join(unknown)}")
-    with concurrent.futures.ThreadPoolExecutor(2) as pool, open(OUT, "w", newline="") as file:
+    with concurrent.futures.ThreadPoolExecutor(2) as pool, open(PARTIAL, "w", newline="") as file:
         writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
         writer.writeheader()
         usual = outcomes(program, pool, {})
@@ -139,6 +140,10 @@ def main():
             for value in moved(kinds[name], values[name]):
                 writer.writerow(row(name, value, usual, outcomes(program, pool, {name: value})))
             file.flush()
+    if named:
+        print(f"of some constants: {PARTIAL}")
+    else:
+        PARTIAL.replace(OUT)
 
 
 if __name__ == "__main__":

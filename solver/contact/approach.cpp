@@ -1,6 +1,7 @@
 #include "solver/contact/approach.h"
 
 #include "core/tuning.h"
+#include "solver/block/affine.h"
 #include "solver/block/inertia.h"
 #include "solver/contact/create.h"
 #include "solver/contact/evaluate_forces.h"

@@ -1,6 +1,7 @@
 #include "solver/contact/slip.h"
 
 #include "core/tuning.h"
+#include "solver/block/affine.h"
 #include "solver/world/driven_blocks.h"
 #include "solver/world/over_island.h"
 #include "solver/world/scales.h"

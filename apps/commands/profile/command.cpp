@@ -35,9 +35,10 @@ constexpr Range kLimitRange{0.0, 1e6, "s"};
 constexpr const char* kUnfinishedProfile = "profile.unfinished.json";
 
 constexpr std::string_view kProfileExamples =
-    R"help(what is timed: the state is kept once the scene has settled; each sample restores it, leaves out one frame and times the
-next ones; samples of all cases of a scene are interleaved. The frames of every sample are the same, so each frame counts with
-its minimum over the samples, then their median, 99th percentile and largest. On one thread that is CPU time, else wall time.
+    R"help(what is timed: the state is kept once the scene has settled; each sample restores it, runs one frame untimed, restores it again
+and times all frames from there; samples of all cases of a scene are interleaved. The frames of every sample are the same, so
+each frame counts with its minimum over the samples, then their median, 99th percentile and largest. On one thread that is CPU
+time, else wall time.
 
 An interrupted run with --out resumes where it was.
 
