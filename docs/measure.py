@@ -73,6 +73,7 @@ def record_runs(program, scratch):
         figures = json.loads(report.read_text())
         figures["arguments"] = " ".join(arguments)
         figures["cpu_ms_median"] = figures["ms_per_frame"]["cpu_median"]
+        figures["cpu"] = processor()
         figures["date"] = datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%dT%H:%M:%SZ")
         rows.append(figures)
     with open(DATA / "runs.csv", "w", newline="") as file:
@@ -125,8 +126,8 @@ def keep_game_parts(trace, game):
     frames = [event["dur"] / 1000 for event in json.loads(trace.read_text())["traceEvents"] if event.get("name") == "frame"]
     with open(game, newline="") as file:
         measured = next(csv.DictReader(file))
-    if len(frames) != int(measured["frames"]):
-        sys.exit(f"measure.py: expected a trace of {measured['frames']} frames, got {len(frames)}")
+    if len(frames) != GAME_PARTS[-1][1]:
+        sys.exit(f"measure.py: expected a trace of {GAME_PARTS[-1][1]} frames, got {len(frames)}")
     def quantile(part, share):  # as the program has it
         return part[max(0, math.ceil(share * len(part)) - 1)]
     with open(DATA / "game_parts.csv", "w", newline="") as file:

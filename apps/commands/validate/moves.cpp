@@ -44,7 +44,8 @@ constexpr double kSamePlace_m = 1e-4;
 // By up to how much each block is higher or lower in a sequence that shows how much the places in the end depend on that, m: a
 // hundredth of the tolerance.
 constexpr double kScatterHeight_m = 1e-7;
-constexpr std::uint64_t kScatterStream = 2;  // of random numbers: a tower's heights and masses have 0 and 1
+constexpr std::size_t kScatterDraws = 3;     // of each sequence
+constexpr std::uint64_t kScatterStream = 2;  // of random numbers, the first: a tower's heights and masses have 0 and 1
 
 // The report's sequence, played once a seed.
 struct PlayedSequence {
@@ -52,11 +53,11 @@ struct PlayedSequence {
   std::vector<Played> seeds;
 };
 
-// What of the sequence is not as in its file. `scatter_m`: see kScatterHeight_m.
+// What of the sequence is not as in its file.
 struct SequenceChange {
   Sleep sleep = Sleep::on;
   std::optional<double> heightsSigma_m = std::nullopt;
-  double scatter_m = 0.0;
+  std::optional<std::size_t> scatterDraw = std::nullopt;  // heights are scattered by kScatterHeight_m
 };
 
 PlayedSequence playSequence(const ValidationPlan& plan, const SequenceChange& change) {
@@ -68,8 +69,9 @@ PlayedSequence playSequence(const ValidationPlan& plan, const SequenceChange& ch
     options.heightsSigma_m = change.heightsSigma_m;
     scenes.push_back(sceneFromName(plan.scenes + "/moves.toml", options));
     scenes.back().settings.sleep = change.sleep;
-    RandomStream random(seed, kScatterStream);
-    for (BlockSpec& block : scenes.back().blocks) block.dimensions.z() += change.scatter_m * (2.0 * random.uniform() - 1.0);
+    if (!change.scatterDraw) continue;
+    RandomStream random(seed, kScatterStream + *change.scatterDraw);
+    for (BlockSpec& block : scenes.back().blocks) block.dimensions.z() += kScatterHeight_m * (2.0 * random.uniform() - 1.0);
   }
   PlayedSequence played{scenes.front().moves, std::vector<Played>(seeds)};
   tbb::parallel_for(std::size_t{0}, seeds,
@@ -132,7 +134,7 @@ StepResult apartAtEnd(const PlayedSequence& one, const PlayedSequence& other) {
 }
 
 std::string describe(const StepResult& apart, std::size_t seeds) {
-  return fmt::format("{:.3f} mm apart at most, {} of {} seeds within {:g} mm", 1e3 * apart.worst_m, apart.within, seeds,
+  return fmt::format("{:.3f} mm apart at most, {} of {} within {:g} mm", 1e3 * apart.worst_m, apart.within, seeds,
                      1e3 * kSamePlace_m);
 }
 
@@ -260,10 +262,15 @@ ValidationSection validateMoves(const ValidationPlan& plan) {
   const StepResult apart = apartAtEnd(asleep, awake);
   section.claims.push_back({"the report's sequence: places in the end with sleep and without", "within 0.1 mm",
                             describe(apart, seeds), apart.within == seeds});
-  const PlayedSequence scattered = playSequence(plan, {.sleep = Sleep::off, .scatter_m = kScatterHeight_m});
+  StepResult scattered;
+  for (std::size_t draw = 0; draw < kScatterDraws; ++draw) {
+    const StepResult of = apartAtEnd(playSequence(plan, {.sleep = Sleep::off, .scatterDraw = draw}), awake);
+    scattered.within += of.within;
+    scattered.worst_m = std::max(scattered.worst_m, of.worst_m);
+  }
   section.claims.push_back(
       {"the report's sequence, sleep off: places in the end where each block is up to 0.1 um higher or lower", "reported",
-       describe(apartAtEnd(scattered, awake), seeds)});
+       describe(scattered, kScatterDraws * seeds)});
   const PlayedSequence unequalAsleep = playSequence(plan, {.heightsSigma_m = kUnequalHeightsSigma_m});
   const PlayedSequence unequalAwake = playSequence(plan, {.sleep = Sleep::off, .heightsSigma_m = kUnequalHeightsSigma_m});
   addReported(unequalAsleep, "heights that differ by 0.02 mm, sleep on", section);
