@@ -22,7 +22,6 @@ constexpr double kSway_deg = 0.1;
 constexpr double kSway_hz = 1.0;
 constexpr double kHeavyFactor = 10.0;
 constexpr double kRowsFall_m = 0.02;
-constexpr double kPileFall_m = 0.1;
 
 constexpr SizeNumber kNone = {};
 

@@ -26,6 +26,9 @@ Scene cubePyramidScene(int rows, double mass_kg = kCubeMass_kg);
 /// Number of blocks in a row of a pile.
 inline constexpr int kPileRowBlocks = 108;
 
+/// Height through which the pile that has a name, is charted and is profiled has fallen when it lands, m.
+inline constexpr double kPileFall_m = 0.1;
+
 /// Initial state of a pile.
 struct PileStart {
   double fall_m = 0.0;  ///< m, height through which it has fallen when it lands, which is about to happen

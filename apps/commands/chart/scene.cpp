@@ -23,7 +23,6 @@ constexpr double kLean_deg = 9.0;
 constexpr int kTallRows = 36;
 constexpr int kFallingBlocks = 200;
 constexpr int kPileRows = 3;
-constexpr double kPileFall_m = 0.1;
 constexpr double kMotion_s = 2.0;  // of scenes that do not come to rest
 constexpr double kStack_s = 2.0;   // in half of which a wall or pyramid has sunk as deep as an engine lets it
 

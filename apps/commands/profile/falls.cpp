@@ -15,7 +15,6 @@
 namespace springtower {
 namespace {
 
-constexpr double kPileDrop_m = 0.1;
 constexpr int kFallTowerRows = 18;
 
 constexpr auto kFallFamilies = std::to_array<FallFamily>({
@@ -26,7 +25,7 @@ constexpr auto kFallFamilies = std::to_array<FallFamily>({
     {"shot", "shot:ROWS", "towers that are hit", ProfileScene::hit, kMaxRows, 180, shotTowerScene},
     {"heap", "heap:BLOCKS", "heaps", ProfileScene::heaps, 20000, 180, heapScene},
     {"pile", "pile:ROWS", "piles", ProfileScene::piles, 100, 60,
-     [](int rows) { return pileScene(rows, {.fall_m = kPileDrop_m}); }},
+     [](int rows) { return pileScene(rows, {.fall_m = kPileFall_m}); }},
     {"rain", "rain:BLOCKS", "rain", ProfileScene::rain, 20000, 180, rainScene},
 });
 

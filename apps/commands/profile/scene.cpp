@@ -28,7 +28,6 @@ constexpr double kPullStart_m = 0.001;  // from here on the block slides
 constexpr double kPullLongest_s = 5.0;
 constexpr double kAsleepLongest_s = 60.0;
 constexpr double kStrongest_n = 100.0;
-constexpr double kProfiledFall_m = 0.1;  // what it has fallen through when it lands
 
 bool isPull(ProfileScene scene) {
   return scene == ProfileScene::pull || scene == ProfileScene::pullSleep;
@@ -67,7 +66,7 @@ void fallAsleep(PreparedScene& scene, const Deadline& deadline) {
 // A pile instead of the scene's blocks. A profile counts its rows, whose compression it measures.
 void layPile(int rows, Scene& scene) {
   const Eigen::Quaterniond turn(Eigen::AngleAxisd(0.5 * std::numbers::pi, Vec3::UnitZ()));
-  scene.blocks = pileScene(rows, {.fall_m = kProfiledFall_m, .turn = turn}).blocks;
+  scene.blocks = pileScene(rows, {.fall_m = kPileFall_m, .turn = turn}).blocks;
   for (std::size_t b = 0; b < scene.blocks.size(); ++b) scene.blocks[b].row = static_cast<int>(b) / kPileRowBlocks;
   scene.name = fmt::format("a pile of {} blocks", scene.blocks.size());
 }
