@@ -98,16 +98,15 @@ void solveImpacts(IslandStep& step, RigidIsland& island, const Pass& pass, doubl
   step.counters.contactEvaluations += solved;
 }
 
-// Passes over the active points: so many, and in rigid mode up to as many times more as the island's largest mass is that of its
-// smallest, until the last leaves blocks to get into one another by no more than a share of a height in the substep. A light
-// block between heavy ones takes so many passes. Every other pass takes a pair's points in reverse, and the last does not: always
+// Passes over the active points: so many, and up to as many times more as the island's largest mass is that of its smallest,
+// until the last leaves blocks to get into one another by no more than a share of a height in the substep. A light block between
+// heavy ones takes so many passes. Every other pass takes a pair's points in reverse, and the last does not: always
 // in one order, the first point of a face carries more for many passes than the last, and its block turns.
 void runPasses(IslandStep& step, RigidIsland& island, Pass pass, int passes) {
   const std::size_t active = std::max<std::size_t>(1, island.steady.packed.activePoints + island.fast.packed.activePoints);
   const int affordable = static_cast<int>(static_cast<std::size_t>(tuning::kConvergingEvaluations) / active);
-  const bool converges = !isRigid(step.simulation.scene.settings.method);
   const int limit = std::max({passes, tuning::kConvergingPasses, affordable});
-  const int most = converges ? static_cast<int>(std::min(static_cast<double>(limit), island.massRatio * passes)) : 0;
+  const int most = static_cast<int>(std::min(static_cast<double>(limit), island.massRatio * passes));
   const double heightsLeft = pass.push ? tuning::kMaxApproachLeft : tuning::kMaxRelaxationLeft;
   const double enough = heightsLeft * step.simulation.lengths.blockHeight_m / pass.step_s;
   double left = 0.0;

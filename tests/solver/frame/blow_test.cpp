@@ -89,29 +89,44 @@ TEST_P(DrawnStackTest, TakesFewStepsAFrameAndDoesNotDiverge) {
 
 INSTANTIATE_TEST_SUITE_P(Seeds, DrawnStackTest, ::testing::Values(1071U, 1217U, 1414U, 1427U));
 
+struct Heaviness {
+  Method method;
+  double ratio;  // of the upper blocks' mass to the lowest one's
+};
+
+class HeavyOnLight : public ::testing::TestWithParam<Heaviness> {};
+
 // A light block falls on the floor with heavy ones on it. Sequential impulses converge there in as many passes as the masses'
 // ratio: with two to four it got 3.3 mm into its neighbour at a ratio of 100, 23 mm at 2000. With equal masses it is 0.5 mm.
-TEST(HeavyOnLight, ALightBlockIsNotCrushed) {
-  for (const double ratio : {100.0, 2000.0}) {
-    Scene scene;
-    for (int i = 0; i < 3; ++i) {
-      BlockSpec block;
-      block.dimensions = Vec3(0.1, 0.08, 0.06);
-      block.centre = Vec3(0.004 * i, 0.0, 0.33 + 0.063 * i);
-      block.mass = i == 0 ? 0.3 : 0.3 * ratio;
-      scene.blocks.push_back(block);
-    }
-    scene.settings.sleep = Sleep::off;
-    Simulation simulation(scene);
-    PenetrationWorkspace workspace;
-    double deepest_m = 0.0;
-    for (int frame = 0; frame < 45; ++frame) {
-      prepareAndStep(simulation);
-      deepest_m = std::max(deepest_m, maxPenetration(simulation.state.position, true, workspace).depth);
-    }
-    EXPECT_LT(deepest_m, 0.04 * 0.06) << "mass ratio " << ratio;
+// The rigid method, with one, was 4.4 mm deep at a ratio of 500, of which its soft contacts make 1.6 at rest.
+TEST_P(HeavyOnLight, ALightBlockIsNotCrushed) {
+  Scene scene;
+  for (int i = 0; i < 3; ++i) {
+    BlockSpec block;
+    block.dimensions = Vec3(0.1, 0.08, 0.06);
+    block.centre = Vec3(0.004 * i, 0.0, 0.33 + 0.063 * i);
+    block.mass = i == 0 ? 0.3 : 0.3 * GetParam().ratio;
+    scene.blocks.push_back(block);
   }
+  scene.settings.method = GetParam().method;
+  scene.settings.sleep = Sleep::off;
+  Simulation simulation(scene);
+  PenetrationWorkspace workspace;
+  double deepest_m = 0.0;
+  for (int frame = 0; frame < 45; ++frame) {
+    prepareAndStep(simulation);
+    deepest_m = std::max(deepest_m, maxPenetration(simulation.state.position, true, workspace).depth);
+  }
+  EXPECT_LT(deepest_m, 0.04 * 0.06);
 }
+
+INSTANTIATE_TEST_SUITE_P(Masses, HeavyOnLight,
+                         ::testing::Values(Heaviness{Method::implicit, 100.0}, Heaviness{Method::implicit, 2000.0},
+                                           Heaviness{Method::rigidPgs, 100.0}, Heaviness{Method::rigidPgs, 500.0}),
+                         [](const auto& tested) {
+                           return (tested.param.method == Method::implicit ? "Implicit" : "RigidPgs") +
+                                  std::to_string(static_cast<int>(tested.param.ratio));
+                         });
 
 }  // namespace
 }  // namespace springtower
