@@ -79,9 +79,12 @@ bool before(const Entry& a, const Entry& b) {
 }
 
 bool overlap(const Entry& a, const Entry& b) {
-  bool all = true;
-  for (std::size_t axis = 0; axis < 3; ++axis) all &= (a.lower[axis] <= b.upper[axis]) & (b.lower[axis] <= a.upper[axis]);
-  return all;
+  int all = 1;  // no branches: most entries that are compared overlap along some axes
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    all &= static_cast<int>(a.lower[axis] <= b.upper[axis]);
+    all &= static_cast<int>(b.lower[axis] <= a.upper[axis]);
+  }
+  return all != 0;
 }
 
 // Moves an entry to the place of its new value in an otherwise sorted order; returns the number of entries shifted.

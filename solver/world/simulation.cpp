@@ -16,7 +16,9 @@ const ParticleArray& carriedVelocities(const Simulation& simulation) {
 
 std::uint64_t stateHash(const Simulation& simulation) {
   Hash hash;
-  const auto mixDoubles = [&](const auto& values) { hash.bytes(values.data(), values.size() * sizeof(double)); };
+  const auto mixDoubles = [&](const auto& values) {
+    hash.bytes(values.data(), static_cast<std::size_t>(values.size()) * sizeof(double));
+  };
   for (const auto& values : simulation.state.position.component) mixDoubles(values);
   for (const auto& values : simulation.state.velocity.component) mixDoubles(values);
   hash.bytes(simulation.asleep.data(), simulation.asleep.size());
