@@ -253,6 +253,42 @@ void findStruck(Simulation& simulation) {
   }
 }
 
+// Whether an awake block is at another time of the frame than those that are stepped now: what moves through it in parts is ahead
+// of the rest when that takes the whole frame, and in all parts but the first the rest is behind.
+bool isAtOtherTime(const Simulation& simulation, std::int32_t block) {
+  const Scratch& scratch = simulation.engine->scratch;
+  if (sleeps(simulation, block)) return false;
+  const bool inParts = scratch.inParts[static_cast<std::size_t>(block)] != 0;
+  if (scratch.part.begin_s > 0.0) return !inParts;
+  return inParts && scratch.part.end_s == simulation.scene.settings.frame_s;
+}
+
+// Marks in `held` the sleeping blocks that touch such blocks, and all that are connected to them by contacts. Awake, they would
+// be without the forces of that contact until the frame ends, so they wake afterwards. Precondition: engine.scratch.touchingEdges
+// are the contacts of sleeping blocks.
+void findHeld(Simulation& simulation, std::vector<std::uint8_t>& held) {
+  Engine& engine = *simulation.engine;
+  engine.scratch.wakeRoots.clear();
+  for (std::size_t at = 0; at < engine.pairs.size(); ++at) {
+    const BlockPair& pair = engine.pairs.key[at];
+    if (!engine.pairs.touches(at)) continue;
+    if (isSleeper(simulation, pair.a) && isAtOtherTime(simulation, pair.b)) engine.scratch.wakeRoots.push_back(pair.a);
+    if (isSleeper(simulation, pair.b) && isAtOtherTime(simulation, pair.a)) engine.scratch.wakeRoots.push_back(pair.b);
+  }
+  held.resize(simulation.asleep.size());
+  connectedBlocks(engine.scratch.touchingEdges, engine.scratch.wakeRoots, engine.scratch.parent, held);
+}
+
+void listContactsOfSleepers(Simulation& simulation) {
+  Engine& engine = *simulation.engine;
+  engine.scratch.touchingEdges.clear();
+  for (std::size_t at = 0; at < engine.pairs.size(); ++at) {
+    const BlockPair& pair = engine.pairs.key[at];
+    if (engine.pairs.touches(at) && isSleeper(simulation, pair.a) && isSleeper(simulation, pair.b))
+      engine.scratch.touchingEdges.push_back({pair.a, pair.b});
+  }
+}
+
 }  // namespace
 
 bool wakeOnImpact(Simulation& simulation) {
@@ -266,19 +302,18 @@ bool wakeOnImpact(Simulation& simulation) {
   }
   if (anyMayBeHit) findStruck(simulation);
   if (engine.scratch.toWake.empty()) return false;
-  engine.scratch.touchingEdges.clear();
-  for (std::size_t at = 0; at < engine.pairs.size(); ++at) {
-    const BlockPair& pair = engine.pairs.key[at];
-    if (engine.pairs.touches(at) && isSleeper(simulation, pair.a) && isSleeper(simulation, pair.b))
-      engine.scratch.touchingEdges.push_back({pair.a, pair.b});
-  }
+  listContactsOfSleepers(simulation);
   engine.scratch.touched.resize(simulation.asleep.size());
   findRoots(engine);
   connectedBlocks(engine.scratch.touchingEdges, engine.scratch.wakeRoots, engine.scratch.parent, engine.scratch.touched);
+  findHeld(simulation, engine.scratch.joined);
+  bool any = false;
   for (std::size_t b = 0; b < engine.scratch.touched.size(); ++b) {
-    if (engine.scratch.touched[b] != 0) wake(simulation, b, WakeReason::impact);
+    if (engine.scratch.touched[b] == 0 || engine.scratch.joined[b] != 0) continue;
+    wake(simulation, b, WakeReason::impact);
+    any = true;
   }
-  return true;
+  return any;
 }
 
 bool wakeFailedSupports(Simulation& simulation) {
@@ -287,8 +322,16 @@ bool wakeFailedSupports(Simulation& simulation) {
   if (engine.sleep.awakeCount == engine.sleep.movableCount) return false;
   const StageTimer timer(simulation.stageTimes, Stage::islandsAndSleep);
   if (!findWakeCandidates(simulation)) return false;
-  wakeRequested(simulation);
-  return true;
+  listContactsOfSleepers(simulation);
+  findHeld(simulation, engine.scratch.joined);
+  bool any = false;
+  for (const WakeRequest& request : engine.scratch.toWake) {
+    const auto b = static_cast<std::size_t>(request.block);
+    if (engine.scratch.joined[b] != 0 || simulation.asleep[b] == 0) continue;
+    wake(simulation, b, request.reason);
+    any = true;
+  }
+  return any;
 }
 
 void updateRest(Simulation& simulation) {

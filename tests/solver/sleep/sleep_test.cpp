@@ -1,7 +1,10 @@
 #include "core/scene/scene.h"
 #include "solver/frame/inputs.h"
+#include "solver/frame/pairs.h"
 #include "solver/hand/moves.h"
 #include "solver/runner/run.h"
+#include "solver/sleep/rest.h"
+#include "solver/world/engine.h"
 #include "tests/solver/hand/take.h"
 #include "tests/support/block_scenes.h"
 #include "tests/support/prepare_and_step.h"
@@ -264,6 +267,33 @@ TEST(Sleep, EveryWakeHasAReason) {
   prepareAndStep(tilted);
   EXPECT_EQ(wokenBy(tilted, WakeReason::gravity), 9U);
   EXPECT_EQ(std::accumulate(tilted.wakes.begin(), tilted.wakes.end(), std::uint64_t{0}), 9U);
+}
+
+// A fast island goes through a frame in parts, and then the rest goes through it in one. A sleeper on which a block of that
+// island slides wakes in the first part, where both are stepped together. When the rest is stepped the block is at the end of the
+// frame already: the sleeper would fall through it, so it sleeps on until the next frame. Likewise in later parts beside an awake
+// block that is still at the frame's start.
+TEST(Sleep, NothingWakesBesideABlockAtAnotherTimeOfTheFrame) {
+  struct Case {
+    double begin;  // of the part, share of the frame
+    double end;
+    std::uint8_t inParts;  // whether the block that slides is
+    bool wakes;
+  };
+  for (const Case& tested : {Case{0.0, 1.0, 0, true}, Case{0.0, 0.5, 1, true}, Case{0.5, 1.0, 1, true}, Case{0.0, 1.0, 1, false},
+                             Case{0.5, 1.0, 0, false}}) {
+    SCOPED_TRACE(testing::Message() << "from " << tested.begin << " to " << tested.end
+                                    << " of the frame, in parts: " << static_cast<int>(tested.inParts));
+    Simulation simulation = sleepingTower();
+    ASSERT_TRUE(allAsleep(simulation));
+    kick(simulation, 4, Vec3(1.0, 0.0, 0.0));
+    findNearPairs(simulation);
+    Scratch& scratch = simulation.engine->scratch;
+    scratch.inParts[4] = tested.inParts;
+    scratch.part = {tested.begin * simulation.scene.settings.frame_s, tested.end * simulation.scene.settings.frame_s};
+    EXPECT_EQ(wakeOnImpact(simulation), tested.wakes);
+    EXPECT_EQ(asleepBlocks(simulation), tested.wakes ? 0U : 8U);
+  }
 }
 
 TEST(Sleep, WakesAreCountedAgainFromASnapshot) {
