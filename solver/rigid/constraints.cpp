@@ -103,9 +103,9 @@ SPRINGTOWER_INLINE void placePoint(const LanePlace& upper, const LanePlace& lowe
   LaneVector apart = onUpper;
   subtract(onLower, apart);
   dot(p.normal, apart, p.gap);
-  // In a heap 1 % of the overlap without force becomes, in each substep, overlap that is pushed out, as far as energy lost in the
-  // frame pays for it. Otherwise what each impact leaves would add up.
-  if (springs.heap) own.rest *= 1.0 - tuning::kRigidModeBaumgarte;
+  // 1 % of the overlap without force becomes, in each substep, overlap that is pushed out, as far as energy lost in the frame
+  // pays for it. Otherwise what each impact leaves, and each change between springs and impulses, would add up.
+  own.rest *= 1.0 - tuning::kRigidModeBaumgarte;
   p.gap += own.rest;
   p.softness = own.compliance / springs.step_s;
   const Lanes tolerance = springs.tolerance_m + Lanes{};
@@ -141,7 +141,7 @@ SPRINGTOWER_INLINE void openBeside(const PackedPair& pair, const Springs& spring
     const PackedPlace& own = packed.places[static_cast<std::size_t>(row)];
     const Lanes gap = packed.points[static_cast<std::size_t>(row)].gap - own.rest + own.beside;
     for (std::size_t k = 0; k < kSeparatingAxes; ++k) {
-      const Lanes along = own.axis[k] & (own.rest < none) ? gap : none;
+      const Lanes along = (own.axis[k] & (own.rest < none)) ? gap : none;
       smallerOf(along, separation[k], separation[k]);
     }
   }
@@ -156,7 +156,7 @@ SPRINGTOWER_INLINE void openBeside(const PackedPair& pair, const Springs& spring
     PackedPoint& p = packed.points[static_cast<std::size_t>(row)];
     LaneMask isBeside{};
     for (std::size_t k = 0; k < kSeparatingAxes; ++k) isBeside |= own.axis[k] & (separation[k] < apart - springs.rounding_m);
-    p.gap = isBeside & (apart > zero) & (p.gap < apart) ? apart : p.gap;
+    p.gap = (isBeside & (apart > zero) & (p.gap < apart)) ? apart : p.gap;
   }
 }
 

@@ -201,14 +201,19 @@ double solveAgain(const Pass& pass, BodyMotion* bodies, PackedPoints& packed, st
   return std::max(std::max(worst[0], worst[1]), std::max(worst[2], worst[3]));
 }
 
-// The pairs of which a body's velocity has changed since a pass; returns the number of their active points.
+// At so many points of a pair passes look: the active ones, or all where an impact reaches a pair without any.
+SPRINGTOWER_INLINE std::int32_t lookedAt(const PackedPair& pair, std::size_t lane) {
+  return pair.nearby == 0 ? pair.rows : pair.active[lane];
+}
+
+// The pairs of which a body's velocity has changed since a pass; returns the number of their points to be solved.
 SPRINGTOWER_INLINE std::size_t findChanged(const std::vector<int>& changed, const PackedPair& pair, int since, LaneMask& looks) {
   std::int32_t points = 0;
   for (std::size_t lane = 0; lane < kPackedPairs; ++lane) {
     const int last =
         std::max(changed[static_cast<std::size_t>(pair.upper[lane])], changed[static_cast<std::size_t>(pair.lower[lane])]);
     looks[static_cast<int>(lane)] = last >= since ? -1 : 0;
-    points += last >= since ? pair.active[lane] : 0;
+    points += last >= since ? lookedAt(pair, lane) : 0;
   }
   return static_cast<std::size_t>(points);
 }
@@ -277,9 +282,10 @@ void noteChange(std::int32_t body, int number, RigidIsland& island) {
 SPRINGTOWER_KERNEL
 std::size_t solveChanged(const Pass& pass, RigidIsland& island, PackedPoints& packed, int number, double enough) {
   std::size_t solved = 0;
-  for (const std::int32_t at : packed.active) {
-    if (packed.due[static_cast<std::size_t>(at)] < number) continue;
-    const PackedPair& pair = packed.pairs[static_cast<std::size_t>(at)];
+  bool joined = false;
+  for (std::size_t at = 0; at < packed.pairs.size(); ++at) {
+    if (packed.due[at] < number) continue;
+    PackedPair& pair = packed.pairs[at];
     LaneMask looks;
     const std::size_t points = findChanged(island.changed, pair, number - 1, looks);
     if (points == 0) continue;
@@ -295,7 +301,13 @@ std::size_t solveChanged(const Pass& pass, RigidIsland& island, PackedPoints& pa
     }
     scatter(motion, pair, island.motions.data());
     noteChanges(changes, pair, number, island);
+    if (pair.nearby == 0 && any(changes)) {  // the passes that follow look at it as well
+      pair.active.fill(pair.rows);
+      pair.nearby = kPackedPairs * pair.rows;
+      joined = true;
+    }
   }
+  if (joined) listActive(packed);
   return solved;
 }
 

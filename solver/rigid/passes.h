@@ -43,8 +43,9 @@ double solveActive(const Pass& pass, std::vector<BodyMotion>& bodies, PackedPoin
 /// due in the next pass, and in this one where they come later. Precondition: `changed` and `due` are set, to no more.
 void noteChange(std::int32_t body, int number, RigidIsland& island);
 
-/// Pass `number` through an impact: over those active points of which a body's velocity has changed since they were solved last,
-/// as `changed` [bodies] has it. Changes of less than `enough` (m/s) count as none. Returns the number of points solved.
+/// Pass `number` through an impact: over those points of which a body's velocity has changed since they were solved last, as
+/// `changed` [bodies] has it; pairs without active points that it reaches become active. Changes of less than `enough` (m/s)
+/// count as none. Returns the number of points solved.
 std::size_t solveChanged(const Pass& pass, RigidIsland& island, PackedPoints& packed, int number, double enough);
 
 }  // namespace springtower

@@ -13,6 +13,7 @@
 #include "solver/world/over_island.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 
 namespace springtower {
@@ -179,14 +180,37 @@ void relaxAndRebound(IslandStep& step, RigidIsland& island, int passes) {
   if (rebounds) forgetImpact(step, island);
 }
 
+// Energy that the frame has gained so far and nothing lost before pays for, J. `kinetic_j`: kinetic energy of all bodies.
+double unpaidBy(const IslandStep& step, double kinetic_j, const RigidIsland& island) {
+  if (!island.touches || isWorkedOn(step)) return 0.0;
+  return kinetic_j - island.energyBefore_j - std::max(0.0, freePushOut(step.simulation, massOf(island)) - island.gained_j);
+}
+
+// Takes it from the motion of the blocks that are pushed: between very unlike masses passes that have not converged leave
+// impulses that no contact explains. Returns the kinetic energy of all bodies then.
+double slowUnpaid(const IslandStep& step, double kinetic_j, RigidIsland& island) {
+  const double unpaid_j = unpaidBy(step, kinetic_j, island);
+  if (!(unpaid_j > 0.0)) return kinetic_j;
+  double pushed_j = 0.0;
+  for (const RigidBody& body : island.bodies) {
+    if (body.pushed && body.inverseMass > 0.0) pushed_j += kineticEnergy(body);
+  }
+  if (!(pushed_j > 0.0)) return kinetic_j;
+  const double left = std::sqrt(std::max(0.0, 1.0 - unpaid_j / pushed_j));
+  for (RigidBody& body : island.bodies) {
+    if (!body.pushed || body.inverseMass == 0.0) continue;
+    body.velocity *= left;
+    body.spin *= left;
+  }
+  return kineticEnergy(island.bodies);
+}
+
 // Passes move blocks by more than their velocities where they push overlap out. If the frame has gained energy that nothing lost
 // before pays for, takes back the share of that extra motion whose lifting work is the unpaid energy. Between very unlike masses
 // a push that is too large is corrected only slowly over the passes. `kinetic_j`: kinetic energy of all bodies; returns what it
 // is then, as their axes turn.
 double lowerUnpaid(const IslandStep& step, double kinetic_j, RigidIsland& island) {
-  if (!island.touches || isWorkedOn(step)) return kinetic_j;
-  const double unpaid_j =
-      kinetic_j - island.energyBefore_j - std::max(0.0, freePushOut(step.simulation, massOf(island)) - island.gained_j);
+  const double unpaid_j = unpaidBy(step, kinetic_j, island);
   if (!(unpaid_j > 0.0)) return kinetic_j;
   const auto excessOf = [&](const RigidBody& body) { return Vec3(body.moved - step.drift_s * body.velocity); };
   double lifted_j = 0.0;
@@ -270,7 +294,7 @@ void stepImpulses(IslandStep& step, RigidIsland& island) {
       isolated ? removeAddedEnergy(added_j, island) : takeGivenEnergy(added_j, step.drift_s, island);
       kinetic_j = kineticEnergy(island.bodies);
     }
-    if (!isolated) kinetic_j = lowerUnpaid(step, kinetic_j, island);
+    if (!isolated) kinetic_j = slowUnpaid(step, lowerUnpaid(step, kinetic_j, island), island);
     island.gained_j += kinetic_j - island.energyBefore_j;
   }
 }

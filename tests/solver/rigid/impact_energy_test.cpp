@@ -46,11 +46,12 @@ TEST(ImpactEnergy, DoesNotRiseWithoutFriction) {
 }
 
 // A heavy cube falls on a block that lies on the floor: the floor's push in the impact ends with the impact; a push that is too
-// large, as so unlike masses take many passes to find it, lifts nothing; and implicit steps gain nothing where the cube rocks.
+// large, as so unlike masses take many passes to find it, lifts nothing and speeds nothing up; and implicit steps gain nothing
+// where the cube rocks.
 // The bounds are what is allowed where blocks are pushed apart, in a frame and over a run.
 TEST(ImpactEnergy, DoesNotRiseWhereAHeavyBlockFallsOnALightOne) {
-  for (const double ratio : {10.0, 30.0, 100.0, 1000.0, 5000.0}) {
-    for (const double tilt_rad : {0.0, 0.02, 0.03, 0.05, 0.08, 0.09, 0.16, 0.17, 0.18, 0.23, 0.3}) {
+  for (const double ratio : {10.0, 30.0, 100.0, 1000.0, 2000.0, 5000.0}) {
+    for (const double tilt_rad : {0.0, 0.02, 0.03, 0.05, 0.08, 0.09, 0.16, 0.17, 0.18, 0.23, 0.3, 0.335, 0.36, 0.38}) {
       Scene scene;
       scene.settings.sleep = Sleep::off;
       BlockSpec light;
