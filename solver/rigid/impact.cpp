@@ -66,7 +66,7 @@ double fastestImpactOf(const PackedPoints& packed, std::size_t first, std::size_
   return std::max(std::max(most[0], most[1]), std::max(most[2], most[3]));
 }
 
-// Impulses of impacts are those of points that push.
+// Impulses of impacts are those of points that push. Also where none was active: passes through impacts may reach any point.
 SPRINGTOWER_KERNEL
 bool markPushedBy(double least_m_s, RigidIsland& island, PackedPoints& packed, std::size_t first, std::size_t last) {
   const Lanes zero = {0.0, 0.0, 0.0, 0.0};
@@ -79,7 +79,7 @@ bool markPushedBy(double least_m_s, RigidIsland& island, PackedPoints& packed, s
     any = true;
   };
   for (std::size_t i = first; i < last; ++i) {
-    const PackedPair& pair = packed.pairs[static_cast<std::size_t>(packed.active[i])];
+    const PackedPair& pair = packed.pairs[i];
     Lanes most = zero;
     for (PackedPoint& p : pointsOf(packed, pair)) {
       const LaneMask pushes = p.push > zero;
@@ -129,7 +129,7 @@ bool markPushedByPoints(const IslandStep& step, RigidIsland& island) {
   overBodies(island, [&](std::size_t i) { island.bodies[i].pushed = false; });
   std::atomic<bool> any = false;
   for (PackedPoints* packed : packsOf(island)) {
-    overColours(packed->activeStart, [&](std::size_t first, std::size_t last) {
+    overColours(packed->colourStart, [&](std::size_t first, std::size_t last) {
       if (markPushedBy(least_m_s, island, *packed, first, last)) any.store(true, std::memory_order_relaxed);
     });
   }

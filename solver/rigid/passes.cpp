@@ -193,27 +193,35 @@ double solveAgain(const Pass& pass, BodyMotion* bodies, PackedPoints& packed, st
     for (std::size_t k = 0; k < points.size(); ++k) {
       PackedPoint& p = points[pass.reversed ? points.size() - 1 - k : k];
       solvePoints(pass, pair, kAll, motion, p, opening, more);
-      const Lanes slowed = p.normalMass > kNone ? more / p.normalMass : kNone;
-      largerOf(slowed, worst, worst);
+      const Lanes changed = p.normalMass > kNone ? more / p.normalMass : kNone;
+      largerOf(changed, worst, worst);
+      largerOf(-changed, worst, worst);
     }
     scatter(motion, pair, bodies);
   }
   return std::max(std::max(worst[0], worst[1]), std::max(worst[2], worst[3]));
 }
 
-// At so many points of a pair passes look: the active ones, or all where an impact reaches a pair without any.
-SPRINGTOWER_INLINE std::int32_t lookedAt(const PackedPair& pair, std::size_t lane) {
-  return pair.nearby == 0 ? pair.rows : pair.active[lane];
+// Makes pairs active whose points have got impulses without having been near; returns whether there are any.
+bool activate(const LaneMask& acts, PackedPair& pair) {
+  bool any = false;
+  for (std::size_t lane = 0; lane < kPackedPairs; ++lane) {
+    if (acts[static_cast<int>(lane)] == 0 || pair.active[lane] != 0) continue;
+    pair.active[lane] = pair.rows;
+    pair.nearby += pair.rows;
+    any = true;
+  }
+  return any;
 }
 
-// The pairs of which a body's velocity has changed since a pass; returns the number of their points to be solved.
+// The pairs of which a body's velocity has changed since a pass; returns the number of their active points.
 SPRINGTOWER_INLINE std::size_t findChanged(const std::vector<int>& changed, const PackedPair& pair, int since, LaneMask& looks) {
   std::int32_t points = 0;
   for (std::size_t lane = 0; lane < kPackedPairs; ++lane) {
     const int last =
         std::max(changed[static_cast<std::size_t>(pair.upper[lane])], changed[static_cast<std::size_t>(pair.lower[lane])]);
     looks[static_cast<int>(lane)] = last >= since ? -1 : 0;
-    points += last >= since ? lookedAt(pair, lane) : 0;
+    points += last >= since ? pair.active[lane] : 0;
   }
   return static_cast<std::size_t>(points);
 }
@@ -287,25 +295,22 @@ std::size_t solveChanged(const Pass& pass, RigidIsland& island, PackedPoints& pa
     if (packed.due[at] < number) continue;
     PackedPair& pair = packed.pairs[at];
     LaneMask looks;
-    const std::size_t points = findChanged(island.changed, pair, number - 1, looks);
-    if (points == 0) continue;
-    solved += points;
+    solved += findChanged(island.changed, pair, number - 1, looks);
+    if (!any(looks)) continue;
     PackMotion motion;
     gather(island.motions.data(), pair, motion);
-    LaneMask changes = kNone != kNone;
+    LaneMask changes{};
+    LaneMask acts{};
     for (PackedPoint& p : pointsOf(packed, pair)) {
       Lanes opening, more, size;
       solvePoints(pass, pair, looks, motion, p, opening, more);
       sizeOf(more, size);
       changes |= size > enough * p.normalMass;
+      acts |= ~p.idle;
     }
     scatter(motion, pair, island.motions.data());
     noteChanges(changes, pair, number, island);
-    if (pair.nearby == 0 && any(changes)) {  // the passes that follow look at it as well
-      pair.active.fill(pair.rows);
-      pair.nearby = kPackedPairs * pair.rows;
-      joined = true;
-    }
+    joined |= activate(acts, pair);
   }
   if (joined) listActive(packed);
   return solved;

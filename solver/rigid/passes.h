@@ -36,7 +36,7 @@ void applyWarmStart(std::vector<BodyMotion>& bodies, const PackedPoints& packed)
 /// A pass over all points, which finds those that are active. Returns the number of those that push or have pushed.
 std::size_t solveAll(const Pass& pass, std::vector<BodyMotion>& bodies, PackedPoints& packed);
 
-/// A pass over the active points. Returns by how much it has slowed the approach at a point at most, m/s.
+/// A pass over the active points. Returns by how much it has changed the approach at a point at most, m/s.
 double solveActive(const Pass& pass, std::vector<BodyMotion>& bodies, PackedPoints& packed);
 
 /// Notes that pass `number` through an impact (0: what meets in it) has changed a body's velocity: the pairs in which it is are

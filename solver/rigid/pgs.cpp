@@ -13,7 +13,7 @@
 #include "solver/world/over_island.h"
 
 #include <algorithm>
-#include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace springtower {
@@ -100,17 +100,19 @@ void solveImpacts(IslandStep& step, RigidIsland& island, const Pass& pass, doubl
 }
 
 // Passes over the active points: so many, and up to as many times more as the island's largest mass is that of its smallest,
-// until the last leaves blocks to get into one another by no more than a share of a height in the substep. A light block between
-// heavy ones takes so many passes. Every other pass takes a pair's points in reverse, and the last does not: always
-// in one order, the first point of a face carries more for many passes than the last, and its block turns.
+// until the last has changed the blocks' way against one another by no more than a share of a height in the substep. A light
+// block between heavy ones takes so many passes, be it that they close or that impulses which were too large are taken back: what
+// is left of these is energy. Every other pass takes a pair's points in reverse, and the last does not: always in one order, the
+// first point of a face carries more for many passes than the last, and its block turns.
 void runPasses(IslandStep& step, RigidIsland& island, Pass pass, int passes) {
   const std::size_t active = std::max<std::size_t>(1, island.steady.packed.activePoints + island.fast.packed.activePoints);
   const int affordable = static_cast<int>(static_cast<std::size_t>(tuning::kConvergingEvaluations) / active);
   const int limit = std::max({passes, tuning::kConvergingPasses, affordable});
-  const int most = static_cast<int>(std::min(static_cast<double>(limit), island.massRatio * passes));
+  const double more = (island.massRatio - 1.0) * std::max(1, passes);
+  const int most = static_cast<int>(std::min(static_cast<double>(limit), passes + more));
   const double heightsLeft = pass.push ? tuning::kMaxApproachLeft : tuning::kMaxRelaxationLeft;
   const double enough = heightsLeft * step.simulation.lengths.blockHeight_m / pass.step_s;
-  double left = 0.0;
+  double left = std::numeric_limits<double>::infinity();
   for (int i = 0; i < passes || (left > enough && i < most); ++i) {
     left = 0.0;
     pass.reversed = (passes - i) % 2 == 0;
@@ -180,37 +182,14 @@ void relaxAndRebound(IslandStep& step, RigidIsland& island, int passes) {
   if (rebounds) forgetImpact(step, island);
 }
 
-// Energy that the frame has gained so far and nothing lost before pays for, J. `kinetic_j`: kinetic energy of all bodies.
-double unpaidBy(const IslandStep& step, double kinetic_j, const RigidIsland& island) {
-  if (!island.touches || isWorkedOn(step)) return 0.0;
-  return kinetic_j - island.energyBefore_j - std::max(0.0, freePushOut(step.simulation, massOf(island)) - island.gained_j);
-}
-
-// Takes it from the motion of the blocks that are pushed: between very unlike masses passes that have not converged leave
-// impulses that no contact explains. Returns the kinetic energy of all bodies then.
-double slowUnpaid(const IslandStep& step, double kinetic_j, RigidIsland& island) {
-  const double unpaid_j = unpaidBy(step, kinetic_j, island);
-  if (!(unpaid_j > 0.0)) return kinetic_j;
-  double pushed_j = 0.0;
-  for (const RigidBody& body : island.bodies) {
-    if (body.pushed && body.inverseMass > 0.0) pushed_j += kineticEnergy(body);
-  }
-  if (!(pushed_j > 0.0)) return kinetic_j;
-  const double left = std::sqrt(std::max(0.0, 1.0 - unpaid_j / pushed_j));
-  for (RigidBody& body : island.bodies) {
-    if (!body.pushed || body.inverseMass == 0.0) continue;
-    body.velocity *= left;
-    body.spin *= left;
-  }
-  return kineticEnergy(island.bodies);
-}
-
 // Passes move blocks by more than their velocities where they push overlap out. If the frame has gained energy that nothing lost
 // before pays for, takes back the share of that extra motion whose lifting work is the unpaid energy. Between very unlike masses
 // a push that is too large is corrected only slowly over the passes. `kinetic_j`: kinetic energy of all bodies; returns what it
 // is then, as their axes turn.
 double lowerUnpaid(const IslandStep& step, double kinetic_j, RigidIsland& island) {
-  const double unpaid_j = unpaidBy(step, kinetic_j, island);
+  if (!island.touches || isWorkedOn(step)) return kinetic_j;
+  const double unpaid_j =
+      kinetic_j - island.energyBefore_j - std::max(0.0, freePushOut(step.simulation, massOf(island)) - island.gained_j);
   if (!(unpaid_j > 0.0)) return kinetic_j;
   const auto excessOf = [&](const RigidBody& body) { return Vec3(body.moved - step.drift_s * body.velocity); };
   double lifted_j = 0.0;
@@ -294,7 +273,7 @@ void stepImpulses(IslandStep& step, RigidIsland& island) {
       isolated ? removeAddedEnergy(added_j, island) : takeGivenEnergy(added_j, step.drift_s, island);
       kinetic_j = kineticEnergy(island.bodies);
     }
-    if (!isolated) kinetic_j = slowUnpaid(step, lowerUnpaid(step, kinetic_j, island), island);
+    if (!isolated) kinetic_j = lowerUnpaid(step, kinetic_j, island);
     island.gained_j += kinetic_j - island.energyBefore_j;
   }
 }

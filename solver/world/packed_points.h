@@ -46,7 +46,7 @@ struct alignas(32) PackedPair {
   std::int32_t rows;        ///< and how many these are: the most points of any of the four
   std::int32_t pushing;     ///< points that push or have pushed, as of the first pass of a substep
   std::int32_t nearby;      ///< these and others that nearly touch, at which the further passes look; of all four
-  PackedIndex active;       ///< and of each
+  PackedIndex active;       ///< and of each; at most so many where an impact has reached points that were not near
   std::uint8_t movesUpper;  ///< bit by lane: whether the upper body moves by impulses
   std::uint8_t movesLower;
   bool slips;  ///< whether friction acts elsewhere than at the points in any lane
