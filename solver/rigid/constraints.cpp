@@ -142,9 +142,7 @@ SPRINGTOWER_INLINE void placePoint(const LanePlace& upper, const LanePlace& lowe
   p.armLower = p.armUpper;
   subtract(upper.centre, p.armUpper);
   subtract(lower.centre, p.armLower);
-  Lanes closing;
-  closingByTurning(motion, own, p, springs.step_s, closing);
-  p.gap += closing;
+  closingByTurning(motion, own, p, springs.step_s, p.closing);
   Share up, low;
   shareOf(upper, p.armUpper, p.normal, p.turnUpper, up);
   shareOf(lower, p.armLower, p.normal, p.turnLower, low);
@@ -219,7 +217,7 @@ void moveGapsOf(const BodyMotion* moved, PackedPoints& packed, std::size_t first
       relativeAt(motion, p, relative);
       Lanes opening;
       dot(p.normal, relative, opening);
-      p.gap += opening;
+      p.gap += opening + p.closing;
     }
   }
 }

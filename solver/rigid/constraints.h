@@ -23,12 +23,12 @@ struct Springs {
 };
 
 /// Arms, normals, gaps and effective masses of all packed points at the present poses and orientations of the island's bodies.
-/// Their places and velocities must have been read, and pushes are those of the substep before. Gaps are less by what turning
-/// closes of them within the substep. Contacts are as soft as their springs, but blocks get no deeper into one another by a push
+/// Their places and velocities must have been read, and pushes are those of the substep before. What turning closes of a gap
+/// within the substep is beside it. Contacts are as soft as their springs, but blocks get no deeper into one another by a push
 /// than by its mean over about a frame (what is more is an impact), nor than the tolerance.
 void placeConstraints(const RigidIsland& island, const Springs& springs, PackedPoints& packed);
 
-/// Gaps of all points after the bodies have moved by `moved` and `turned`, to first order.
+/// Gaps of all points after the bodies have moved by `moved` and `turned`, and what turning closes of them.
 void moveGaps(RigidIsland& island);
 
 /// Places and velocities of the island's bodies for the passes; the velocities alone; and back.

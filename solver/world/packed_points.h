@@ -71,6 +71,7 @@ struct alignas(32) PackedPoint {
   Lanes normalMass;          ///< kg, effective along the normal; 0 of a lane without a point
   Lanes acrossMass;          ///< kg, lower bound of the effective tangential mass
   Lanes gap;                 ///< m at the start of the substep; negative where the blocks overlap by more than without force
+  Lanes closing;             ///< m, <= 0: what turning closes of it within the substep beyond what velocities at its start say
   Lanes coefficient;         ///< of friction: static, or kinetic where all points of the pair slip
   Lanes rebound;             ///< m/s, speed at which the blocks part after an impact; the lowest number where there is none
   LaneMask idle;             ///< whether its normal and friction impulses are zero so far
