@@ -31,10 +31,12 @@ SPRINGTOWER_INLINE void aimOf(const Pass& pass, const PackedPoint& p, Aim& aim) 
   const Lanes stiff = 1.0 / (1.0 + softness / pass.step_s);
   if (pass.push) {
     const Lanes most = kNone + pass.most;
-    Lanes pushed;
+    Lanes pushed, turning;
     smallerOf(-pass.soft.rate * slack, most, pushed);
-    // As much faster as turning closes the gap: so blocks that roll over one another do not sink in.
-    aim.least = (apart ? approach : pushed) - p.closing / pass.step_s;
+    // As much faster as turning closes the gap: so blocks that roll over one another do not sink in. What turns by a large angle
+    // in the substep would close it by more than it can.
+    smallerOf(-p.closing / pass.step_s, most, turning);
+    aim.least = (apart ? approach : pushed) + turning;
     aim.share = apart ? stiff : pass.soft.mass / (1.0 + pass.soft.rate * softness);
     aim.released = apart ? kNone : kNone + pass.soft.impulse;
     return;
