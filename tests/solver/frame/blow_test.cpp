@@ -6,6 +6,7 @@
 #include "solver/frame/prepare.h"
 #include "solver/metrics/penetration.h"
 #include "solver/world/simulation.h"
+#include "tests/support/deepest.h"
 #include "tests/support/prepare_and_step.h"
 
 #include <algorithm>
@@ -97,14 +98,7 @@ class DrawnDepthTest : public ::testing::TestWithParam<std::uint64_t> {};
 TEST_P(DrawnDepthTest, IsASmallShareOfTheLeastSide) {
   const Scene scene = randomScene(GetParam()).scene;
   Simulation simulation(scene);
-  PenetrationWorkspace workspace;
-  double deepest_m = 0.0;
-  for (int frame = 0; frame < 85; ++frame) {
-    prepareAndStep(simulation);
-    deepest_m =
-        std::max(deepest_m, maxPenetration(simulation.state.position, scene.floor, workspace, simulation.model.fixed).depth);
-  }
-  EXPECT_LT(deepest_m, 0.02 * blockHeightOf(scene));
+  EXPECT_LT(deepestOver(85, simulation), 0.02 * blockHeightOf(scene));
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, DrawnDepthTest, ::testing::Values(1557U, 1802U, 3426U));
@@ -131,13 +125,7 @@ TEST_P(HeavyOnLight, ALightBlockIsNotCrushed) {
   scene.settings.method = GetParam().method;
   scene.settings.sleep = Sleep::off;
   Simulation simulation(scene);
-  PenetrationWorkspace workspace;
-  double deepest_m = 0.0;
-  for (int frame = 0; frame < 45; ++frame) {
-    prepareAndStep(simulation);
-    deepest_m = std::max(deepest_m, maxPenetration(simulation.state.position, true, workspace).depth);
-  }
-  EXPECT_LT(deepest_m, 0.04 * 0.06);
+  EXPECT_LT(deepestOver(45, simulation), 0.04 * 0.06);
 }
 
 INSTANTIATE_TEST_SUITE_P(Masses, HeavyOnLight,
