@@ -7,6 +7,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <oneapi/tbb/info.h>
+#include <string>
 
 namespace springtower {
 namespace {
@@ -35,10 +36,14 @@ CLI::Validator numberIn(const Range& range) {
           ""};
 }
 
+// Also spells the number without leading zeros, by which the library would take it for an octal one.
 CLI::Validator wholeNumberIn(const Range& range) {
   return {[range](std::string& text) -> std::string {
             const std::optional<std::int64_t> value = parsed<std::int64_t>(text);
-            if (value && static_cast<double>(*value) >= range.least && static_cast<double>(*value) <= range.most) return {};
+            if (value && static_cast<double>(*value) >= range.least && static_cast<double>(*value) <= range.most) {
+              text = std::to_string(*value);
+              return {};
+            }
             return fmt::format("expected a whole number from {}, got {}", describe(range), inQuotes(text));
           },
           ""};
@@ -62,7 +67,7 @@ CLI::Option* addWholeNumber(CLI::App& app, const std::string& name, std::optiona
                             const std::string& description) {
   return app.add_option(name, target, fmt::format("{}; {}", description, describe(range)))
       ->type_name("N")
-      ->check(wholeNumberIn(range));
+      ->transform(wholeNumberIn(range));
 }
 
 void addFormerFlag(CLI::App& app, const std::string& former, CLI::Option* flag, bool& target) {

@@ -87,6 +87,7 @@ std::vector<Peer> peersHere() {
 PeerProcess::PeerProcess(Peer peer, const PeerSettings& settings, const Scene& scene)
     : numbers_(1 + kNumbersPerBlock * scene.blocks.size()), frame_s_(scene.settings.frame_s) {
   for (const BlockSpec& block : scene.blocks) dimensions_.push_back(block.dimensions);
+  const std::string text = textOf(settings, scene);  // before there is anything to end: it throws for what the engine lacks
   const std::string program = programOf(peer);
   int ends[2] = {-1, -1};
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
@@ -106,10 +107,11 @@ PeerProcess::PeerProcess(Peer peer, const PeerSettings& settings, const Scene& s
   posix_spawn_file_actions_destroy(&actions);
   close(ends[1]);
   socket_ = ends[0];
-  const std::string text = textOf(settings, scene);
-  if (error == 0 && sendAll(socket_, text.data(), text.size())) return;
+  const bool sent = error == 0 && sendAll(socket_, text.data(), text.size());
+  if (sent) return;
   close(socket_);
-  throw InputError(fmt::format("{}: cannot be started: {}", program, std::strerror(error)));
+  if (error == 0) waitpid(process_, nullptr, 0);
+  throw InputError(fmt::format("{}: cannot be started: {}", program, error != 0 ? std::strerror(error) : "it ended at once"));
 }
 
 PeerProcess::~PeerProcess() {

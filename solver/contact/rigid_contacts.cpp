@@ -23,15 +23,6 @@ std::int32_t bodyOf(const IslandStep& step, std::int32_t block) {
   return step.engine.scratch.nodeOf[static_cast<std::size_t>(block)];
 }
 
-// The points of a manifold at the poses of engine.memo.frames.
-PointForces pointsNow(const IslandStep& step, const ContactView& manifold) {
-  static const AffineField still{};
-  const auto side = [&](std::int32_t block) {
-    return block < 0 ? ContactSide{} : ContactSide{&step.engine.memo.frames[static_cast<std::size_t>(block)], &still, &still};
-  };
-  return pointForces(manifold, side(manifold.upper), side(manifold.lower), step.law);
-}
-
 // Warm start with the state of the point in the step before.
 void warmStart(const IslandStep& step, const ContactView& manifold, std::size_t i, RigidContact& contact) {
   if (manifold.kind == PointKind::anchor) {
@@ -68,6 +59,14 @@ void chooseFriction(const IslandStep& step, const RigidIsland& island, const Con
 }
 
 }  // namespace
+
+PointForces pointsNow(const IslandStep& step, const ContactView& manifold) {
+  static const AffineField still{};
+  const auto side = [&](std::int32_t block) {
+    return block < 0 ? ContactSide{} : ContactSide{&step.engine.memo.frames[static_cast<std::size_t>(block)], &still, &still};
+  };
+  return pointForces(manifold, side(manifold.upper), side(manifold.lower), step.law);
+}
 
 void gatherContacts(IslandStep& step, RigidIsland& island) {
   island.contacts.clear();

@@ -21,6 +21,9 @@ constexpr PointKind pointKindOf(Method method) {
   return traits.family == MethodFamily::rigid ? PointKind::impulse : PointKind::penalty;
 }
 
+/// The points of a manifold at the poses of engine.memo.frames.
+PointForces pointsNow(const IslandStep& step, const ContactView& manifold);
+
 /// Lists all points of an island's touching manifolds at the poses of engine.memo.frames, with arms, gaps, effective masses and
 /// the impulses of the step before.
 void gatherContacts(IslandStep& step, RigidIsland& island);

@@ -68,21 +68,46 @@ double lastStep_s(const IslandStep& step) {
   return tuning::kLastEquilibriumStep * step.simulation.lengths.fallTime_s;
 }
 
+// Tells a fall from what settles, in steps from rest some of which fail. What settles is slowed by forces that come into balance,
+// at the latest when it has pressed its contacts together by some tolerances; what falls goes on over more than that with the
+// same acceleration, as it is in the last step before each that fails.
+class FallDetector {
+ public:
+  void stepped(double farthest, double effective_s) {
+    acceleration_ = farthest / (effective_s * effective_s);
+    way_ += farthest;
+  }
+  // After a step that failed.
+  bool fallsOn() {
+    const bool alike = std::abs(acceleration_ - before_) <= tuning::kSameAcceleration * before_;
+    if (!alike) way_ = 0.0;
+    before_ = acceleration_;
+    return way_ > tuning::kFallWay;
+  }
+
+ private:
+  double acceleration_ = 0.0;  // tolerances/s2, of the fastest corner
+  double before_ = 0.0;        // likewise, before the step that failed last
+  double way_ = 0.0;           // tolerances, since they are alike
+};
+
 // Steps with Coulomb's friction, from `effective_s` on longer and longer, until nothing moves in one of full length. `most`: how
 // many of them may fail to converge, each of which is tried again shorter.
 bool settleWithFriction(IslandStep& step, double effective_s, int most) {
   const double last_s = lastStep_s(step);
   int retries = 0;
+  FallDetector detector;
   for (int i = 0; i < tuning::kMaxEquilibriumSteps && !isStopped(step.monitor); ++i) {
     const std::uint64_t failures = step.counters.newtonFailures;
     const double farthest = advance(step, effective_s, StepFromRest::coulomb);
     if (step.counters.newtonFailures != failures) {
       // What falls would with every retry come nearer to a place where it lies.
-      if (++retries > (step.falls ? std::min(most, tuning::kMaxFallRetries) : most)) return false;
+      if (++retries > (step.falls ? std::min(most, tuning::kMaxFallRetries) : most) || detector.fallsOn()) return false;
       effective_s /= tuning::kSlipStepGrowth * tuning::kSlipStepGrowth;
       continue;
     }
     if (!std::isfinite(farthest)) return false;
+    detector.stepped(farthest, effective_s);
     if (effective_s >= last_s && farthest < tuning::kEquilibriumTolerance) return true;
     effective_s = std::min(last_s, tuning::kSlipStepGrowth * effective_s);
   }

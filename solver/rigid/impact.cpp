@@ -151,12 +151,6 @@ double kineticEnergy(const std::vector<RigidBody>& bodies) {
   return 0.5 * sumRanges(bodies.size(), tuning::kBlockGrain, bodies.size() >= tuning::kParallelBlocks, sum);
 }
 
-void addWorkOfGravity(const IslandStep& step, RigidIsland& island) {
-  for (const RigidBody& body : island.bodies) {
-    if (body.inverseMass > 0.0) island.energyBefore_j += body.moved.dot(step.gravity) / body.inverseMass;
-  }
-}
-
 // The energy is a square polynomial of the share of the change.
 void boundRebound(RigidIsland& island, double most_j) {
   double start = 0.0;

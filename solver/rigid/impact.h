@@ -30,9 +30,6 @@ void boundRebound(RigidIsland& island, double most_j);
 /// substep with the impulses that there were before; those of the impact would act a second time. Notes which pairs have met.
 void forgetImpact(IslandStep& step, RigidIsland& island);
 
-/// Adds the work of gravity in the substep, by the way of each body in it, to island.energyBefore_j.
-void addWorkOfGravity(const IslandStep& step, RigidIsland& island);
-
 /// Kinetic energy, J; of a body that impulses move, and of all of these.
 double kineticEnergy(const RigidBody& body);
 double kineticEnergy(const std::vector<RigidBody>& bodies);

@@ -246,11 +246,17 @@ bool markOutrunning(const IslandStep& step, RigidIsland& island, double step_s) 
   return mergeRanges(island.bodies.size(), tuning::kBlockGrain, isWide(step), false, mark, [](bool a, bool b) { return a || b; });
 }
 
+// Whether a pair touches, or contacts may begin.
+bool mayTouch(const IslandStep& step, const PairBodies& of) {
+  return step.simulation.scene.settings.continuousTests || step.engine.pairs.touches(static_cast<std::size_t>(of.pair));
+}
+
 // Bounds the motion of a pair with such a body again, as if it had had its present speed from the start of the step: what it may
 // move more counts for its points in the steps to come. Returns whether it may move farther than they, or that it has none, hold.
 bool boundAgain(const IslandStep& step, const RigidIsland& island, double step_s, ListedPair& listed, PointGroup* points) {
   const auto outruns = [&](std::size_t side) { return island.outruns[static_cast<std::size_t>(listed.body[side])] != 0; };
   if (!outruns(0) && !outruns(1)) return false;
+  if (!mayTouch(step, listed)) return false;
   const double motion = relativeMotion(step, island, listed, step_s);
   if (motion > listed.reach_m) return true;
   const double more = std::max(0.0, motion - listed.motion_m);
@@ -352,15 +358,18 @@ void listPair(IslandStep& step, const RigidIsland& island, const Listing& how, K
   if (isFarApart(step, island, listed)) return;
   const KnownGroup before = known.find(listed.pair);
   const double motion = relativeMotion(step, island, listed, step.drift_s);
-  listed.motion_m = motion;
-  engine.scratch.covered[at] = 1;
-  listed.reach_m = reachLeft(step, before);
-  if (!how.again && motion < listed.reach_m) return takeOver(before, motion, list);
   double reach = motion + tuning::kNearPointMargin * h;
+  listed.motion_m = motion;
   listed.reach_m = reach;
   engine.scratch.covered[at] = 0;
+  if (!mayTouch(step, listed)) return;
+  const double left = reachLeft(step, before);
+  if (!how.again && motion < left) {
+    listed.reach_m = left;
+    engine.scratch.covered[at] = 1;
+    return takeOver(before, motion, list);
+  }
   const bool touches = engine.pairs.touches(at);
-  if (!touches && !step.simulation.scene.settings.continuousTests) return;  // no contact begins
   if (!touches && gapOf(step, at) > reach) return;
   if (how.again && touches) reach = std::max(reach, pathOf(step, listed));
   if (motion > tuning::kMaxSteadyMotion * h) {

@@ -102,8 +102,8 @@ void solveImpacts(IslandStep& step, RigidIsland& island, const Pass& pass, doubl
 // Passes over the active points: so many, and up to as many times more as the island's largest mass is that of its smallest,
 // until the last has changed the blocks' way against one another by no more than a share of a height in the substep. A light
 // block between heavy ones takes so many passes, be it that they close or that impulses which were too large are taken back: what
-// is left of these is energy. Every other pass takes a pair's points in reverse, and the last does not: always in one order, the
-// first point of a face carries more for many passes than the last, and its block turns.
+// is left of these is energy. Every other pass takes a pair's points in reverse, the last of `passes` does not: always in one
+// order, the first point of a face carries more for many passes than the last, and its block turns.
 void runPasses(IslandStep& step, RigidIsland& island, Pass pass, int passes) {
   const std::size_t active = std::max<std::size_t>(1, island.steady.packed.activePoints + island.fast.packed.activePoints);
   const int affordable = static_cast<int>(static_cast<std::size_t>(tuning::kConvergingEvaluations) / active);
@@ -172,7 +172,8 @@ void stopAtContact(IslandStep& step, RigidIsland& island, int passes) {
 }
 
 // Passes that remove the push-out from the velocities, and by which what has met rebounds.
-void relaxAndRebound(IslandStep& step, RigidIsland& island, int passes) {
+// Returns whether any has.
+bool relaxAndRebound(IslandStep& step, RigidIsland& island, int passes) {
   readVelocities(island);
   const bool rebounds = fastestImpact(island) > 0.0;
   island.rebounds = island.rebounds || rebounds;
@@ -180,26 +181,31 @@ void relaxAndRebound(IslandStep& step, RigidIsland& island, int passes) {
   if (rebounds && step.driven.empty()) boundRebound(island, island.energyBefore_j);
   writeBodies(island);
   if (rebounds) forgetImpact(step, island);
+  return rebounds;
 }
 
 // Passes move blocks by more than their velocities where they push overlap out. If the frame has gained energy that nothing lost
 // before pays for, takes back the share of that extra motion whose lifting work is the unpaid energy. Between very unlike masses
-// a push that is too large is corrected only slowly over the passes. `kinetic_j`: kinetic energy of all bodies; returns what it
+// a push that is too large is corrected only slowly over the passes. `rebounds`: blocks have met in the substep; what the
+// velocity of one that was struck leaves of its motion is no push-out. `kinetic_j`: kinetic energy of all bodies; returns what it
 // is then, as their axes turn.
-double lowerUnpaid(const IslandStep& step, double kinetic_j, RigidIsland& island) {
+double lowerUnpaid(const IslandStep& step, bool rebounds, double kinetic_j, RigidIsland& island) {
   if (!island.touches || isWorkedOn(step)) return kinetic_j;
   const double unpaid_j =
       kinetic_j - island.energyBefore_j - std::max(0.0, freePushOut(step.simulation, massOf(island)) - island.gained_j);
   if (!(unpaid_j > 0.0)) return kinetic_j;
   const auto excessOf = [&](const RigidBody& body) { return Vec3(body.moved - step.drift_s * body.velocity); };
+  const auto isPushedOut = [&](const RigidBody& body) {
+    return body.pushed && body.inverseMass > 0.0 && !(rebounds && body.struck);
+  };
   double lifted_j = 0.0;
   for (const RigidBody& body : island.bodies) {
-    if (body.pushed && body.inverseMass > 0.0) lifted_j -= excessOf(body).dot(step.gravity) / body.inverseMass;
+    if (isPushedOut(body)) lifted_j -= excessOf(body).dot(step.gravity) / body.inverseMass;
   }
   if (!(lifted_j > 0.0)) return kinetic_j;
   const double share = std::min(1.0, unpaid_j / lifted_j);
   for (RigidBody& body : island.bodies) {
-    if (!body.pushed || body.inverseMass == 0.0) continue;
+    if (!isPushedOut(body)) continue;
     const Vec3 excess = share * excessOf(body);
     body.place -= excess;
     body.moved -= excess;
@@ -261,9 +267,9 @@ void stepImpulses(IslandStep& step, RigidIsland& island) {
   stopAtContact(step, island, passes);
   island.touches = markPushedByPoints(step, island);
   overBodies(island, [&](std::size_t i) { moveInStep(step, island.bodies[i]); });
-  addWorkOfGravity(step, island);
+  addWorkOfForces(step, island);
   moveGaps(island);
-  relaxAndRebound(step, island, scene.settings.iterations);
+  const bool rebounds = relaxAndRebound(step, island, scene.settings.iterations);
   if (isolated) restoreAngularMomentum(momentum, island);
   // Not in the rigid methods: there, blocks of a stack move by such slow pushes only, and the clamp would suppress them.
   if (rigidMode) {
@@ -273,7 +279,7 @@ void stepImpulses(IslandStep& step, RigidIsland& island) {
       isolated ? removeAddedEnergy(added_j, island) : takeGivenEnergy(added_j, step.drift_s, island);
       kinetic_j = kineticEnergy(island.bodies);
     }
-    if (!isolated) kinetic_j = lowerUnpaid(step, kinetic_j, island);
+    if (!isolated) kinetic_j = lowerUnpaid(step, rebounds, kinetic_j, island);
     island.gained_j += kinetic_j - island.energyBefore_j;
   }
 }

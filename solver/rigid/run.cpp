@@ -150,7 +150,7 @@ void stepOnce(IslandStep& step) {
   } else {
     stepXpbd(step, island);
   }
-  addWorkOfGravity(step, island);
+  addWorkOfForces(step, island);
   applyContactRebounds(step, island);
   storeForces(step, island);
   clock.lap(Stage::contacts);
@@ -229,11 +229,26 @@ void updateInertia(RigidBody& body) {
   body.inverseInertia = body.axes * body.inverseMoment * body.axes.transpose();
 }
 
+namespace {
+
+RigidBody& bodyOf(const IslandStep& step, std::size_t block, RigidIsland& island) {
+  return island.bodies[static_cast<std::size_t>(step.engine.scratch.nodeOf[block])];
+}
+
+// Where a user's force acts, m from the block's centre.
+Vec3 armOf(const UserForce& user, const RigidBody& body) {
+  if (user.corner >= 0) {
+    const auto c = static_cast<std::size_t>(user.corner);
+    return body.axes * Vec3(body.corner[0][c], body.corner[1][c], body.corner[2][c]);
+  }
+  return user.point ? Vec3(body.axes * *user.point) : Vec3(Vec3::Zero());
+}
+
 // The steps are long for the hand's springs, so their forces are those at the step's end (implicit).
-void applyTether(IslandStep& step) {
+void applyTether(IslandStep& step, RigidIsland& island) {
   Tether tether = step.simulation.tether;
   const std::size_t b = index(tether.block);
-  RigidBody& body = rigidIslandOf(step).bodies[static_cast<std::size_t>(step.engine.scratch.nodeOf[b])];
+  RigidBody& body = bodyOf(step, b, island);
   const double h = step.drift_s;
   const double cornerInverseMass = inverseMass(step.simulation.scene.settings.inertia).own * body.inverseMass;
   const double centre = 1.0 + h * body.inverseMass * (tether.damping_n_s_m + h * tether.stiffness_n_m);
@@ -250,28 +265,43 @@ void applyTether(IslandStep& step) {
     state.velocity.set(b, c, body.velocity + body.spin.cross(state.position.at(b, c) - body.place));
   std::array<Vec3, kCorners> corner;
   const GripForce held = tetherForces(tether, step.simulation.model, state, step.time_s, corner);
+  island.handForce = held.force;
+  island.handTorque = held.torque;
   body.velocity += h * body.inverseMass * held.force;
   body.spin += h * (body.inverseInertia * held.torque);
 }
 
+}  // namespace
+
 void applyForces(IslandStep& step) {
   RigidIsland& island = rigidIslandOf(step);
   // First, as its dashpots would otherwise act against the velocity that gravity adds in this step.
-  if (holdsTether(step)) applyTether(step);
+  if (holdsTether(step)) applyTether(step, island);
   for (RigidBody& body : island.bodies) {
     if (body.inverseMass > 0.0) body.velocity += step.drift_s * step.gravity;
   }
   forEachPush(step, step.time_s, step.time_s + step.drift_s, [&](const UserForce& user, const Load& mean) {
-    RigidBody& body = island.bodies[static_cast<std::size_t>(step.engine.scratch.nodeOf[static_cast<std::size_t>(user.block)])];
+    RigidBody& body = bodyOf(step, static_cast<std::size_t>(user.block), island);
     body.velocity += step.drift_s * body.inverseMass * mean.force;
-    Vec3 moment = mean.torque;
-    if (user.corner >= 0) {
-      const auto c = static_cast<std::size_t>(user.corner);
-      moment += (body.axes * Vec3(body.corner[0][c], body.corner[1][c], body.corner[2][c])).cross(mean.force);
-    } else if (user.point) {
-      moment += (body.axes * *user.point).cross(mean.force);
-    }
+    const Vec3 moment = mean.torque + armOf(user, body).cross(mean.force);
     if (!moment.isZero(0.0)) body.spin += step.drift_s * (body.inverseInertia * moment);
+  });
+}
+
+void addWorkOfForces(const IslandStep& step, RigidIsland& island) {
+  for (const RigidBody& body : island.bodies) {
+    if (body.inverseMass > 0.0) island.energyBefore_j += body.moved.dot(step.gravity) / body.inverseMass;
+  }
+  if (holdsTether(step)) {
+    const RigidBody& body = bodyOf(step, index(step.simulation.tether.block), island);
+    island.energyBefore_j += island.handForce.dot(body.moved) + island.handTorque.dot(body.turned);
+  }
+  forEachPush(step, step.time_s, step.time_s + step.drift_s, [&](const UserForce& user, const Load& mean) {
+    const RigidBody& body = bodyOf(step, static_cast<std::size_t>(user.block), island);
+    const Vec3 armNow = armOf(user, body);
+    const Vec3 armThen = armNow - body.turned.cross(armNow);  // by which it has acted
+    const Vec3 moment = mean.torque + armThen.cross(mean.force);
+    island.energyBefore_j += mean.force.dot(body.moved) + moment.dot(body.turned);
   });
 }
 

@@ -33,6 +33,9 @@ RigidIsland& rigidIslandOf(IslandStep& step);
 /// Gravity, user forces and the hand: velocities of all bodies after step.drift_s without contact forces.
 void applyForces(IslandStep& step);
 
+/// Adds the work of these in the step, by the way and turn of each body in it, to island.energyBefore_j.
+void addWorkOfForces(const IslandStep& step, RigidIsland& island);
+
 /// Moves a body by its velocity and spin for a time. Its angular momentum is conserved; the rotation is by the spin in the middle
 /// of the step (second order).
 void moveFreely(RigidBody& body, double step_s);

@@ -101,13 +101,15 @@ double storedBy(const IslandStep& step, const RigidIsland& island, double share)
 
 void setMoments(Inertia inertia, double mass_kg, RigidBody& body) {
   Eigen::Matrix3d moment = Eigen::Matrix3d::Zero();
+  double farthest = 0.0;
   for (std::size_t c = 0; c < kCorners; ++c) {
     const Vec3 arm(body.corner[0][c], body.corner[1][c], body.corner[2][c]);
+    farthest = std::max(farthest, arm.squaredNorm());
     moment += arm.squaredNorm() * Eigen::Matrix3d::Identity() - arm * arm.transpose();
   }
   body.moment = mass_kg / inverseMass(inertia).own * moment;
   body.inverseMoment = body.moment.inverse();
-  body.radius_m = Vec3(body.corner[0][0], body.corner[1][0], body.corner[2][0]).norm();
+  body.radius_m = std::sqrt(farthest);
 }
 
 void prepareShapes(Simulation& simulation) {

@@ -14,15 +14,6 @@ namespace springtower {
 
 namespace {
 
-// The points of a pair's manifold at the poses of memo.frames.
-PointForces manifoldPoints(const IslandStep& step, const ContactView& manifold) {
-  static const AffineField still{};
-  const auto side = [&](std::int32_t block) {
-    return block < 0 ? ContactSide{} : ContactSide{&step.engine.memo.frames[static_cast<std::size_t>(block)], &still, &still};
-  };
-  return pointForces(manifold, side(manifold.upper), side(manifold.lower), step.law);
-}
-
 // Place of a point on its upper body, m, world.
 Vec3 placeOf(const RigidIsland& island, const ContactConstraint& point) {
   Vec3 own(point.placeUpper[0], point.placeUpper[1], point.placeUpper[2]);
@@ -81,7 +72,7 @@ void storePair(IslandStep& step, const RigidIsland& island, std::size_t at, std:
   const PointRows rows = step.engine.contacts.points(step.engine.pairs.contact[at]);
   clearForces(rows, manifold.count);
   if (manifold.count == 0) return;
-  const PointForces now = manifoldPoints(step, manifold);
+  const PointForces now = pointsNow(step, manifold);
   const bool swapped = manifold.upper != step.engine.pairs.key[at].a;
   for (const ContactConstraint& p : points) {
     if (!(p.push > 0.0) && !(p.lasting > 0.0) && !(p.rest > 0.0)) continue;
@@ -151,7 +142,7 @@ void warmStartFromKnown(const IslandStep& step, const KnownGroup& known, std::sp
 void warmStartFromManifold(const IslandStep& step, const RigidIsland& island, std::size_t at, double substep_s,
                            std::span<ContactConstraint> points) {
   const ContactView manifold = contactOf(step.engine, at);
-  const PointForces now = manifoldPoints(step, manifold);
+  const PointForces now = pointsNow(step, manifold);
   const double sign = manifold.upper == step.engine.pairs.key[at].a ? substep_s : -substep_s;
   std::uint32_t taken = 0;
   for (ContactConstraint& p : points) {

@@ -99,6 +99,12 @@ double restNeeded(const Simulation& simulation) {
                                                           : simulation.scene.settings.sleepTime * restTimeScale_s(simulation);
 }
 
+// Whether a block has been at rest for a time. Even where none is asked for, one that moves is not.
+bool restsFor(const Simulation& simulation, std::size_t block, double needed_s) {
+  const double rest_s = simulation.restTime_s[block];
+  return rest_s > 0.0 && rest_s >= needed_s;
+}
+
 void fallAsleep(Simulation& simulation, std::size_t b) {
   Engine& engine = *simulation.engine;
   simulation.asleep[b] = 1;
@@ -155,7 +161,7 @@ void putToSleep(Simulation& simulation) {
   Engine& engine = *simulation.engine;
   const double needed = restNeeded(simulation);
   const auto ready = [&](std::int32_t block) {
-    if (simulation.restTime_s[static_cast<std::size_t>(block)] < needed ||
+    if (!restsFor(simulation, static_cast<std::size_t>(block), needed) ||
         block == static_cast<std::int32_t>(simulation.tether.block)) {
       return false;
     }
@@ -191,11 +197,12 @@ void putToSleep(Simulation& simulation) {
   engine.scratch.toWake.clear();
   recordSleepLoads(simulation, engine.scratch.joined);
   if (!engine.scratch.toWake.empty() && settings.sleep == Sleep::on) wakeUnbalancedCluster(simulation);
+  // Those that sleep already keep the gravity under which they came to rest: it may turn slowly.
+  if (engine.sleep.awakeCount == engine.sleep.movableCount) engine.sleep.gravity = simulation.scene.gravity.at(simulation.time_s);
   for (const std::int32_t block : engine.scratch.awakeBlocks) {
     if (engine.scratch.joined[static_cast<std::size_t>(block)] == 0) fallAsleep(simulation, static_cast<std::size_t>(block));
   }
   wakeRequested(simulation);
-  engine.sleep.gravity = simulation.scene.gravity.at(simulation.time_s);
 }
 
 }  // namespace
@@ -359,7 +366,7 @@ bool allAsleep(const Simulation& simulation) {
 bool atRest(const Simulation& simulation) {
   const double needed = restNeeded(simulation);
   for (std::size_t b = 0; b < simulation.restTime_s.size(); ++b) {
-    if (!(simulation.restTime_s[b] >= needed) && !simulation.model.isFixed(b)) return false;
+    if (!restsFor(simulation, b, needed) && !simulation.model.isFixed(b)) return false;
   }
   return true;
 }

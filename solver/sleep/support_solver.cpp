@@ -57,9 +57,11 @@ bool updateContactState(SupportPoint& point, double slip_n) {
 bool redistribute(std::span<SupportPoint> points, const Vec3& force, const Vec3& torque, double length_m,
                   double tangentialRatio) {
   if (points.empty()) return false;
-  double friction_n = 0.0;
-  for (const SupportPoint& point : points) friction_n += point.friction * point.normal.dot(point.force);
-  const double slip_n = tuning::kSupportConeTolerance * friction_n / static_cast<double>(points.size());
+  constexpr double kRounding = 1e-6;  // of forces and of faces that are level: without friction nothing else is held
+  double slip_n = 0.0;
+  for (const SupportPoint& point : points)
+    slip_n += (tuning::kSupportConeTolerance * point.friction + kRounding) * point.normal.dot(point.force);
+  slip_n /= static_cast<double>(points.size());
   for (int round = 0; round < tuning::kMaxSupportRounds; ++round) {
     Mat6 stiffness = Mat6::Zero();
     Wrench6 load;

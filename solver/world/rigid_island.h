@@ -173,11 +173,13 @@ struct RigidIsland {
                                       ///< points allow; and 0 for what does not move
   std::vector<ListedRange> ranges;    ///< working space, where points are listed on many threads
   bool knowsManifolds = false;        ///< points start with the forces of manifolds where no others are known
-  double energyBefore_j = 0.0;        ///< kinetic energy before the step plus the work of gravity in it
+  double energyBefore_j = 0.0;        ///< kinetic energy before the step plus the work of gravity, forces and the hand in it
+  Vec3 handForce = Vec3::Zero();      ///< N, in the step
+  Vec3 handTorque = Vec3::Zero();     ///< N m, about the centre of the block that it holds
   bool rebounds = false;              ///< whether blocks have met in the frame so fast that they rebound
   bool stands = false;                ///< whether half of the blocks at least have not fallen since they slept last
   double massRatio = 1.0;             ///< of its heaviest to its lightest body, of those that impulses move
-  double gained_j = 0.0;              ///< kinetic energy in the frame so far beyond the work of gravity; < 0: lost
+  double gained_j = 0.0;              ///< kinetic energy in the frame so far beyond this work; < 0: lost
   bool touches = false;               ///< whether any contact pushes in the step
   LcpWorkspace pivoting;
 };

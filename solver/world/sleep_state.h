@@ -35,7 +35,7 @@ struct SleepState {
   std::size_t awakeCount = 0;
   std::size_t movableCount = 0;           ///< blocks that are not fixed
   std::vector<SleepWindow> windows;       ///< [blocks]
-  Vec3 gravity = Vec3::Zero();            ///< m/s2, when the last block fell asleep
+  Vec3 gravity = Vec3::Zero();            ///< m/s2, when the first of the sleeping blocks fell asleep
   std::vector<CheckedLoad> checkedLoads;  ///< of all pushed blocks when the support check last passed; empty where it failed
 };
 

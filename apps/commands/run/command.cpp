@@ -2,6 +2,7 @@
 
 #include "apps/commands/run/forces_report.h"
 #include "apps/commands/run/report.h"
+#include "apps/common/attempts.h"
 #include "apps/common/interruption.h"
 #include "apps/common/json_values.h"
 #include "apps/common/output_file.h"
@@ -128,6 +129,51 @@ std::optional<SavedRun> savedRunOf(const RunCommand& command) {
   return std::move(loaded.run);
 }
 
+// The files that a run writes; null where none is asked for.
+struct RunFiles {
+  std::unique_ptr<OutputFile> report;
+  std::unique_ptr<OutputFile> poses;
+  std::unique_ptr<OutputFile> picture;
+  std::unique_ptr<OutputFile> save;
+};
+
+// Not where the search for the equilibrium was ended: the blocks are as placed, and what goes on from there starts otherwise.
+void saveRun(OutputFile& file, const Scene& scene, const Simulation& simulation, const RunResult& result) {
+  if (result.prepared.end == PrepareEnd::cancelled)
+    return complain("springtower", "--save: nothing is saved of a run that was ended before its first frame");
+  writeRun({scene, takeSnapshot(simulation), result.progress}, file.stream());
+  file.commit();
+}
+
+RunFiles filesOf(const RunCommand& command) {
+  return {open(command.report, "--report"), open(command.poses, "--poses"), open(command.picture, "--picture"),
+          open(command.save, "--save")};
+}
+
+// Of a run that has diverged: what is thrown then is that.
+void keepPoses(const RunFiles& files) {
+  if (!files.poses) return;
+  try {
+    files.poses->commit();
+  } catch (const InputError& error) {
+    complain("springtower", error.what());
+  }
+}
+
+// All that can be written.
+void writeFiles(const RunFiles& files, const RunCommand& command, const Scene& scene, const Simulation& simulation,
+                const RunResult& result, int threads, Attempts& outputs) {
+  if (files.poses && !outputs.failed()) outputs.attempt([&] { files.poses->commit(); });
+  if (files.report) outputs.attempt([&] { writeReport(*files.report, simulation, result, threads, command.forces); });
+  if (files.save) outputs.attempt([&] { saveRun(*files.save, scene, simulation, result); });
+  if (files.picture) {
+    outputs.attempt([&] {
+      writePicture(files.picture->stream(), simulation.state.position, simulation.scene.floor);
+      files.picture->commit();
+    });
+  }
+}
+
 }  // namespace
 
 CLI::App* defineRun(CLI::App& program, RunCommand& command) {
@@ -160,7 +206,8 @@ CLI::App* defineRun(CLI::App& program, RunCommand& command) {
       ->needs("--poses");
   run->add_option("--picture", command.picture, "draws the last frame")->type_name("FILE.png");
   run->add_option("--save", command.save,
-                  "writes all that decides how the run goes on, at its end or where a signal ends it; --resume goes on with it")
+                  "writes all that decides how the run goes on, at its end or where a signal ends it after the search for the "
+                  "equilibrium; --resume goes on with it")
       ->type_name("FILE");
   addResume(*run, command.resume);
   wrapDescriptions(*run);
@@ -188,20 +235,19 @@ int executeRun(const RunCommand& command) {
       {{"--report", &command.report}, {"--poses", &command.poses}, {"--picture", &command.picture}, {"--save", &command.save}});
   const std::optional<SavedRun> resumed = savedRunOf(command);
   const Scene scene = resumed ? withSeconds(resumed->scene, command) : sceneOf(command);
-  const auto report = open(command.report, "--report");
-  const auto poses = open(command.poses, "--poses");
-  const auto picture = open(command.picture, "--picture");
-  const auto save = open(command.save, "--save");
+  const RunFiles files = filesOf(command);
   const int threads = threadCount(command.physics);
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
 
   Simulation simulation(scene);
   RunOptions options;
   options.seconds = scene.seconds;
-  options.shouldStop = interrupted;
+  Attempts outputs;  // a run whose poses cannot be written ends there, and keeps the rest
+  options.shouldStop = [&] { return interrupted() || outputs.failed(); };
   if (resumed) options.resumed = &*resumed;
   std::optional<PoseWriter> writer;
-  if (poses) writer.emplace(poses->stream(), command.posesEvery_s.value_or(scene.settings.frame_s), scene.settings.frame_s);
+  if (files.poses)
+    writer.emplace(files.poses->stream(), command.posesEvery_s.value_or(scene.settings.frame_s), scene.settings.frame_s);
   Progress preparing(static_cast<double>(scene.blocks.size()), "blocks in equilibrium or left as placed");
   if (command.prepareBudget_s) options.prepare.budget_s = *command.prepareBudget_s;
   options.prepare.goesOn = [&](const PrepareProgress& now) {
@@ -212,30 +258,24 @@ int executeRun(const RunCommand& command) {
   RunResult result;
   try {
     result = runScene(simulation, options, [&](const Simulation& now) {
-      if (writer) {
-        writer->frame(now);
-        poses->flushEverySecond();
+      if (writer && !outputs.failed()) {
+        outputs.attempt([&] {
+          writer->frame(now);
+          if (isPrepared(now)) files.poses->flushEverySecond();
+        });
       }
       if (now.frame > 0) preparing.clear();
       progress.update(now.time_s);
     });
   } catch (const DivergenceError&) {
-    if (poses) poses->commit();
+    keepPoses(files);
     throw;
   }
   preparing.clear();
   progress.clear();
-  if (poses) poses->commit();
-  if (report) writeReport(*report, simulation, result, threads, command.forces);
-  if (save) {
-    writeRun({scene, takeSnapshot(simulation), result.progress}, save->stream());
-    save->commit();
-  }
-  if (picture) {
-    writePicture(picture->stream(), simulation.state.position, scene.floor);
-    picture->commit();
-  }
+  writeFiles(files, command, scene, simulation, result, threads, outputs);
   printResult(simulation, result, threads);
+  outputs.finish();
   return result.interrupted ? interruptionExitCode() : 0;
 }
 

@@ -1,6 +1,7 @@
 // The viewer: a window with the tower, a hand, and panels; or, with --headless, pictures of a scene. Exit codes are those of
 // apps/common/program.h, and 1 where a replay differs; divergence counts without a window only.
 #include "apps/common/arguments.h"
+#include "apps/common/attempts.h"
 #include "apps/common/interruption.h"
 #include "apps/common/options.h"
 #include "apps/common/output_file.h"
@@ -226,26 +227,6 @@ int outcomeOf(const Viewer& viewer, bool headless) {
   }
   return 0;
 }
-
-// Does several things one after the other, each whatever became of those before. What the first of them threw is thrown at the
-// end.
-class Attempts {
- public:
-  template <class Action>
-  void attempt(const Action& action) {
-    try {
-      action();
-    } catch (...) {
-      if (!failure_) failure_ = std::current_exception();
-    }
-  }
-  void finish() const {
-    if (failure_) std::rethrow_exception(failure_);
-  }
-
- private:
-  std::exception_ptr failure_;
-};
 
 void play(const Command& command, Viewer& viewer, const ViewerFiles& files, const Viewport& size,
           std::chrono::steady_clock::time_point started) {

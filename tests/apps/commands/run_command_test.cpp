@@ -155,6 +155,33 @@ TEST(Program, AFullDiskBehindTheReportIsAnError) {
   EXPECT_THAT(result.error, HasSubstr("--report: cannot write '/dev/full'"));
 }
 
+// A run whose poses fill a disk ends there, and what else it was to write is written.
+TEST(Program, AFullDiskBehindThePosesCostsNoOtherFile) {
+  const ScratchFolder scratch;
+  const ProgramResult result = run({"tower:18", "--no-sleep", "--seconds", "100000", "--poses", "/dev/full", "--report",
+                                    scratch.file("r.json"), "--save", scratch.file("s"), "--picture", scratch.file("p.png")});
+  EXPECT_EQ(result.exitCode, 2);
+  EXPECT_THAT(result.error, HasSubstr("--poses: cannot write '/dev/full'"));
+  const Json report = Json::parse(contentOf(scratch.file("r.json")));
+  EXPECT_EQ(report.at("interrupted"), true);
+  EXPECT_LT(report.at("simulated_s").get<double>(), 1e5);
+  EXPECT_EQ(runProgram("springtower", {"run", "--resume", scratch.file("s"), "--seconds", "0.1"}).exitCode, 0);
+  EXPECT_NE(contentOf(scratch.file("p.png")), "");
+}
+
+// A whole number is decimal, whatever zeros it begins with.
+TEST(RunCommand, ZerosBeforeANumberChangeNothing) {
+  const std::vector<std::string> scene = {"tower:3", "--heights-sigma", "0.0002", "--seconds", "0.1", "--seed"};
+  const auto hashOf = [&](const std::string& seed) {
+    std::vector<std::string> arguments = scene;
+    arguments.push_back(seed);
+    return reportOf(arguments).at("state_hash");
+  };
+  EXPECT_EQ(hashOf("010"), hashOf("10"));
+  EXPECT_NE(hashOf("010"), hashOf("8"));
+  EXPECT_EQ(hashOf("08"), hashOf("8"));
+}
+
 TEST(RunCommand, ReportsEverythingByName) {
   const Json report = reportOf({"tower:1", "--seconds", "0.5", "--threads", "1"});
   for (const char* key : {"version", "scene", "method", "inertia"}) EXPECT_TRUE(report.at(key).is_string()) << key;
@@ -350,6 +377,15 @@ TEST(RunCommand, DivergenceHasItsOwnExitCodeAndKeepsThePoses) {
   EXPECT_THAT(result.error, ::testing::MatchesRegex("springtower: .*block [0-9]+.* [0-9.e-]+ s.*\n"));
   EXPECT_THAT(linesOf(contentOf(scratch.file("poses.csv"))), SizeIs(::testing::Ge(19U)));
   EXPECT_FALSE(std::filesystem::exists(scratch.file("report.json")));
+}
+
+// Poses that cannot be written do not hide what has happened.
+TEST(RunCommand, DivergenceIsSaidWhereThePosesCannotBeWritten) {
+  const ProgramResult result = run({"tower:6", "--seconds", "10", "--method", "semi-implicit-euler", "--tolerance", "1e-6",
+                                    "--substeps", "2", "--allow-unstable", "--poses", "/dev/full"});
+  EXPECT_EQ(result.exitCode, 3) << result.error;
+  EXPECT_THAT(result.error, HasSubstr("diverged"));
+  EXPECT_THAT(result.error, HasSubstr("--poses: cannot write '/dev/full'"));
 }
 
 // After the line of each move a table says how far every other block moved in it, as the report does; the block in the hand has

@@ -4,6 +4,7 @@
 #include "tests/support/running_program.h"
 
 #include <csignal>
+#include <filesystem>
 #include <fstream>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -150,6 +151,20 @@ TEST(SaveResumeRun, ASignalLosesNothing) {
     ASSERT_EQ(runProgram("springtower", once).exitCode, 0);
     EXPECT_EQ(resumed.at("state_hash"), Json::parse(contentOf(scratch.file("r"))).at("state_hash"));
   }
+}
+
+// A search for the equilibrium that is ended leaves the blocks as placed. A run that went on from there would be another one.
+TEST(SaveResumeRun, NothingIsSavedOfARunThatHasNotBegun) {
+  const ScratchFolder scratch;
+  const std::string file = scratch.file("s");
+  RunningProgram run("springtower", {"run", "pyramid:100", "--save", file});
+  run.waitUntil([&] { return std::filesystem::exists(file + ".partial"); });
+  run.send(SIGINT);
+  const ProgramResult result = run.wait();
+  EXPECT_EQ(result.exitCode, 130);
+  EXPECT_EQ(result.error, "springtower: --save: nothing is saved of a run that was ended before its first frame\n");
+  EXPECT_FALSE(std::filesystem::exists(file));
+  EXPECT_FALSE(std::filesystem::exists(file + ".partial"));
 }
 
 void expectRefused(const ProgramResult& result, const std::string& message) {

@@ -48,6 +48,42 @@ TEST(Sleep, TheFullTowerSleepsWithinFiveSecondsAndThenCostsNothing) {
   EXPECT_EQ(stateHash(simulation), hash);
 }
 
+// No time at rest is asked for, but rest is: what falls does not stop in the air.
+TEST(Sleep, AtOnceIsNotBeforeRest) {
+  Scene scene;
+  scene.settings.sleepTime = 0.0;
+  scene.blocks.resize(1);
+  scene.blocks[0].centre.z() = 0.1 + 0.5 * kBlockHeight_m;
+  Simulation simulation(scene);
+  stepUntilAsleep(simulation, 5.0);
+  EXPECT_TRUE(allAsleep(simulation));
+  EXPECT_NEAR(centre(simulation.state.position, 0).z(), 0.5 * kBlockHeight_m, simulation.tolerance_m);
+}
+
+// Gravity turns by less than what wakes a sleeper, another block falls asleep, and gravity turns as far again: by more than that
+// against the gravity under which the first one sleeps. The limit is a ten-thousandth, 0.0057 degrees.
+TEST(Sleep, GravityThatTurnsSlowlyWakesWhoHasSleptLong) {
+  Scene scene;
+  scene.blocks.resize(2);
+  for (std::size_t b = 0; b < 2; ++b) scene.blocks[b].centre = Vec3(static_cast<double>(b), 0.0, 0.5 * kBlockHeight_m);
+  scene.forces.push_back(constantForce(1, -1, Vec3(0.0, 0.0, -0.01), 4.0, 4.2));
+  Simulation simulation(scene);
+  stepUntilAsleep(simulation, 3.9);
+  ASSERT_TRUE(allAsleep(simulation));
+  Gravity gravity = scene.gravity;
+  gravity.tilt_deg = 0.0045;
+  setGravity(simulation, gravity);
+  while (simulation.time_s < 4.1) prepareAndStep(simulation);
+  ASSERT_EQ(asleepBlocks(simulation), 1U);
+  stepUntilAsleep(simulation, 8.0);
+  ASSERT_TRUE(allAsleep(simulation));
+  ASSERT_EQ(simulation.wakes[static_cast<std::size_t>(WakeReason::gravity)], 0U);
+  gravity.tilt_deg = 0.009;
+  setGravity(simulation, gravity);
+  prepareAndStep(simulation);
+  EXPECT_EQ(asleepBlocks(simulation), 0U);
+}
+
 // A pull of a hundredth of the block's weight: far inside the friction cone, and half of the load change that would wake
 // neighbours. It wakes the block it acts on and no other, and displaces nothing by more than the compliance of its contacts. When
 // it ends the block sleeps again.

@@ -52,6 +52,14 @@ TEST(Support, SlidesAndTurnsWhenFrictionIsUsedUp) {
   }
 }
 
+// Without friction a face still carries what presses on it straight, wherever that is within the face, and nothing along it.
+TEST(Support, CarriesWithoutFriction) {
+  const Vec3 press = -0.5 * Vec3::UnitZ();
+  EXPECT_TRUE(stays(press, Vec3::Zero(), 0.0));
+  EXPECT_TRUE(stays(press, Vec3(0.5 * kHalf_m, 0.3 * kHalf_m, 0.0).cross(press), 0.0));
+  EXPECT_FALSE(stays(press + 1e-3 * Vec3::UnitX(), Vec3::Zero(), 0.0));
+}
+
 // The forces at the points balance the change, push, and are in the cone, with some points open and others slipping.
 TEST(Support, BalancesAllOfTheChange) {
   const Vec3 force{0.45, 0.1, 0.3};
