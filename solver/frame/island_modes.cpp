@@ -209,8 +209,7 @@ IslandOutcome runRigidMode(IslandStep& step, double begin_s, bool stands) {
   const int groups = static_cast<int>(std::ceil(most * share / tuning::kSubstepsPerStep));
   const IslandOutcome outcome = runRigidSteps(step, groups * tuning::kSubstepsPerStep, begin_s);
   // A block that rocks is slow for a moment at each turn.
-  const bool moving = isFasterThan(step, speedOf(step, tuning::kRigidExitSpeed)) &&
-                      step.engine.scratch.rigidIslands.of(step.blocks.front()).rebounds;
+  const bool moving = isFasterThan(step, speedOf(step, tuning::kRigidExitSpeed)) && outcome.rebounds;
   const bool forced = isWorkedOn(step);
   const std::int32_t least = moving ? framesOf(simulation, tuning::kRigidRestTime) : 0;
   for (const std::int32_t block : step.blocks) {

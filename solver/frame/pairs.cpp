@@ -268,12 +268,6 @@ void findNearPairs(Simulation& simulation) {
       updateIslands(engine.memo.islands, edgesOfIslands(simulation), simulation.asleep) || engine.memo.topologyChanged;
   listDrivenOfIslands(simulation);
   if (engine.memo.topologyChanged) listIslandPairs(simulation);
-  // A snapshot restores islands, and the places of their factors, but no scratch.
-  if (!engine.memo.newtonSystems.isUsed()) {
-    engine.scratch.rigidIslands.assign(engine.memo.islands);
-  } else if (engine.scratch.rigidIslands.isUsed()) {
-    engine.scratch.rigidIslands.follow(engine.memo.newtonSystems);
-  }
   engine.scratch.covered.assign(engine.pairs.size(), 0);
   engine.scratch.watchedPairs.resize(engine.memo.islandPairs.size());  // also where a snapshot has restored other lists
 }

@@ -206,7 +206,6 @@ void prepareImplicit(Simulation& simulation) {
   engine.memo.carriedMotion.resize(count);
   engine.memo.newtonSystems.use(count);
   engine.scratch.nodeOf.assign(count, 0);
-  if (isImplicit(simulation.scene.settings.method)) engine.scratch.rigidIslands.use(count);
   if (simulation.scene.settings.method == Method::implicitEigen) engine.memo.sparseFactors.use(count);
 }
 

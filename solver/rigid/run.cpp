@@ -203,13 +203,11 @@ Eigen::Matrix3d straightAxes(const ParticleArray& position, std::size_t block) {
 }
 
 RigidIsland& rigidIslandOf(IslandStep& step) {
-  return step.engine.scratch.rigidIslands.of(step.blocks.front());
+  return *step.rigid;
 }
 
 void prepareRigid(Simulation& simulation) {
-  const std::size_t count = simulation.model.blockCount();
-  simulation.engine->scratch.rigidIslands.use(count);
-  simulation.engine->scratch.nodeOf.assign(count, 0);
+  simulation.engine->scratch.nodeOf.assign(simulation.model.blockCount(), 0);
 }
 
 int rigidSubsteps(const Settings& settings) {
@@ -407,11 +405,13 @@ IslandOutcome runRigidSteps(IslandStep& step, int steps, double begin_s) {
   outcome.substeps = steps;
   step.drift_s = (step.part.end_s - begin_s) / count;
   step.kick_s = step.advance_s = step.drift_s;
+  const auto taken = step.engine.scratch.rigidWork.take();
+  RigidIsland& island = taken.record();
+  step.rigid = &island;
   readPoses(step);
   computeAllFrames(step);
   step.usesActiveList = true;
   step.activeListSteps = 0;
-  RigidIsland& island = rigidIslandOf(step);
   forgetPoints(island);
   island.rebounds = false;
   island.stands = !isMostlyFallen(step);
@@ -426,6 +426,8 @@ IslandOutcome runRigidSteps(IslandStep& step, int steps, double begin_s) {
   }
   equaliseMemory(island);
   writeVelocities(step);
+  outcome.rebounds = island.rebounds;
+  step.rigid = nullptr;
   for (const std::int32_t block : step.blocks) {
     step.engine.memo.blockHistory[static_cast<std::size_t>(block)].lastExplicitStep_s = step.drift_s;
     step.engine.memo.blockHistory[static_cast<std::size_t>(block)].lastImplicitStep_s = 0.0;

@@ -62,14 +62,6 @@ class ByIsland {
     }
   }
 
-  /// Records in the same places as another's.
-  template <class Other>
-  void follow(const ByIsland<Other>& other) {
-    place_ = other.place_;
-    owner_ = other.owner_;
-    if (records_.size() < owner_.size()) records_.resize(owner_.size());
-  }
-
   /// The record of the island with this smallest block. Precondition: assign has seen the island.
   Record& of(std::int32_t first) { return records_[static_cast<std::size_t>(place_[static_cast<std::size_t>(first)])]; }
 
@@ -90,9 +82,6 @@ class ByIsland {
   [[nodiscard]] std::size_t indexBytes() const { return (place_.size() + owner_.size() + free_.size()) * sizeof(std::int32_t); }
 
  private:
-  template <class Other>
-  friend class ByIsland;
-
   static constexpr std::int32_t kNone = -1;
 
   void place(std::int32_t first) {

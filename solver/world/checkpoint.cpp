@@ -242,7 +242,7 @@ void saveStep(IslandStep& step) {
     engine.checkpoint.stepTravel[b] = engine.memo.blockHistory[b].travel;
   }
   if (step.pointKind == PointKind::penalty) return;
-  for (RigidBody& body : engine.scratch.rigidIslands.of(step.blocks.front()).bodies) body.before = body;
+  for (RigidBody& body : step.rigid->bodies) body.before = body;
 }
 
 void restoreStep(IslandStep& step) {
@@ -260,7 +260,7 @@ void restoreStep(IslandStep& step) {
     }
   });
   if (!rigid) return;
-  for (RigidBody& body : engine.scratch.rigidIslands.of(step.blocks.front()).bodies) static_cast<RigidPose&>(body) = body.before;
+  for (RigidBody& body : step.rigid->bodies) static_cast<RigidPose&>(body) = body.before;
 }
 
 }  // namespace springtower

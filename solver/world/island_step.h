@@ -10,6 +10,7 @@
 namespace springtower {
 
 class SearchMonitor;  // solver/implicit/search_monitor.h
+struct RigidIsland;   // solver/world/rigid_island.h
 
 /// One island during one frame or a part of it: what a method's step needs, and where it may write. Everything it writes belongs
 /// to this island alone, so islands run in parallel.
@@ -39,6 +40,7 @@ struct IslandStep {
   PointKind pointKind = PointKind::penalty;  ///< what the points of contacts made now store, by the kind of steps
   bool sticks = false;                       ///< points that push stick, where there is friction at all
   double smoothing_j = 0.0;                  ///< of ContactStep
+  RigidIsland* rigid = nullptr;              ///< working data of its rigid steps while these run
   SearchMonitor* monitor = nullptr;          ///< of the search for the equilibrium, or null
   float diagonalShare = 0.0F;           ///< by which the search last made the diagonal of its factors stiffer; 0 in other steps
   bool falls = false;                   ///< whether its last step failed because a block moved too far
@@ -52,7 +54,8 @@ struct IslandStep {
 /// Result of an island's frame.
 struct IslandOutcome {
   int substeps = 0;
-  bool inside = true;  ///< no block left its swept box
+  bool inside = true;     ///< no block left its swept box
+  bool rebounds = false;  ///< whether blocks have met in rigid steps so fast that they rebound
 };
 
 }  // namespace springtower

@@ -90,6 +90,27 @@ std::size_t ofMemo(const Memo& memo) {
   return sum;
 }
 
+// With what is kept for larger islands: the sizes are those of whichever island had it last.
+template <class... Parts>
+std::size_t reservedFor(const Parts&... parts) {
+  return ((parts.capacity() * sizeof(typename Parts::value_type)) + ...);
+}
+
+std::size_t ofRigidWork(const RigidIsland& island) {
+  const LcpWorkspace& lcp = island.pivoting;
+  std::size_t sum =
+      sizeof(RigidIsland) + reservedFor(island.bodies, island.contacts, island.places, island.motions, island.changed,
+                                        island.listedPairs, island.fastPairs, island.fastPairsBefore, island.outruns, lcp.matrix,
+                                        lcp.inverse, lcp.impulse, lcp.velocity, lcp.least, lcp.most, lcp.impulseChange,
+                                        lcp.velocityChange, lcp.column, lcp.clamped, lcp.placeOf, island.ranges);
+  for (const PointList* list : listsOf(island)) sum += reservedFor(list->points, list->groups);
+  for (const PackedPoints* p : packsOf(island))
+    sum += reservedFor(p->pairs, p->points, p->places, p->colourStart, p->active, p->activeStart, p->taken, p->kind, p->key,
+                       p->keyStart, p->order, p->bodyStart, p->bodyPairs, p->due);
+  for (const ListedRange& range : island.ranges) sum += reservedFor(range.list.points, range.list.groups, range.fastPairs);
+  return sum;
+}
+
 std::size_t ofScratch(const Scratch& s) {
   std::size_t sum = sumOf(s.awakeBlocks, s.reach, s.cursor, s.path, s.assumedPath, s.newContactCount, s.nodeOf, s.contactForce,
                           s.pastPosition, s.freePosition, s.lostNeighbours, s.toWake, s.wakeRoots, s.pushed, s.loadChange,
@@ -99,20 +120,7 @@ std::size_t ofScratch(const Scratch& s) {
                           s.islandEdges, s.covered, s.drivenNow, s.sweepAsleep, s.nearDriven, s.drivenOfIslands, s.drivenMean);
   for (const MotionState& stage : s.stage) sum += bytesOf(stage);
   for (const ParticleArray& acceleration : s.stageAcceleration) sum += bytesOf(acceleration);
-  sum += s.rigidIslands.indexBytes();
-  for (const RigidIsland& island : s.rigidIslands.all()) {
-    const LcpWorkspace& lcp = island.pivoting;
-    sum += sizeof(RigidIsland) + sumOf(island.bodies, island.contacts, island.places, island.motions, island.changed,
-                                       island.listedPairs, island.fastPairs, island.fastPairsBefore, island.outruns, lcp.matrix,
-                                       lcp.inverse, lcp.impulse, lcp.velocity, lcp.least, lcp.most, lcp.impulseChange,
-                                       lcp.velocityChange, lcp.column, lcp.clamped, lcp.placeOf);
-    for (const PointList* list : listsOf(island)) sum += sumOf(list->points, list->groups);
-    for (const PackedPoints* p : packsOf(island))
-      sum += sumOf(p->pairs, p->points, p->places, p->colourStart, p->active, p->activeStart, p->taken, p->kind, p->key,
-                   p->keyStart, p->order, p->bodyStart, p->bodyPairs, p->due);
-    for (const ListedRange& range : island.ranges) sum += sumOf(range.list.points, range.list.groups, range.fastPairs);
-    sum += sumOf(island.ranges);
-  }
+  s.rigidWork.forEach([&](const RigidIsland& island) { sum += ofRigidWork(island); });
   return sum;
 }
 

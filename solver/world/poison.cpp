@@ -39,7 +39,7 @@ void poisonScratch(Engine& engine) {
               work.coupledMotion, work.coupledForce, work.correction);
   engine.contacts.poisonStartRows();
   engine.checkpoint.savedBlocks.forEachPage([](SavedBlocks& page) { std::memset(static_cast<void*>(&page), 0xFF, sizeof page); });
-  for (RigidIsland& island : s.rigidIslands.all()) {
+  s.rigidWork.forEach([](RigidIsland& island) {
     LcpWorkspace& lcp = island.pivoting;
     poisonAll(island.bodies, island.contacts, island.places, island.motions, island.changed, island.listedPairs, island.fastPairs,
               island.outruns, lcp.matrix, lcp.inverse, lcp.impulse, lcp.velocity, lcp.least, lcp.most, lcp.impulseChange,
@@ -49,7 +49,7 @@ void poisonScratch(Engine& engine) {
       poisonAll(p->pairs, p->points, p->places, p->colourStart, p->active, p->activeStart, p->taken, p->kind, p->key, p->keyStart,
                 p->order, p->bodyStart, p->bodyPairs, p->due);
     for (ListedRange& range : island.ranges) poisonAll(range.list.points, range.list.groups, range.fastPairs);
-  }
+  });
 }
 
 }  // namespace springtower

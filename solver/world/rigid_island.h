@@ -152,7 +152,8 @@ struct LcpWorkspace {
   std::vector<std::int32_t> placeOf;   ///< index of each row in `clamped`, or -1
 };
 
-/// Working data of an island of rigid blocks. Nothing in it outlives a step; its storage is reused.
+/// Working data of an island of rigid blocks in the part of a frame that is run. Nothing in it outlives that; another island may
+/// have it next (WorkPool).
 struct RigidIsland {
   std::vector<RigidBody> bodies;  ///< [blocks of the island], then the driven blocks near it, whose inverse mass is 0
   std::vector<RigidContact> contacts;
@@ -199,8 +200,5 @@ auto packsOf(Island& island) {
 inline std::int32_t unmovedBody(const RigidIsland& island) {
   return static_cast<std::int32_t>(island.bodies.size());
 }
-
-/// Nothing of it outlives a step.
-inline void reset(RigidIsland& /*island*/) {}
 
 }  // namespace springtower

@@ -4,11 +4,11 @@
 #include "core/ids.h"
 #include "core/state.h"
 #include "solver/block/affine.h"
-#include "solver/world/by_island.h"
 #include "solver/world/frame_part.h"
 #include "solver/world/rigid_island.h"
 #include "solver/world/sleep_state.h"
 #include "solver/world/support_point.h"
+#include "solver/world/work_pool.h"
 
 #include <array>
 #include <cstddef>
@@ -91,7 +91,7 @@ struct Scratch {
   ParticleArray pastPosition;                      ///< m, contribution of past steps to the position at an implicit step's end;
                                                    ///< matrices of contacts where explicit steps are chosen
   ParticleArray freePosition;                      ///< m, position at the end of the implicit step without forces
-  ByIsland<RigidIsland> rigidIslands;              ///< of rigid methods, and of those that may change to rigid steps
+  WorkPool<RigidIsland> rigidWork;                 ///< of rigid steps
 
   // Sleep.
   std::vector<std::int32_t>

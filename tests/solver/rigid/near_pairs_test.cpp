@@ -33,7 +33,8 @@ Scene turningPair() {
 TEST(NearPairs, OfBlocksThatTurnAsOneAreListedOnce) {
   Simulation simulation(turningPair());
   prepareAndStep(simulation);
-  const std::vector<PointGroup>& groups = simulation.engine->scratch.rigidIslands.of(0).steadyKnown.groups;
+  std::vector<PointGroup> groups;
+  simulation.engine->scratch.rigidWork.forEach([&](const RigidIsland& island) { groups = island.steadyKnown.groups; });
   ASSERT_EQ(groups.size(), 1U);
   EXPECT_GE(groups.front().count, 4) << "the corners of both faces";
   const double angle = kSpin_rad_s * simulation.scene.settings.frame_s;
