@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/lanes.h"
+#include "core/vector.h"
 
 namespace springtower {
 
@@ -50,13 +51,13 @@ SPRINGTOWER_INLINE void removeAlong(const LaneVector& direction, LaneVector& fro
   dot(from, direction, along);
   subtractTimes(along, direction, from);
 }
-SPRINGTOWER_INLINE void setLane(LaneVector& to, int lane, const Lanes& vector) {
+SPRINGTOWER_INLINE void setLane(LaneVector& to, int lane, const Vec3& vector) {
   to.x[lane] = vector[0];
   to.y[lane] = vector[1];
   to.z[lane] = vector[2];
 }
-SPRINGTOWER_INLINE void getLane(const LaneVector& from, int lane, Lanes& vector) {
-  vector = Lanes{from.x[lane], from.y[lane], from.z[lane], 0.0};
+SPRINGTOWER_INLINE void getLane(const LaneVector& from, int lane, Vec3& vector) {
+  vector = {from.x[lane], from.y[lane], from.z[lane]};
 }
 
 /// Four vectors, each in the first three lanes of a pack, to components.

@@ -65,9 +65,11 @@ SPRINGTOWER_INLINE void placeNormal(const LanePlace& upper, const LanePlace& low
   LaneVector byUpper, byLower;
   turned(upper, own.normal, byUpper);
   turned(lower, own.normal, byLower);
-  normal.x = own.turnsUpper ? byUpper.x : (own.turnsLower ? byLower.x : own.normal.x);
-  normal.y = own.turnsUpper ? byUpper.y : (own.turnsLower ? byLower.y : own.normal.y);
-  normal.z = own.turnsUpper ? byUpper.z : (own.turnsLower ? byLower.z : own.normal.z);
+  const LaneMask withUpper = (own.kind & kTurnsUpper) != 0;
+  const LaneMask withLower = (own.kind & kTurnsLower) != 0;
+  normal.x = withUpper ? byUpper.x : (withLower ? byLower.x : own.normal.x);
+  normal.y = withUpper ? byUpper.y : (withLower ? byLower.y : own.normal.y);
+  normal.z = withUpper ? byUpper.z : (withLower ? byLower.z : own.normal.z);
 }
 
 // The mean of a point's push over about a frame, without impacts, which push in one substep alone.
@@ -106,9 +108,11 @@ SPRINGTOWER_INLINE void closingByTurning(const PackMotion& motion, const PackedP
   cross(motion.spinLower, turningLower, inwardLower);
   subtract(inwardLower, inward);
   const Lanes zero{};
-  spin.x = own.turnsUpper ? motion.spinUpper.x : (own.turnsLower ? motion.spinLower.x : zero);
-  spin.y = own.turnsUpper ? motion.spinUpper.y : (own.turnsLower ? motion.spinLower.y : zero);
-  spin.z = own.turnsUpper ? motion.spinUpper.z : (own.turnsLower ? motion.spinLower.z : zero);
+  const LaneMask withUpper = (own.kind & kTurnsUpper) != 0;
+  const LaneMask withLower = (own.kind & kTurnsLower) != 0;
+  spin.x = withUpper ? motion.spinUpper.x : (withLower ? motion.spinLower.x : zero);
+  spin.y = withUpper ? motion.spinUpper.y : (withLower ? motion.spinLower.y : zero);
+  spin.z = withUpper ? motion.spinUpper.z : (withLower ? motion.spinLower.z : zero);
   cross(spin, p.normal, turning);
   Lanes byPoints, byNormal;
   dot(p.normal, inward, byPoints);
@@ -166,7 +170,7 @@ SPRINGTOWER_INLINE void openBeside(const PackedPair& pair, const Springs& spring
     const PackedPlace& own = packed.places[static_cast<std::size_t>(row)];
     const Lanes gap = packed.points[static_cast<std::size_t>(row)].gap - own.rest + own.beside;
     for (std::size_t k = 0; k < kSeparatingAxes; ++k) {
-      const Lanes along = (own.axis[k] & (own.rest < none)) ? gap : none;
+      const Lanes along = (((own.kind & kAxisBit << k) != 0) & (own.rest < none)) ? gap : none;
       smallerOf(along, separation[k], separation[k]);
     }
   }
@@ -180,7 +184,8 @@ SPRINGTOWER_INLINE void openBeside(const PackedPair& pair, const Springs& spring
     const PackedPlace& own = packed.places[static_cast<std::size_t>(row)];
     PackedPoint& p = packed.points[static_cast<std::size_t>(row)];
     LaneMask isBeside{};
-    for (std::size_t k = 0; k < kSeparatingAxes; ++k) isBeside |= own.axis[k] & (separation[k] < apart - springs.rounding_m);
+    for (std::size_t k = 0; k < kSeparatingAxes; ++k)
+      isBeside |= ((own.kind & kAxisBit << k) != 0) & (separation[k] < apart - springs.rounding_m);
     p.gap = (isBeside & (apart > zero) & (p.gap < apart)) ? apart : p.gap;
   }
 }

@@ -1,6 +1,7 @@
 #include "solver/rigid/list_points.h"
 
 #include "core/parallel.h"
+#include "core/reserve_closely.h"
 #include "core/tuning.h"
 #include "narrowphase/near_points.h"
 #include "solver/contact/create.h"
@@ -82,26 +83,27 @@ NormalOf turningWith(const RigidIsland& island, const PairBodies& of, const Near
 // The point in the axes of its bodies.
 void addConstraint(const RigidIsland& island, const PairBodies& of, const NearPoint& near, double restitution,
                    std::vector<ContactConstraint>& points) {
+  reserveClosely(points.size() + 1, points);
   points.emplace_back();
   ContactConstraint& p = points.back();
   p.upper = of.body[0];
   p.lower = of.body[1];
-  const auto own = [&](std::int32_t body, const Vec3& place, Lanes& lanes) {
-    if (body == unmovedBody(island)) return toLanes(place, lanes);
+  const auto own = [&](std::int32_t body, const Vec3& place) {
+    if (body == unmovedBody(island)) return place;
     const RigidBody& moved = island.bodies[static_cast<std::size_t>(body)];
-    toLanes(moved.axes.transpose() * (place - moved.place), lanes);
+    return Vec3(moved.axes.transpose() * (place - moved.place));
   };
-  own(p.upper, near.onA, p.placeUpper);
-  own(p.lower, near.onB, p.placeLower);
+  p.placeUpper = own(p.upper, near.onA);
+  p.placeLower = own(p.lower, near.onB);
   p.normalOf = turningWith(island, of, near);
   const std::int32_t turning = p.normalOf == NormalOf::a ? p.upper : p.lower;
   p.axis = near.axis;
   p.beside = near.beside;
   if (p.normalOf == NormalOf::world || turning == unmovedBody(island)) {
     p.normalOf = NormalOf::world;
-    toLanes(near.normal, p.ownNormal);
+    p.ownNormal = near.normal;
   } else {
-    toLanes(island.bodies[static_cast<std::size_t>(turning)].axes.transpose() * near.normal, p.ownNormal);
+    p.ownNormal = island.bodies[static_cast<std::size_t>(turning)].axes.transpose() * near.normal;
   }
   p.gap = near.normal.dot(near.onA - near.onB);
   p.restitution = restitution;
@@ -200,6 +202,7 @@ void takeOver(const KnownGroup& known, double motion, PointList& list) {
   const auto from = known.list->points.begin() + group.first;
   group.first = static_cast<std::int32_t>(list.points.size());
   group.moved_m += motion;
+  reserveClosely(list.points.size() + static_cast<std::size_t>(group.count), list.points);
   list.points.insert(list.points.end(), from, from + group.count);
   list.groups.push_back(group);
 }
@@ -303,6 +306,7 @@ double pathOf(const IslandStep& step, const PairBodies& of) {
 // Appends what a range of pairs has listed.
 void append(const ListedRange& from, PointList& list, std::vector<PairBodies>& fastPairs) {
   const auto first = static_cast<std::int32_t>(list.points.size());
+  reserveClosely(list.points.size() + from.list.points.size(), list.points);
   list.points.insert(list.points.end(), from.list.points.begin(), from.list.points.end());
   for (PointGroup group : from.list.groups) {
     group.first += first;
@@ -333,6 +337,7 @@ void listRanges(const IslandStep& step, std::size_t count, std::vector<ListedRan
 
 // The pairs that may meet in the step, with their bodies, and an upper bound of the speed of these.
 void listPairs(const IslandStep& step, RigidIsland& island) {
+  reserveClosely(step.activePairs.size(), island.listedPairs);
   island.listedPairs.resize(step.activePairs.size());
   forRanges(step.activePairs.size(), tuning::kPairGrain, isWide(step), [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) island.listedPairs[i] = {bodiesOf(step, island, step.activePairs[i])};

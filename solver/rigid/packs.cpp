@@ -1,5 +1,7 @@
 #include "solver/rigid/packs.h"
 
+#include "core/reserve_closely.h"
+
 #include <algorithm>
 #include <bit>
 #include <limits>
@@ -107,7 +109,10 @@ void distribute(const RigidIsland& island, ActingPoints& list) {
     const std::int32_t own = packed.key[static_cast<std::size_t>(g)] / kKeysOfColour;
     if (own != colour) packed.colourStart.push_back(static_cast<std::int32_t>(used));
     if (own != colour || lane == kPackedPairs) {
-      if (packed.pairs.size() == used) packed.pairs.emplace_back();
+      if (packed.pairs.size() == used) {
+        reserveClosely(used + 1, packed.pairs);
+        packed.pairs.emplace_back();
+      }
       clearPack(island, packed.pairs[used]);
       packed.pairs[used++].first = rows;
       lane = 0;
@@ -122,6 +127,8 @@ void distribute(const RigidIsland& island, ActingPoints& list) {
   }
   packed.colourStart.push_back(static_cast<std::int32_t>(used));
   packed.pairs.resize(used);
+  reserveClosely(static_cast<std::size_t>(rows), packed.points);
+  reserveClosely(static_cast<std::size_t>(rows), packed.places);
   packed.points.resize(static_cast<std::size_t>(rows));
   packed.places.resize(static_cast<std::size_t>(rows));
 }
@@ -141,11 +148,10 @@ void fillLane(const ContactConstraint& from, double compliance, int lane, Packed
   setLane(place.upper, lane, from.placeUpper);
   setLane(place.lower, lane, from.placeLower);
   setLane(place.normal, lane, from.ownNormal);
-  place.turnsUpper[lane] = from.normalOf == NormalOf::a ? -1 : 0;
-  place.turnsLower[lane] = from.normalOf == NormalOf::b ? -1 : 0;
+  const std::int64_t turns = from.normalOf == NormalOf::a ? kTurnsUpper : from.normalOf == NormalOf::b ? kTurnsLower : 0;
+  place.kind[lane] = turns | kAxisBit << from.axis;
   place.rest[lane] = from.rest;
   place.beside[lane] = from.beside;
-  for (std::size_t k = 0; k < kSeparatingAxes; ++k) place.axis[k][lane] = from.axis == k ? -1 : 0;
   setLane(point.friction, lane, from.friction);
   point.push[lane] = from.push;
   point.before[lane] = from.before;

@@ -87,9 +87,7 @@ EvenPressure pressureOn(const RigidIsland& island, const PackedPoints& packed, c
 void moveFriction(const RigidIsland& island, PackedPoints& packed, const PackedPair& pair, int lane,
                   const EvenPressure& pressure) {
   for (PackedPoint& p : pointsOf(packed, pair)) {
-    Lanes toward;
-    toLanes((1.0 - pressure.shrink) * (pressure.centre - meetingPlace(island, pair, p, lane)), toward);
-    setLane(p.towardsCentre, lane, toward);
+    setLane(p.towardsCentre, lane, (1.0 - pressure.shrink) * (pressure.centre - meetingPlace(island, pair, p, lane)));
   }
 }
 

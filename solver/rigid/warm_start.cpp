@@ -16,10 +16,9 @@ namespace {
 
 // Place of a point on its upper body, m, world.
 Vec3 placeOf(const RigidIsland& island, const ContactConstraint& point) {
-  Vec3 own(point.placeUpper[0], point.placeUpper[1], point.placeUpper[2]);
-  if (point.upper == unmovedBody(island)) return own;
+  if (point.upper == unmovedBody(island)) return point.placeUpper;
   const RigidBody& body = island.bodies[static_cast<std::size_t>(point.upper)];
-  return body.place + body.axes * own;
+  return body.place + body.axes * point.placeUpper;
 }
 
 double takeoverSquared(const IslandStep& step) {
@@ -120,8 +119,7 @@ void warmStartFromKnown(const IslandStep& step, const KnownGroup& known, std::sp
     double nearest = takeoverSquared(step);
     std::size_t from = old.size();
     for (std::size_t i = 0; i < old.size(); ++i) {
-      const Lanes apart = old[i].placeUpper - p.placeUpper;
-      const double squared = sum(apart * apart);
+      const double squared = (old[i].placeUpper - p.placeUpper).squaredNorm();
       if ((taken >> i & 1U) != 0 || !(squared < nearest)) continue;
       nearest = squared;
       from = i;
@@ -161,7 +159,7 @@ void warmStartFromManifold(const IslandStep& step, const RigidIsland& island, st
     const std::size_t lane = laneOf(from);
     p.push = substep_s * row.normalForce[lane];
     p.idle = !(p.push > 0.0);
-    if (!p.idle) p.friction = sign * Lanes{row.friction[0][lane], row.friction[1][lane], row.friction[2][lane], 0.0};
+    if (!p.idle) p.friction = sign * Vec3(row.friction[0][lane], row.friction[1][lane], row.friction[2][lane]);
     p.rest = row.restDepth[lane];
     p.lasting = p.before = substep_s * row.lasting[lane];
     p.sliding = slipsAt(manifold, from);

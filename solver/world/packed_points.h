@@ -85,17 +85,19 @@ struct alignas(32) PackedPoint {
 
 /// Where its blocks have it. Own axes are those of a body; of what does not move the world's.
 struct alignas(32) PackedPlace {
-  LaneVector upper;                ///< m, from the upper body's centre in its axes
-  LaneVector lower;                ///< m, likewise
-  LaneVector normal;               ///< in the axes of the body that it turns with, or the world's
-  LaneMask turnsUpper;             ///< whether it turns with the upper body
-  LaneMask turnsLower;             ///< or with the lower one
-  Lanes rest;                      ///< m, overlap without force
-  Lanes beside;                    ///< m, of its separating axis (NearPoint::beside)
-  LaneMask axis[kSeparatingAxes];  ///< whether that is the first, second or third
-  Lanes compliance;                ///< m/N, of its springs; 0 in the rigid methods
-  Lanes lasting;                   ///< N s along the normal, mean over about a frame
+  LaneVector upper;   ///< m, from the upper body's centre in its axes
+  LaneVector lower;   ///< m, likewise
+  LaneVector normal;  ///< in the axes of the body that it turns with, or the world's
+  LaneMask kind;      ///< bits: kTurnsUpper or kTurnsLower, and of its separating axis kAxisBit << 0, 1 or 2
+  Lanes rest;         ///< m, overlap without force
+  Lanes beside;       ///< m, of its separating axis (NearPoint::beside)
+  Lanes compliance;   ///< m/N, of its springs; 0 in the rigid methods
+  Lanes lasting;      ///< N s along the normal, mean over about a frame
 };
+
+inline constexpr std::int64_t kTurnsUpper = 1;  ///< the normal turns with the upper body
+inline constexpr std::int64_t kTurnsLower = 2;  ///< or with the lower one
+inline constexpr std::int64_t kAxisBit = 4;
 
 /// The points of a list, packed for the substeps of a step.
 struct PackedPoints {

@@ -67,20 +67,20 @@ struct RigidContact {
 };
 
 /// One point of two blocks in sequential impulses, as it lasts from substep to substep; `upper` is the pair's first block, or
-/// what does not move. Vectors fill three of four lanes. The point is fixed to its blocks.
-struct alignas(32) ContactConstraint {
-  Lanes placeUpper;      ///< m, in the body's axes from its centre; in the world on what does not move
-  Lanes placeLower;      ///< m, likewise
-  Lanes ownNormal;       ///< the normal in the axes of the body that it turns with, or in the world's
-  Lanes friction{};      ///< N s, on upper, tangential
-  double push = 0.0;     ///< N s along the normal
-  double gap;            ///< m as it was found; negative where the blocks overlap
-  double rest = 0.0;     ///< m, overlap without force
-  double before = 0.0;   ///< N s, push of the substep before the last
-  double lasting = 0.0;  ///< N s along the normal, mean over about a frame without impacts
-  double beside = 0.0;   ///< m, of its separating axis (NearPoint::beside)
-  double restitution;    ///< of the pair
-  std::int32_t upper;    ///< index of its body in the island; the last index stands for what does not move
+/// what does not move. The point is fixed to its blocks.
+struct ContactConstraint {
+  Vec3 placeUpper;               ///< m, in the body's axes from its centre; in the world on what does not move
+  Vec3 placeLower;               ///< m, likewise
+  Vec3 ownNormal;                ///< the normal in the axes of the body that it turns with, or in the world's
+  Vec3 friction = Vec3::Zero();  ///< N s, on upper, tangential
+  double push = 0.0;             ///< N s along the normal
+  double gap;                    ///< m as it was found; negative where the blocks overlap
+  double rest = 0.0;             ///< m, overlap without force
+  double before = 0.0;           ///< N s, push of the substep before the last
+  double lasting = 0.0;          ///< N s along the normal, mean over about a frame without impacts
+  double beside = 0.0;           ///< m, of its separating axis (NearPoint::beside)
+  double restitution;            ///< of the pair
+  std::int32_t upper;            ///< index of its body in the island; the last index stands for what does not move
   std::int32_t lower;
   NormalOf normalOf;     ///< a: upper, b: lower
   std::uint8_t axis;     ///< number of its separating axis
