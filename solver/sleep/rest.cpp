@@ -99,7 +99,7 @@ double restNeeded(const Simulation& simulation) {
                                                           : simulation.scene.settings.sleepTime * restTimeScale_s(simulation);
 }
 
-// Whether a block has been at rest for a time. Even where none is asked for, one that moves is not.
+// Whether a block has been at rest for so long. For 0 s it has to be at rest as well.
 bool restsFor(const Simulation& simulation, std::size_t block, double needed_s) {
   const double rest_s = simulation.restTime_s[block];
   return rest_s > 0.0 && rest_s >= needed_s;

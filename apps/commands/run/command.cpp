@@ -129,7 +129,7 @@ std::optional<SavedRun> savedRunOf(const RunCommand& command) {
   return std::move(loaded.run);
 }
 
-// The files that a run writes; null where none is asked for.
+// The files that a run writes; null where no option names one.
 struct RunFiles {
   std::unique_ptr<OutputFile> report;
   std::unique_ptr<OutputFile> poses;

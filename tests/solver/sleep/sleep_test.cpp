@@ -48,7 +48,7 @@ TEST(Sleep, TheFullTowerSleepsWithinFiveSecondsAndThenCostsNothing) {
   EXPECT_EQ(stateHash(simulation), hash);
 }
 
-// No time at rest is asked for, but rest is: what falls does not stop in the air.
+// With a sleep time of 0 a block sleeps as soon as it is at rest, and not before: what falls does not stop in the air.
 TEST(Sleep, AtOnceIsNotBeforeRest) {
   Scene scene;
   scene.settings.sleepTime = 0.0;
