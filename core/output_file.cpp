@@ -78,8 +78,9 @@ OutputFile::OutputFile(std::string path, std::string option) : path_(std::move(p
     const int why = errno;
     unlock();
     if (openPartial(fmt::format("{}-{}", partial, getpid()))) return;
-    if (!fs::exists(status)) fail(std::strerror(why));
-    // The folder takes no new files, but this one may be written.
+    // The folder takes no new files, but one that is there may be written: it keeps its content until the new one is whole.
+    if (fs::exists(status) && openTemporary()) return;
+    fail(std::strerror(why));
   }
   stream_.open(path_, std::ios::binary);
   if (!stream_.is_open()) fail(std::strerror(errno));
@@ -96,6 +97,25 @@ bool OutputFile::openPartial(const std::string& name) {
   if (!stream_.is_open()) return false;
   partial_ = name;
   return true;
+}
+
+bool OutputFile::openTemporary() {
+  std::error_code error;
+  std::string name = (std::filesystem::temp_directory_path(error) / "springtower-XXXXXX").string();
+  if (error) return false;
+  const int file = mkstemp(name.data());
+  if (file < 0) return false;
+  close(file);
+  temporary_ = openPartial(name);
+  return temporary_;
+}
+
+bool OutputFile::copyTemporary() const {
+  std::ifstream from(partial_, std::ios::binary);
+  std::ofstream to(path_, std::ios::binary | std::ios::trunc);
+  if (from.peek() != std::ifstream::traits_type::eof()) to << from.rdbuf();
+  to.close();
+  return from && !from.bad() && to;
 }
 
 void OutputFile::unlock() {
@@ -122,7 +142,8 @@ void OutputFile::commit() {
   stream_.close();
   if (stream_.fail()) fail("writing failed; is the disk full?");
   if (partial_.empty()) return;
-  if (std::rename(partial_.c_str(), path_.c_str()) == 0) {
+  if (temporary_ ? copyTemporary() : std::rename(partial_.c_str(), path_.c_str()) == 0) {
+    if (temporary_) std::remove(partial_.c_str());
     partial_.clear();
     unlock();
     return;

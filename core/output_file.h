@@ -9,7 +9,8 @@ namespace springtower {
 
 /// A file that is written while the program works and appears under its name only when it is complete. It is opened at once, so
 /// that a name that cannot be written is known before any work is done. Until `commit` the content stands beside it in
-/// NAME.partial, which the destructor removes; a device or pipe is written directly. A process that is killed leaves NAME.partial
+/// NAME.partial, which the destructor removes; a device or pipe is written directly, and what replaces a file in a folder that
+/// takes no new ones stands in the system's folder for temporary files until then. A process that is killed leaves NAME.partial
 /// as it was last flushed, and the next one that writes to NAME takes its place. Of two processes that write to NAME at the same
 /// time the second one writes NAME.partial-PID, and NAME is in the end that of the one that finishes last. NAME.partial is locked
 /// (flock) while its process lives: that is how the second one distinguishes it from what a killed process has left. A link is
@@ -35,23 +36,26 @@ class OutputFile {
   /// fails.
   void cutTo(std::uintmax_t bytes);
 
-  /// The file that is written until `commit`, for a program that takes its name as an argument: NAME.partial, or a device's own
-  /// name.
+  /// The file that is written until `commit`, for a program that takes its name as an argument: NAME.partial, a temporary file,
+  /// or a device's own name.
   [[nodiscard]] const std::string& writtenPath() const { return partial_.empty() ? path_ : partial_; }
 
   /// Writes what is left and gives the file its name. Throws InputError naming the file when the disk is full, or when it cannot
-  /// get its name: what was written then stays in NAME.partial, which the message names.
+  /// get its name: what was written then stays where it is, which the message says.
   void commit();
 
  private:
   [[noreturn]] void fail(const std::string& what) const;
   bool openPartial(const std::string& name);
+  bool openTemporary();
+  bool copyTemporary() const;
   void unlock();
 
   std::string path_;
   std::string option_;
-  std::string partial_;  // empty when written directly
-  int lock_ = -1;        // the partial file once more, to hold its lock
+  std::string partial_;     // empty when written directly
+  bool temporary_ = false;  // partial_ is in the folder for temporary files: copied, as it cannot be renamed
+  int lock_ = -1;           // the partial file once more, to hold its lock
   std::ofstream stream_;
   std::chrono::steady_clock::time_point flushed_;
 };

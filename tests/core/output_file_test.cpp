@@ -114,6 +114,29 @@ TEST(OutputFile, StaysWhereItCannotGetItsName) {
   EXPECT_EQ(contentOf(scratch.file("a.partial")), "hours of work");
 }
 
+// Names of more than 255 bytes are none: NAME.partial cannot be made, as in a folder that takes no new files.
+TEST(OutputFile, KeepsTheOldFileWhereNoNewOneCanBeMadeBesideIt) {
+  const ScratchFolder scratch;
+  const std::string name = scratch.file(std::string(250, 'a'));
+  EXPECT_THROW(OutputFile(name, "--out"), InputError) << "there is none to replace";
+  std::ofstream(name) << "old";
+  {
+    OutputFile file(name, "--out");
+    file.stream() << "never committed" << std::flush;
+    EXPECT_TRUE(std::filesystem::exists(file.writtenPath()));
+  }
+  EXPECT_EQ(contentOf(name), "old");
+  for (const std::string& text : {std::string("newer than old"), std::string("new"), std::string()}) {
+    OutputFile file(name, "--out");
+    file.stream() << text;
+    const std::string written = file.writtenPath();
+    file.commit();
+    EXPECT_EQ(contentOf(name), text);
+    EXPECT_FALSE(std::filesystem::exists(written));
+  }
+  EXPECT_EQ(filesIn(scratch), 1);
+}
+
 TEST(OutputFile, CanBeCut) {
   const ScratchFolder scratch;
   OutputFile file(scratch.file("a"), "--out");
