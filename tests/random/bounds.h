@@ -33,8 +33,9 @@ std::string tableOf(std::span<const Record> records);
 /// Every fault with its count, what is allowed, and the seeds, worst first (at most 12).
 std::string faultLines(std::span<const Record> records);
 
-/// The faults that more records have than their bounds allow. Those of processor time are left out where `judgeTimes` is false:
-/// sanitizers and builds without optimisation are slower by what has nothing to do with the engine.
+/// The faults that more records have than their bounds allow; of implicit and auto no scene may diverge. Those of processor time
+/// are left out where `judgeTimes` is false: sanitizers and builds without optimisation are slower by what has nothing to do with
+/// the engine.
 std::vector<Fault> exceededBounds(std::span<const Record> records, bool judgeTimes);
 
 }  // namespace springtower

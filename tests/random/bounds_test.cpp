@@ -1,6 +1,8 @@
 // How many scenes may have a fault.
 #include "tests/random/bounds.h"
 
+#include "core/settings.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -73,6 +75,15 @@ TEST(RandomBounds, AreExceededByOneMore) {
     EXPECT_TRUE(exceededBounds(records, true).empty());
     records[most] = recordWith(bound.fault);
     EXPECT_EQ(exceededBounds(records, true), std::vector{bound.fault});
+  }
+}
+
+TEST(RandomBounds, LetNoSceneOfTheDefaultMethodsDiverge) {
+  for (const Method method : {Method::implicit, Method::automatic, Method::rungeKutta4}) {
+    std::vector<Record> records(300, soundRecord());
+    records[7] = recordWith(Fault::diverged);
+    records[7].method = nameOf(method);
+    EXPECT_EQ(exceededBounds(records, true).empty(), method == Method::rungeKutta4) << nameOf(method);
   }
 }
 

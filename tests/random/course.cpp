@@ -108,7 +108,9 @@ Course playScene(const Scene& scene, int threads, double limit_s, const CourseWa
 bool agree(const Course& one, const Course& other) {
   const std::size_t both = std::min(one.hashes.size(), other.hashes.size());
   if (!std::equal(one.hashes.begin(), one.hashes.begin() + static_cast<std::ptrdiff_t>(both), other.hashes.begin())) return false;
-  if (one.cut || other.cut) return true;
+  if (one.cut && other.cut) return true;
+  // What has ended by itself must have gone as far as the other was before its limit.
+  if (one.cut || other.cut) return one.cut ? other.frames >= one.frames : one.frames >= other.frames;
   return one.frames == other.frames && one.hash == other.hash && one.diverged.empty() == other.diverged.empty() &&
          one.stepLimit == other.stepLimit;
 }

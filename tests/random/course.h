@@ -39,7 +39,8 @@ struct CourseWatch {
 Course playScene(const Scene& scene, int threads, double limit_s, const CourseWatch& watch = {});
 
 /// Whether two runs of one scene agree: in the hashes of their states as far as both went, and in that both diverged or none, and
-/// both ended at the limit of an explicit method's steps or none.
+/// both ended at the limit of an explicit method's steps or none. Of one whose processor time was over the end is not known: it
+/// agrees with one that went at least as far.
 bool agree(const Course& one, const Course& other);
 
 }  // namespace springtower

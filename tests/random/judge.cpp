@@ -49,7 +49,11 @@ class Work {
       turn_ = orientationOf(simulation.state.position, index(simulation.tether.block));
     }
     places_.clear();
-    for (const UserForce& force : simulation.scene.forces) places_.push_back(placeOf(simulation, force));
+    turns_.clear();
+    for (const UserForce& force : simulation.scene.forces) {
+      places_.push_back(placeOf(simulation, force));
+      turns_.push_back(turnOf(simulation, force));
+    }
   }
 
   void afterFrame(const Simulation& simulation) {
@@ -68,7 +72,8 @@ class Work {
     for (std::size_t f = 0; f < simulation.scene.forces.size(); ++f) {
       const UserForce& force = simulation.scene.forces[f];
       const Load mean = force.meanOver(simulation.time_s - frame_s, simulation.time_s);
-      done_j += mean.force.dot(placeOf(simulation, force) - places_[f]);
+      const Eigen::AngleAxisd turned(turnOf(simulation, force) * turns_[f].conjugate());
+      done_j += mean.force.dot(placeOf(simulation, force) - places_[f]) + mean.torque.dot(turned.axis() * turned.angle());
     }
     sum_j += done_j;
     put_j += std::abs(done_j);
@@ -82,11 +87,15 @@ class Work {
   static Vec3 placeOf(const Simulation& simulation, const UserForce& force) {
     return springtower::placeOf(simulation.model, simulation.state.position, force);
   }
+  static Eigen::Quaterniond turnOf(const Simulation& simulation, const UserForce& force) {
+    return orientationOf(simulation.state.position, static_cast<std::size_t>(force.block));
+  }
 
   GripForce hand_;
   Vec3 place_ = Vec3::Zero();
   Eigen::Quaterniond turn_ = Eigen::Quaterniond::Identity();
   std::vector<Vec3> places_;
+  std::vector<Eigen::Quaterniond> turns_;
 };
 
 // Largest rise of the energy above its least value before, less work. It is watched anew after a frame whose work is not known.

@@ -142,6 +142,37 @@ TEST(RandomJudge, TellsTwoCoursesApart) {
   EXPECT_FALSE(agree(one, playScene(scene, 1, kPatience_s)));
 }
 
+TEST(RandomJudge, TellsACourseThatEndsBeforeTheOtherIsOverItsLimit) {
+  Course whole;
+  whole.frames = 40;
+  whole.hashes = {1, 2, 3, 4};
+  Course cut = whole;
+  cut.cut = true;
+  cut.frames = 30;
+  cut.hashes = {1, 2, 3};
+  EXPECT_TRUE(agree(whole, cut));
+  EXPECT_TRUE(agree(cut, whole));
+  Course diverged = whole;
+  diverged.diverged = "block 0 diverged";
+  diverged.frames = 25;
+  diverged.hashes = {1, 2};
+  EXPECT_FALSE(agree(diverged, cut)) << "the other went on";
+  EXPECT_FALSE(agree(cut, diverged));
+  diverged.frames = 35;
+  diverged.hashes = {1, 2, 3};
+  EXPECT_TRUE(agree(diverged, cut)) << "where the other would have gone is not known";
+}
+
+// A torque does work on a block in space that turns with it: as much as it gains.
+TEST(RandomJudge, CountsTheWorkOfATorque) {
+  Scene scene = spinningBlockScene();
+  scene.blocks[0].spin = Vec3::Zero();
+  scene.seconds = 0.5;
+  scene.forces.push_back(UserForce{.block = 0, .end_s = 1.0, .torque = Vec3(0.0, 0.0, 1e-4)});
+  const Record record = judgeScene(scene, patient());
+  EXPECT_LT(record.energyGained, 1e-3);
+}
+
 // Within any run: also where the first one is over and measured.
 TEST(RandomRecord, IsOfASceneThatHungWhereItsProcessWasEndedAtItsLimit) {
   Record record;

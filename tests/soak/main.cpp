@@ -154,6 +154,7 @@ void soakFalls(const Soak& soak, Soaked& found) {
       if (memory_mb) found.see("memory grown", "MB", 1.0, residentMemory_mb() - *memory_mb);
     }
   }
+  if (!memory_mb) fmt::print("  memory is not measured: the third round was not reached\n");
 }
 
 // A viewer's user at random. From time to time the session goes back, and forth again to where it was, which has to lead to the
