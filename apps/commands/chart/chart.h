@@ -141,6 +141,7 @@ struct Chart {
   ChartLimits limits;
   std::vector<ChartResult> results;
   std::vector<PeerResult> peers;
+  bool interrupted = false;  ///< by a signal, so that scenes are missing
 };
 
 /// "implicit 0.05 mm", "rigid-pgs 64 steps", "bullet 4 steps, 50 iterations".

@@ -3,9 +3,11 @@
 #include "apps/commands/chart/draw.h"
 #include "apps/commands/chart/files.h"
 #include "apps/commands/chart/maps.h"
+#include "apps/commands/chart/maps_kept.h"
 #include "apps/commands/chart/measure.h"
 #include "apps/commands/chart/recorded_peers.h"
 #include "apps/commands/chart/scene.h"
+#include "apps/common/interruption.h"
 #include "apps/common/options.h"
 #include "apps/common/output_file.h"
 #include "apps/common/peer_process.h"
@@ -181,6 +183,9 @@ Method mappedMethod(const std::string& name) {
   throw InputError(fmt::format("--methods: expected {} with --maps, got {}", fmt::join(names, ", "), inQuotes(name)));
 }
 
+// Rows of maps that are done, while others are not.
+constexpr const char* kUnfinishedMaps = "maps.unfinished.json";
+
 int executeMaps(const ChartCommand& command) {
   MapLimits limits;
   if (command.quick) limits = {{2, 8, 32, 128}, {5e-4, 1e-4}, {1, 3}, 0.25, 0.5};
@@ -189,14 +194,23 @@ int executeMaps(const ChartCommand& command) {
   for (const std::string& name : command.methods) limits.methods.push_back(mappedMethod(name));
   makeOutputFolder(command.out);
   const Provenance provenance = provenanceNow();
+  const std::string unfinished = (std::filesystem::path(command.out) / kUnfinishedMaps).string();
+  std::vector<MapRow> kept;
+  if (!command.fresh) kept = readKeptRows(unfinished, limits, provenance);
+  std::vector<MapRow> done = kept;
+  std::size_t count = 0;
   Progress progress(mapRows(limits), "rows of the maps");
-  int done = 0;
-  const std::vector<StabilityMap> maps =
-      measureMaps(limits, [&](const StabilityMap& map) { progress.update(++done, nameOf(map.method)); });
+  const std::vector<StabilityMap> maps = measureMaps(limits, kept, [&](const MapRow& row) {
+    progress.update(static_cast<double>(++count), nameOf(row.method));
+    if (std::any_of(done.begin(), done.end(), [&](const MapRow& other) { return isSame(other, row); })) return;
+    done.push_back(row);
+    writeOutputFile(command.out, kUnfinishedMaps, [&](std::ostream& stream) { writeKeptRows(stream, done, limits, provenance); });
+  });
   progress.clear();
   writeOutputFile(command.out, "maps.csv", [&](std::ostream& stream) { writeMapsCsv(stream, maps, provenance); });
   const std::vector<std::string> names = writePlots(command.out, mapPlots(maps, provenance));
   writeOutputFile(command.out, "maps.md", [&](std::ostream& stream) { writeMapsIndex(stream, maps, names, provenance); });
+  if (done.size() == count) std::filesystem::remove(unfinished);  // rows of a run of other methods stay for that
   fmt::print("{} maps (SVG, PNG and PDF), maps.csv and maps.md in {}\n", names.size(), onOneLine(command.out));
   return 0;
 }
@@ -214,6 +228,18 @@ void readAllPeers(const ChartCommand& command, const std::vector<Peer>& here, Ch
     } else if (!isDrawnAsRecorded(found.front().scene) && !bullet) {
       fmt::print("{}: not drawn, as they are carried over by their ratio to Bullet, which is not in this run\n", onOneLine(path));
     }
+  }
+}
+
+// The cases of a scene. Throws Interrupted; chart.json says so then.
+std::vector<ChartResult> measureScene(const ChartCommand& command, const std::vector<ChartCase>& cases, Chart& chart,
+                                      const std::function<void(const ChartCase&)>& progress) {
+  try {
+    return measureChart(cases, chart.limits, progress);
+  } catch (const Interrupted&) {
+    chart.interrupted = true;
+    writeOutputFile(command.out, "chart.json", [&](std::ostream& stream) { writeChartJson(stream, chart); });
+    throw;
   }
 }
 
@@ -253,7 +279,7 @@ CLI::App* defineChart(CLI::App& program, ChartCommand& command) {
       ->add_flag("--maps", command.maps,
                  "instead: where each method is stable, over step and stiffness and over step and rows; every method but "
                  "implicit-eigen, or --methods; --seconds (default 1) and --case-limit (default 5) as above")
-      ->excludes("--auto", "--no-time-limit", "--no-resume", "--scenes", "--rows", "--samples", "--peers");
+      ->excludes("--auto", "--no-time-limit", "--scenes", "--rows", "--samples", "--peers");
   addFormerFlag(*chart, "--long", unlimited, command.unlimited);
   addFormerFlag(*chart, "--fresh", noResume, command.fresh);
   wrapDescriptions(*chart);
@@ -293,7 +319,7 @@ int executeChart(const ChartCommand& command) {
     if (std::all_of(cases.begin(), cases.end(), known)) {
       done += static_cast<int>(cases.size()) * (1 + chart.limits.samples);
     } else {
-      const std::vector<ChartResult> results = measureChart(cases, chart.limits, [&](const ChartCase& now) {
+      const std::vector<ChartResult> results = measureScene(command, cases, chart, [&](const ChartCase& now) {
         progress.update(++done, fmt::format("{}, {}", nameOf(now.scene), nameOf(now)));
       });
       std::erase_if(chart.results,

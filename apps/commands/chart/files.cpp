@@ -104,6 +104,7 @@ std::string csvNumber(double value) {
 void writeChartJson(std::ostream& stream, const Chart& chart) {
   Json json = provenanceJson(chart.provenance);
   json["limits"] = limitsJson(chart.limits);
+  json["interrupted"] = chart.interrupted;
   json["cases"] = Json::array();
   for (const ChartResult& result : chart.results) json["cases"].push_back(resultJson(result));
   stream << json.dump(1) << '\n';

@@ -113,8 +113,8 @@ bool calm(const MapPoint& point) {
   return point.verdict != MapVerdict::jitters && point.verdict != MapVerdict::blowsUp && point.verdict != MapVerdict::timesOut;
 }
 
-// One row of a map: all steps, then the boundary between the longest calm step and the next longer one.
-void lookAlong(StabilityMap& map, int rows, double tolerance_m, const MapLimits& limits) {
+// All steps, then the boundary between the longest calm step and the next longer one.
+void lookAlong(MapRow& row, const MapLimits& limits) {
   std::vector<MapPoint> line;
   for (const int steps : limits.steps) {
     if (!line.empty() && line.back().verdict == MapVerdict::timesOut) {  // shorter steps take longer still
@@ -122,20 +122,21 @@ void lookAlong(StabilityMap& map, int rows, double tolerance_m, const MapLimits&
       line.back().steps = steps;
       line.back().step_s = line[0].step_s * line[0].steps / steps;
     } else {
-      line.push_back(tried(map.method, rows, tolerance_m, steps, limits));
+      line.push_back(tried(row.method, row.rows, row.tolerance_m, steps, limits));
     }
   }
   double omega = 0.0;  // of those that came through their first frame
   for (const MapPoint& point : line) omega = std::max(omega, point.verdict == MapVerdict::blowsUp ? 0.0 : point.omega);
   for (MapPoint& point : line) point.omega = omega;
-  map.points.insert(map.points.end(), line.begin(), line.end());
+  row.points = line;
   const auto first = std::find_if(line.begin(), line.end(), calm);
   if (first == line.begin() || first == line.end()) return;
   MapPoint last = *first;
   int tooFew = (first - 1)->steps;
   for (int i = 0; i < kBisections && last.steps - tooFew > 1; ++i) {
     const int middle = static_cast<int>(std::lround(std::sqrt(static_cast<double>(tooFew) * last.steps)));
-    const MapPoint point = tried(map.method, rows, tolerance_m, std::clamp(middle, tooFew + 1, last.steps - 1), limits);
+    const int steps = std::clamp(middle, tooFew + 1, last.steps - 1);
+    const MapPoint point = tried(row.method, row.rows, row.tolerance_m, steps, limits);
     if (calm(point)) {
       last = point;
       last.omega = omega;
@@ -143,14 +144,8 @@ void lookAlong(StabilityMap& map, int rows, double tolerance_m, const MapLimits&
       tooFew = point.steps;
     }
   }
-  map.boundary.push_back(last);
+  row.boundary.push_back(last);
 }
-
-struct Row {
-  std::size_t map;
-  int rows;
-  double tolerance_m;
-};
 
 std::vector<StabilityMap> emptyMaps(const MapLimits& limits) {
   std::vector<StabilityMap> maps;
@@ -161,20 +156,26 @@ std::vector<StabilityMap> emptyMaps(const MapLimits& limits) {
   return maps;
 }
 
-std::vector<Row> rowsOf(const std::vector<StabilityMap>& maps, const MapLimits& limits) {
+// In the order of the maps.
+std::vector<MapRow> rowsOf(const std::vector<StabilityMap>& maps, const MapLimits& limits) {
   constexpr int kRowsOverStiffness = 3;
-  std::vector<Row> rows;
-  for (std::size_t m = 0; m < maps.size(); ++m) {
-    if (maps[m].axis == MapAxis::stiffness) {
-      for (const double tolerance_m : limits.tolerances_m) rows.push_back({m, kRowsOverStiffness, tolerance_m});
+  std::vector<MapRow> rows;
+  for (const StabilityMap& map : maps) {
+    if (map.axis == MapAxis::stiffness) {
+      for (const double tolerance_m : limits.tolerances_m)
+        rows.push_back({map.method, map.axis, kRowsOverStiffness, tolerance_m});
     } else {
-      for (const int count : limits.rows) rows.push_back({m, count, kMapTolerance_m});
+      for (const int count : limits.rows) rows.push_back({map.method, map.axis, count, kMapTolerance_m});
     }
   }
   return rows;
 }
 
 }  // namespace
+
+bool isSame(const MapRow& a, const MapRow& b) {
+  return a.method == b.method && a.axis == b.axis && a.rows == b.rows && a.tolerance_m == b.tolerance_m;
+}
 
 std::vector<Method> mappedMethods() {
   return {kMapped.begin(), kMapped.end()};
@@ -184,23 +185,28 @@ int mapRows(const MapLimits& limits) {
   return static_cast<int>(rowsOf(emptyMaps(limits), limits).size());
 }
 
-std::vector<StabilityMap> measureMaps(const MapLimits& limits, const std::function<void(const StabilityMap&)>& progress) {
+std::vector<StabilityMap> measureMaps(const MapLimits& limits, const std::vector<MapRow>& kept,
+                                      const std::function<void(const MapRow&)>& progress) {
   std::vector<StabilityMap> maps = emptyMaps(limits);
-  const std::vector<Row> rows = rowsOf(maps, limits);
-  std::vector<StabilityMap> found(rows.size());
+  std::vector<MapRow> rows = rowsOf(maps, limits);
   std::mutex mutex;
   tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t i) {
-    found[i].method = maps[rows[i].map].method;
-    found[i].axis = maps[rows[i].map].axis;
-    // Apart from the others, whose time a waiting thread would else count as this one's.
-    tbb::this_task_arena::isolate([&] { lookAlong(found[i], rows[i].rows, rows[i].tolerance_m, limits); });
+    const auto known = std::find_if(kept.begin(), kept.end(), [&](const MapRow& row) { return isSame(row, rows[i]); });
+    if (known != kept.end()) {
+      rows[i] = *known;
+    } else {
+      // Apart from the others, whose time a waiting thread would else count as this one's.
+      tbb::this_task_arena::isolate([&] { lookAlong(rows[i], limits); });
+    }
     const std::scoped_lock lock(mutex);
-    progress(found[i]);
+    progress(rows[i]);
   });
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    StabilityMap& map = maps[rows[i].map];
-    map.points.insert(map.points.end(), found[i].points.begin(), found[i].points.end());
-    map.boundary.insert(map.boundary.end(), found[i].boundary.begin(), found[i].boundary.end());
+  for (StabilityMap& map : maps) {
+    for (const MapRow& row : rows) {
+      if (row.method != map.method || row.axis != map.axis) continue;
+      map.points.insert(map.points.end(), row.points.begin(), row.points.end());
+      map.boundary.insert(map.boundary.end(), row.boundary.begin(), row.boundary.end());
+    }
   }
   return maps;
 }

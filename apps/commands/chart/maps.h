@@ -44,6 +44,19 @@ struct StabilityMap {
                                    ///< found by bisection; none where there is none or no end
 };
 
+/// A row of a map: one stiffness, or one number of rows, with all steps.
+struct MapRow {
+  Method method = Method::implicit;
+  MapAxis axis = MapAxis::rows;
+  int rows = 1;
+  double tolerance_m = 0.0;
+  std::vector<MapPoint> points = {};    ///< as in StabilityMap
+  std::vector<MapPoint> boundary = {};  ///< none or one
+};
+
+/// Whether both are the same row of the same map, whatever was found in it.
+bool isSame(const MapRow& a, const MapRow& b);
+
 /// How finely and how long to look.
 struct MapLimits {
   std::vector<int> steps = {1, 2, 4, 8, 16, 32, 64, 128, 256, 512};
@@ -60,9 +73,11 @@ inline constexpr double kMapTolerance_m = 1e-4;
 /// Every method but `auto`, which is another one by the time it steps, and `implicit-eigen`, whose steps are those of `implicit`.
 std::vector<Method> mappedMethods();
 
-/// All maps: over step and stiffness for the methods that have one, over step and rows for these and the rigid ones. `progress`
-/// is called after each row of a map, by one thread at a time; there are mapRows(limits) of them.
-std::vector<StabilityMap> measureMaps(const MapLimits& limits, const std::function<void(const StabilityMap&)>& progress);
+/// All maps: over step and stiffness for the methods that have one, over step and rows for these and the rigid ones. Rows that
+/// are `kept` are not measured again. `progress` is called after each row, by one thread at a time; there are mapRows(limits) of
+/// them. Throws Interrupted.
+std::vector<StabilityMap> measureMaps(const MapLimits& limits, const std::vector<MapRow>& kept,
+                                      const std::function<void(const MapRow&)>& progress);
 int mapRows(const MapLimits& limits);
 
 /// The longest stable step of theory, s: 2/w for semi-implicit Euler, 2.83/w for Runge-Kutta 4, none (0) for others. Of

@@ -45,7 +45,6 @@ TEST(Chart, RefusesWhatItDoesNotKnow) {
 TEST(Chart, TakesTheFormerNamesOfOptions) {
   expectRefusal({"--long", "--quick"}, "--quick");
   expectRefusal({"--long", "--maps"}, "--maps");
-  expectRefusal({"--fresh", "--maps"}, "--maps");
   expectRefusal({"--long", "--no-time-limit"}, "--no-time-limit");
   expectRefusal({"--fresh", "--no-resume"}, "--no-resume");
   expectRefusal({"--long", "--scenes", "flood"}, "'flood'");

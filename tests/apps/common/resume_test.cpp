@@ -113,10 +113,31 @@ TEST(Resume, ChartKeepsTheScenesThatAreDone) {
       "implicit", "--out",   scratch.file("out")};
   ASSERT_EQ(brokenOff(chart, scratch.file("out/chart.json"), SIGINT), 130);
   const Json then = jsonOf(scratch.file("out/chart.json"));
+  EXPECT_EQ(then.at("interrupted"), true);
   if (!wentOn(run(chart))) return;
   const Json now = jsonOf(scratch.file("out/chart.json"));
+  EXPECT_EQ(now.at("interrupted"), false);
   ASSERT_GT(now.at("cases").size(), then.at("cases").size());
   for (std::size_t i = 0; i < then.at("cases").size(); ++i) EXPECT_EQ(now.at("cases")[i], then.at("cases")[i]);
+}
+
+TEST(Resume, MapsKeepTheRowsThatAreDone) {
+  const ScratchFolder scratch;
+  const std::string kept = scratch.file("out/maps.unfinished.json");
+  const std::vector<std::string> maps = {"chart",     "--maps", "--quick", "--methods",        "implicit,report,rigid-pgs",
+                                         "--seconds", "4",      "--out",   scratch.file("out")};
+  ASSERT_EQ(brokenOff(maps, kept, SIGINT), 130);
+  Json then = jsonOf(kept);
+  ASSERT_GE(then.at("map_rows").size(), 1U);
+  EXPECT_FALSE(std::filesystem::exists(scratch.file("out/maps.csv")));
+  forge(kept);
+  EXPECT_EQ(run(maps).exitCode, 2) << "another build";
+
+  then["map_rows"][0]["points"][0]["step_s"] = 0.12345;  // so that it can be seen that this row is not measured again
+  std::ofstream(kept) << then.dump();
+  if (!wentOn(run(maps))) return;
+  EXPECT_THAT(contentOf(scratch.file("out/maps.csv")), HasSubstr("0.12345"));
+  EXPECT_FALSE(std::filesystem::exists(kept));
 }
 
 std::vector<std::string> shortProfile(const ScratchFolder& scratch, const std::string& rows) {
