@@ -14,7 +14,7 @@ namespace {
 
 // A key, its unit and reason, its least and largest value (0 and 1 for off and on).
 constexpr auto kSettingTable = std::to_array<SettingRow>({
-    {"frame_s", "s", "simulated time between two pictures; a screen of 60 Hz shows one each", 1e-4, 0.1, &Settings::frame_s},
+    {"frame_s", "s", "simulated time of a frame; the default is that of a screen of 60 Hz", 1e-4, 0.1, &Settings::frame_s},
     {"tolerance_m", "m",
      "target penetration: no resting overlap and no row compression exceeds it; a smaller one means stiffer blocks; by default "
      "in proportion to the block height",
@@ -42,7 +42,8 @@ constexpr auto kSettingTable = std::to_array<SettingRow>({
     {"continuous_tests", "", "finds collisions by the cubic tests; off, blocks that come together go through each other", 0, 1,
      &Settings::continuousTests},
     {"sleep_speed", "sqrt(g h)", "a block slower than this may be at rest", 0, 1, &Settings::sleepSpeed},
-    {"sleep_time", "sqrt(h / g)", "how long it must have been slower before it sleeps", 0, 1e6, &Settings::sleepTime},
+    {"sleep_time", "sqrt(h / g)", "for how long a block is slower than sleep_speed before it sleeps", 0, 1e6,
+     &Settings::sleepTime},
     {"sleep_imbalance", "block weights", "largest mean force (or torque over h) on a block that counts as balanced", 0, 1,
      &Settings::sleepImbalance},
     {"report_restitution", "", "method report: e of its impulses", 0, 1, &Settings::reportRestitution},

@@ -3,6 +3,7 @@
 #include "apps/common/interruption.h"
 #include "core/error.h"
 #include "core/limits.h"
+#include "core/line_input.h"
 
 #include <cerrno>
 #include <cstring>
@@ -35,8 +36,9 @@ bool LineReader::next(std::string& line, const std::function<bool()>& stop) {
   std::size_t searched = begin_;
   std::size_t end = buffer_.find('\n', searched);
   while (end == std::string::npos) {
-    if (buffer_.size() - begin_ > kMaxLine) {
-      throw InputError(fmt::format("{}: line {}: expected at most {} MB in a line, got more", source_, number_, kMaxLine >> 20U));
+    if (buffer_.size() - begin_ > kMaxLineBytes) {
+      throw InputError(
+          fmt::format("{}: line {}: expected at most {} MB in a line, got more", source_, number_, kMaxLineBytes >> 20U));
     }
     buffer_.erase(0, begin_);
     begin_ = 0;

@@ -20,10 +20,8 @@ class LineReader {
   [[nodiscard]] const std::string& source() const { return source_; }
 
   /// The next line without its end. Returns false at the end of the input, and when a signal has come (interruption.h) or `stop`
-  /// has become true while it waited for more. Throws InputError when reading fails, and for a line of more than kMaxLine bytes.
+  /// has become true while it waited for more. Throws InputError when reading fails, and for a line of more than kMaxLineBytes.
   bool next(std::string& line, const std::function<bool()>& stop);
-
-  static constexpr std::size_t kMaxLine = std::size_t{64} << 20U;  ///< bytes: 64 MB, the longest line that is kept in memory
 
  private:
   bool fill(const std::function<bool()>& stop);

@@ -8,6 +8,16 @@
 #include <system_error>
 
 namespace springtower {
+namespace {
+
+// Without links and steps through folders, where it can be known; else as it is.
+std::string resolved(const std::string& name) {
+  std::error_code error;
+  const std::filesystem::path path = std::filesystem::weakly_canonical(std::filesystem::absolute(name, error), error);
+  return error || path.empty() ? name : path.string();
+}
+
+}  // namespace
 
 void makeOutputFolder(const std::string& folder) {
   std::error_code error;
@@ -24,6 +34,28 @@ void writeOutputFile(const std::string& folder, const std::string& name, const s
   OutputFile file((std::filesystem::path(folder) / name).string(), "--out");
   write(file.stream());
   file.commit();
+}
+
+void checkOutputNames(std::initializer_list<OutputName> outputs) {
+  for (const OutputName* a = outputs.begin(); a != outputs.end(); ++a) {
+    for (const OutputName* b = outputs.begin(); b != a; ++b) {
+      if (!*a->name || !*b->name) continue;
+      const std::string& nameOfA = **a->name;
+      const std::string& nameOfB = **b->name;
+      if (nameOfA == nameOfB)
+        throw InputError(fmt::format("{} and {}: expected two names, got {} for both", b->option, a->option, inQuotes(nameOfA)));
+      const std::string fileOfA = resolved(nameOfA);
+      const std::string fileOfB = resolved(nameOfB);
+      if (fileOfA == fileOfB)
+        throw InputError(fmt::format("{} and {}: expected names of two files, got {} and {}, which are one", b->option, a->option,
+                                     inQuotes(nameOfB), inQuotes(nameOfA)));
+      if (fileOfA != fileOfB + ".partial" && fileOfB != fileOfA + ".partial") continue;
+      throw InputError(
+          fmt::format("{} and {}: expected two names of which none is the other with .partial, where that file is "
+                      "written until it is whole, got {} and {}",
+                      b->option, a->option, inQuotes(nameOfB), inQuotes(nameOfA)));
+    }
+  }
 }
 
 std::string csvText(std::string_view text) {

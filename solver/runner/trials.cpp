@@ -122,14 +122,16 @@ SlipTrial pullUntilSlip(Simulation& simulation, std::size_t block, const Vec3& d
   return trial;
 }
 
-TiltTrial tiltUntilFall(Scene scene, const TiltRamp& ramp, const std::function<void()>& afterFrame) {
+TiltTrial tiltUntilFall(Scene scene, const TiltRamp& ramp, const std::function<void()>& afterFrame,
+                        const PrepareOptions& search) {
   scene.gravity.tilt_deg = ramp.most_deg;  // stiff enough for the loads at the largest tilt, not only upright
   scene.gravity.direction_deg = ramp.direction_deg;
   Simulation simulation(scene);
   Gravity gravity = scene.gravity;
   gravity.tilt_deg = 0.0;
   setGravity(simulation, gravity);
-  prepare(simulation);
+  prepare(simulation, search);
+  if (afterFrame) afterFrame();
   const std::vector<FittedBox> start = fittedBoxes(simulation.state.position);
   TiltTrial trial;
   while (trial.standing.stands && gravity.tilt_deg < ramp.most_deg) {

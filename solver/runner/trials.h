@@ -1,5 +1,6 @@
 #pragma once
 
+#include "solver/frame/prepare.h"
 #include "solver/metrics/measures.h"
 #include "solver/world/simulation.h"
 
@@ -50,9 +51,10 @@ struct TiltTrial {
   Standing standing;      ///< and what fell first
 };
 
-/// Rotates a scene's gravity frame by frame until the scene does not stand any more. `afterFrame` as above. Throws
-/// DivergenceError.
-TiltTrial tiltUntilFall(Scene scene, const TiltRamp& ramp, const std::function<void()>& afterFrame = {});
+/// Rotates a scene's gravity frame by frame until the scene does not stand any more. `afterFrame` as above, and after the search
+/// for the equilibrium, which `search` is for. Throws DivergenceError.
+TiltTrial tiltUntilFall(Scene scene, const TiltRamp& ramp, const std::function<void()>& afterFrame = {},
+                        const PrepareOptions& search = {});
 
 /// The same scene with blocks `size` times as large and `density` times as dense, and its frames and duration scaled by the root
 /// of the size, like all times under gravity. Preconditions: both positive; no start gap, velocities or forces.

@@ -64,25 +64,6 @@ Scene withSeconds(Scene scene, const RunCommand& command) {
   return scene;
 }
 
-// Two outputs of one name would overwrite each other, and so would one and what another is until it is whole.
-void checkNames(std::initializer_list<std::pair<std::string_view, const std::optional<std::string>*>> files) {
-  for (const auto* a = files.begin(); a != files.end(); ++a) {
-    for (const auto* b = files.begin(); b != a; ++b) {
-      if (!*a->second || !*b->second) continue;
-      const std::string& nameOfA = **a->second;
-      const std::string& nameOfB = **b->second;
-      if (nameOfA == nameOfB) {
-        throw InputError(fmt::format("{} and {}: expected two names, got {} for both", b->first, a->first, inQuotes(nameOfA)));
-      }
-      if (nameOfA != nameOfB + ".partial" && nameOfB != nameOfA + ".partial") continue;
-      throw InputError(
-          fmt::format("{} and {}: expected two names of which none is the other with .partial, where that file is "
-                      "written until it is whole, got {} and {}",
-                      b->first, a->first, inQuotes(nameOfB), inQuotes(nameOfA)));
-    }
-  }
-}
-
 std::unique_ptr<OutputFile> open(const std::optional<std::string>& path, const std::string& option) {
   return path ? std::make_unique<OutputFile>(*path, option) : nullptr;
 }
@@ -191,13 +172,15 @@ CLI::App* defineRun(CLI::App& program, RunCommand& command) {
       "no limit)");
   addNumber(*run, "--heights-sigma", command.heightsSigma_m, kHeightsSigmaRange, "METRES",
             "standard deviation of the heights of a tower's blocks");
-  addNumber(*run, "--mass-sigma", command.massSigma_kg, kMassSigmaRange, "KG", "standard deviation of their masses");
-  addWholeNumber(*run, "--seed", command.seed, kSeedRange, "of these two (default 1); the same towers on every machine");
+  addNumber(*run, "--mass-sigma", command.massSigma_kg, kMassSigmaRange, "KG",
+            "standard deviation of the masses of a tower's blocks");
+  addWholeNumber(*run, "--seed", command.seed, kSeedRange,
+                 "seed of --heights-sigma and --mass-sigma (default 1); the same towers on every machine");
   addNumber(*run, "--start-gap", command.startGap_m, kStartGapRange, "METRES", "rows start this far apart and drop");
   addNumber(*run, "--gravity-tilt", command.tilt_deg, kTiltRange, "DEG", "gravity leans this far from straight down");
   addNumber(*run, "--gravity-direction", command.direction_deg, kDirectionRange, "DEG",
-            "towards which side, from +x over +y (default 0)");
-  run->add_option("--gravity-sway", command.sway, "and swings by DEG about that, HZ times a second")->type_name("DEG:HZ");
+            "side towards which gravity leans, from +x over +y (default 0)");
+  run->add_option("--gravity-sway", command.sway, "gravity swings by DEG about its tilt, HZ times a second")->type_name("DEG:HZ");
   run->add_option("--report", command.report, "writes all figures as JSON")->type_name("FILE.json");
   run->add_flag("--forces", command.forces, "adds every contact point's force at the end to the report")->needs("--report");
   run->add_option("--poses", command.poses, "writes the corners of all blocks as CSV: time_s,block,x0,y0,z0,...,x7,y7,z7, metres")
@@ -206,8 +189,8 @@ CLI::App* defineRun(CLI::App& program, RunCommand& command) {
       ->needs("--poses");
   run->add_option("--picture", command.picture, "draws the last frame")->type_name("FILE.png");
   run->add_option("--save", command.save,
-                  "writes all that decides how the run goes on, at its end or where a signal ends it after the search for the "
-                  "equilibrium; --resume goes on with it")
+                  "writes the state at the end, or where a signal ends the run (not during the search for the equilibrium); "
+                  "--resume goes on with it")
       ->type_name("FILE");
   addResume(*run, command.resume);
   wrapDescriptions(*run);
@@ -231,7 +214,7 @@ int executeRun(const RunCommand& command) {
   if (command.picture && !command.picture->ends_with(".png")) {
     throw InputError(fmt::format("--picture: expected a name that ends with .png, got {}", inQuotes(*command.picture)));
   }
-  checkNames(
+  checkOutputNames(
       {{"--report", &command.report}, {"--poses", &command.poses}, {"--picture", &command.picture}, {"--save", &command.save}});
   const std::optional<SavedRun> resumed = savedRunOf(command);
   const Scene scene = resumed ? withSeconds(resumed->scene, command) : sceneOf(command);

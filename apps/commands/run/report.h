@@ -6,7 +6,7 @@
 
 namespace springtower {
 
-/// All figures of a run under the names that the README explains; what the run was too short for is null.
+/// All figures of a run under the names of docs/reports.md; what the run was too short for is null.
 nlohmann::ordered_json reportJson(const Simulation& simulation, const RunResult& result, int threads);
 
 /// Prints the figures people look for first as a table on standard output.

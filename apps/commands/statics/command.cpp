@@ -165,11 +165,12 @@ CLI::App* defineStatics(CLI::App& program, StaticsCommand& command) {
   addNumber(*statics, "--mu", command.friction, kFrictionRange, "MU", "coefficient of friction (default 0.4)");
   addNumber(*statics, "--heights-sigma", command.heightsSigma_m, kHeightsSigmaRange, "METRES",
             "standard deviation of the heights of a tower's blocks");
-  addNumber(*statics, "--mass-sigma", command.massSigma_kg, kMassSigmaRange, "KG", "standard deviation of their masses");
-  addWholeNumber(*statics, "--seed", command.seed, kSeedRange, "of these two (default 1)");
+  addNumber(*statics, "--mass-sigma", command.massSigma_kg, kMassSigmaRange, "KG",
+            "standard deviation of the masses of a tower's blocks");
+  addWholeNumber(*statics, "--seed", command.seed, kSeedRange, "seed of --heights-sigma and --mass-sigma (default 1)");
   addNumber(*statics, "--gravity-tilt", command.tilt_deg, kTiltRange, "DEG", "gravity leans this far from straight down");
   addNumber(*statics, "--gravity-direction", command.direction_deg, kDirectionRange, "DEG",
-            "towards which side, from +x over +y (default 0)");
+            "side towards which gravity leans, from +x over +y (default 0)");
   statics->add_option("--remove", command.remove, "takes a block out first, ROW:POSITION or its number; may be repeated")
       ->type_name("BLOCK")
       ->allow_extra_args(false);

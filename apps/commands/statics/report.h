@@ -35,7 +35,7 @@ std::string_view nameOf(Rest rest);
 /// Verdict and margin under the names that lists and reports share: stands, leans, tilt_deg, tilt_direction_deg.
 nlohmann::ordered_json restJson(Rest rest, const std::optional<StabilityMargin>& margin);
 
-/// All figures under the names that the README explains.
+/// All figures under the names of docs/reports.md.
 nlohmann::ordered_json staticsJson(const Scene& scene, const StaticsAnswer& answer);
 
 /// Prints the verdict and a table of the blocks on standard output, and with `contacts` one of the contacts.

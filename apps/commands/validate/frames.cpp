@@ -10,8 +10,11 @@ void stepFrameOrEnd(Simulation& simulation) {
   stepFrame(simulation);
 }
 
-RunResult runSceneOrEnd(Simulation& simulation, const RunOptions& options) {
-  return runScene(simulation, options, [](const Simulation&) { endIfInterrupted(); });
+RunResult runSceneOrEnd(Simulation& simulation, RunOptions options) {
+  options.shouldStop = interrupted;
+  RunResult result = runScene(simulation, options);
+  endIfInterrupted();
+  return result;
 }
 
 }  // namespace springtower

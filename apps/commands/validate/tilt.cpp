@@ -52,7 +52,7 @@ TiltTrial trialOf(const Tilted& tower, std::optional<double> tolerance_m) {
   scene.settings.tolerance_m = tolerance_m;
   const double start_deg = std::max(0.0, tower.margin_deg - (tolerance_m ? kAhead_deg : kSoftAhead_deg));
   return tiltUntilFall(scene, {tower.direction_deg, start_deg, 2.0, 1.0, 0.1, tower.margin_deg + kBeyondMargin_deg},
-                       endIfInterrupted);
+                       endIfInterrupted, {.goesOn = [](const PrepareProgress&) { return !interrupted(); }});
 }
 
 std::string wordsFor(const Tilted& tower, const TiltTrial& trial) {

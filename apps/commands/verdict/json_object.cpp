@@ -69,7 +69,7 @@ std::vector<bool> JsonObject::flags(const char* key) const {
 }
 
 const Json& JsonObject::required(const char* key) const {
-  if (!has(key)) throw InputError(fmt::format("{}: the key {} is missing", where_, key));
+  if (!has(key)) throw InputError(fmt::format("{}: expected the key {}, got none", where_, key));
   return json_.at(key);
 }
 

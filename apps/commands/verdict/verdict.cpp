@@ -67,11 +67,13 @@ Verdict judge(const VerdictLine& line, double seconds, const std::string& where)
   options.stopWhenFallen = true;
   options.stopWhenAtRest = true;
   options.secondsAfterRest = kVerdictWatch_s;
+  options.shouldStop = interrupted;
   Verdict verdict;
   std::optional<Simulation> simulation;
   try {
     simulation.emplace(line.scene);
-    verdict.result = runScene(*simulation, options, [](const Simulation&) { endIfInterrupted(); });
+    verdict.result = runScene(*simulation, options);
+    endIfInterrupted();
     verdict.time_s = verdict.result.standing.stands ? verdict.result.restTime_s : verdict.result.fallTime_s;
   } catch (const DivergenceError& error) {
     if (simulation) verdict.result.counters = simulation->counters;

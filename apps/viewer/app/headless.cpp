@@ -60,6 +60,8 @@ void drawPicture(Viewer& viewer, Renderer& renderer, OffscreenPanels* panels, co
 void runHeadless(Viewer& viewer, const ViewerFiles& files, const Viewport& size, const HeadlessRun& run,
                  std::chrono::steady_clock::time_point started) {
   prepareStart(viewer.session);
+  viewer.watch.interrupted = interrupted();
+  if (viewer.watch.interrupted) return;  // in the search: the blocks are as placed
   const OffscreenContext context;
   viewer.controls.viewport = size;
   const OffscreenFrame frame(size);

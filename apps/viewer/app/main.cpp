@@ -246,6 +246,10 @@ int runViewer(const Command& command, std::chrono::steady_clock::time_point star
   }
   const auto threads = static_cast<std::size_t>(command.threads.value_or(threadCount({})));
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+  checkOutputNames({{"--report", &command.files.report},
+                    {"--poses", &command.files.poses},
+                    {"--record", &command.files.record},
+                    {"--video", &command.files.film}});
   Viewer viewer = viewerOf(command);
   const auto report = opened(command.files.report, "--report");
   const auto poses = opened(command.files.poses, "--poses");

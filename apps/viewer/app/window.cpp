@@ -391,7 +391,7 @@ void runWindow(Viewer& viewer, const ViewerFiles& files, const Viewport& size, C
     std::fflush(stdout);
   }
   viewer.watch.interrupted = interrupted();
-  if (desk.film) desk.film->finish();
+  if (desk.film && viewer.watch.pictures > 0) desk.film->finish();
   desk.renderer.reset();
 }
 

@@ -2,11 +2,11 @@
 
 #include "core/error.h"
 #include "core/limits.h"
+#include "core/line_input.h"
 
 #include <algorithm>
 #include <array>
 #include <fmt/format.h>
-#include <fstream>
 #include <sstream>
 #include <string_view>
 
@@ -18,12 +18,9 @@ constexpr std::array<std::string_view, 5> kActNames = {"", "press", "release", "
 }  // namespace
 
 std::vector<MouseStep> readMouseScript(const std::string& path) {
-  std::ifstream file(path);
-  if (!file) throw InputError(fmt::format("--mouse: {} cannot be read", inQuotes(path)));
+  LineInput file(path, "--mouse");
   std::vector<MouseStep> script;
-  int number = 0;
-  for (std::string line; std::getline(file, line);) {
-    ++number;
+  for (std::string line; file.next(line);) {
     if (line.empty() || line.front() == '#') continue;
     std::istringstream words(line);
     MouseStep step;
@@ -35,14 +32,14 @@ std::vector<MouseStep> readMouseScript(const std::string& path) {
     const bool ascends = script.empty() || script.back().picture <= step.picture;
     if (!good || name == kActNames.end() || !rest.empty() || !ascends) {
       throw InputError(
-          fmt::format("{}, line {}: expected PICTURE X Y and press, release, hints, skip or nothing, the pictures "
+          fmt::format("{}: expected PICTURE X Y and press, release, hints, skip or nothing, the pictures "
                       "ascending, got {}",
-                      path, number, inQuotes(line)));
+                      file.where(), inQuotes(line)));
     }
     step.act = static_cast<MouseAct>(name - kActNames.begin());
     script.push_back(step);
   }
-  if (script.empty()) throw InputError(fmt::format("{}: expected at least one step, got none", path));
+  if (script.empty()) throw InputError(fmt::format("{}: expected at least one step, got none", onOneLine(path)));
   return script;
 }
 

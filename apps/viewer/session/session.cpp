@@ -1,5 +1,6 @@
 #include "apps/viewer/session/session.h"
 
+#include "apps/common/interruption.h"
 #include "core/error.h"
 #include "solver/frame/inputs.h"
 #include "solver/frame/prepare.h"
@@ -127,7 +128,7 @@ Session::Session(const Scene& given, int players)
 void prepareStart(Session& session) {
   if (session.frame > 0 || !session.failure.empty() || isPrepared(session.simulation)) return;
   try {
-    prepare(session.simulation);
+    prepare(session.simulation, {.goesOn = [](const PrepareProgress&) { return !interrupted(); }});
   } catch (const DivergenceError&) {
     return;  // the first frame finds it again, and says so
   }

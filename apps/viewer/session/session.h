@@ -46,7 +46,7 @@ struct Session {
   Hold hold = Hold::none;
   Game game;
   std::vector<LoggedFrame> log;      ///< [frame]; longer than `frame` after going back
-  std::uint64_t logKept = 0;         ///< so many of its frames are as they were when this was last set: by who writes it down
+  std::uint64_t logKept = 0;         ///< so many of its frames have not changed since the recorder set this
   std::deque<Keyframe> keyframes;    ///< ascending; the first is of frame 0
   std::vector<std::uint64_t> turns;  ///< frames in which turns of the game began, ascending; the first is 0
   double frame_ms = 0.0;             ///< what the last frame took

@@ -101,6 +101,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadArguments{"NamelessReport", {"tower:3", "--report", ""}, "--report"},
         BadArguments{"PictureOfAnotherKind", {"tower:3", "--picture", "p.jpg"}, ".png"},
         BadArguments{"OneNameForTwoFiles", {"tower:3", "--report", "a.png", "--picture", "a.png"}, "two names"},
+        BadArguments{"OneFileByTwoNames", {"tower:3", "--report", "a", "--poses", "./a"}, "which are one"},
         BadArguments{"NameOfAPartialFile", {"tower:3", "--report", "a", "--poses", "a.partial"}, "other with .partial"},
         BadArguments{"PartialFileOfAName", {"tower:3", "--report", "a.partial", "--poses", "a"}, "other with .partial"}),
     [](const auto& tested) { return tested.param.name; });

@@ -157,9 +157,9 @@ struct BadLine {
 // Far deeper than a stack holds.
 std::string nested(const std::string& open, const std::string& close) {
   std::string text;
-  for (int level = 0; level < 200000; ++level) text += open;
+  for (int level = 0; level < 100000; ++level) text += open;
   text += '1';
-  for (int level = 0; level < 200000; ++level) text += close;
+  for (int level = 0; level < 100000; ++level) text += close;
   return text;
 }
 
@@ -176,13 +176,20 @@ TEST_P(BrokenLineTest, IsNamedByItsNumber) {
   EXPECT_THAT(linesOf(result.error), SizeIs(1));
 }
 
+// Whatever has no line ends is refused before it fills the memory.
+TEST(Verdict, ALineOfMoreThanAMegabyteIsRefused) {
+  const ProgramResult result = runProgram("springtower", {"verdict", "/dev/zero"});
+  EXPECT_EQ(result.exitCode, 2);
+  EXPECT_THAT(result.error, HasSubstr("/dev/zero: line 1: expected at most 1 MB in a line, got more"));
+}
+
 INSTANTIATE_TEST_SUITE_P(
     Verdict, BrokenLineTest,
     ::testing::Values(
         BadLine{"NoJson", "not json", "got 'not json'"}, BadLine{"HalfJson", "{\"id\":\"a\"", "JSON object"},
         BadLine{"TwoObjects", "{\"id\":\"a\",\"config\":\"(010)\"} {}", "JSON object"},
-        BadLine{"NoObject", "[1, 2]", "an object"}, BadLine{"NoId", "{\"config\":\"(010)\"}", "id is missing"},
-        BadLine{"NoConfig", "{\"id\":\"a\"}", "config is missing"},
+        BadLine{"NoObject", "[1, 2]", "an object"}, BadLine{"NoId", "{\"config\":\"(010)\"}", "expected the key id, got none"},
+        BadLine{"NoConfig", "{\"id\":\"a\"}", "expected the key config, got none"},
         BadLine{"IdNoText", "{\"id\":7,\"config\":\"(010)\"}", "id: expected ..., got '7'"},
         BadLine{"IdTwice", "{\"id\":\"first\",\"config\":\"(010)\"}", "second time"},
         BadLine{"Typo", "{\"id\":\"a\",\"config\":\"(010)-(0120)\"}", "character 10"},
@@ -194,7 +201,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadLine{"TiltTooFar", "{\"id\":\"a\",\"config\":\"(010)\",\"gravity_tilt_deg\":999}", "gravity_tilt_deg"},
         BadLine{"OffsetsNoList", "{\"id\":\"a\",\"config\":\"(010)\",\"offsets_m\":{}}", "a list"},
         BadLine{"OffsetWithoutRow", "{\"id\":\"a\",\"config\":\"(010)\",\"offsets_m\":[{\"position\":2}]}",
-                "offsets_m[0]: the key row is missing"},
+                "offsets_m[0]: expected the key row, got none"},
         BadLine{"OffsetOfAbsentBlock",
                 "{\"id\":\"a\",\"config\":\"(010)\",\"offsets_m\":[{\"row\":0,\"position\":1,\"dx\":0.001}]}",
                 "row 0, position 1"},

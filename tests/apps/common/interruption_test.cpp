@@ -284,6 +284,20 @@ TEST(Interruption, ARecordingIsKeptAndCanBeReplayed) {
   EXPECT_EQ(runProgram("springtower-viewer", {"--headless", "--replay", scratch.file("game")}).exitCode, 0);
 }
 
+TEST(Interruption, ASignalEndsTheSearchOfTheViewerToo) {
+  const ScratchFolder scratch;
+  RunningProgram viewer("springtower-viewer", {"--headless", "--scene", "pyramid:100", "--report", scratch.file("r.json"),
+                                               "--record", scratch.file("game")});
+  viewer.waitUntil([&] { return std::filesystem::exists(scratch.file("game.partial")); });
+  std::this_thread::sleep_for(500ms);
+  viewer.send(SIGTERM);
+  const ProgramResult result = viewer.wait();
+  EXPECT_EQ(result.exitCode, 143) << result.error;
+  const Json report = Json::parse(contentOf(scratch.file("r.json")));
+  EXPECT_EQ(report.at("interrupted"), true);
+  EXPECT_EQ(report.at("frames"), 0);
+}
+
 TEST(Interruption, AKilledViewerLeavesARecordingThatCanBeReplayed) {
   const ScratchFolder scratch;
   const std::string partial = scratch.file("game.partial");

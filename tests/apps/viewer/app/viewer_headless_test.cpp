@@ -183,12 +183,14 @@ TEST(ViewerHeadless, BadArgumentsAreNamed) {
       {{"--headless", "--overlay", "heat"}, "--overlay: expected ..., got 'heat'"},
       {{"--headless", "--players", "9"}, "--players"},
       {{"--headless", "--mode", "game"}, "--mode: expected ..., got 'game'"},
-      {{"--headless", "--mouse", "/nonexistent"}, "--mouse: '/nonexistent'"},
+      {{"--headless", "--mouse", "/nonexistent"}, "--mouse: /nonexistent: expected ..., got none"},
       {{"--mouse", "x"}, "only with --headless"},
       {{"--headless", "--method", "magic"}, "--method"},
       {{"--headless", "--video", "film.avi"}, ".mp4 or .gif"},
       {{"--headless", "--replay", "/nonexistent"}, "/nonexistent"},
       {{"--headless", "--report", "/no-such-folder/r.json"}, "--report"},
+      {{"--headless", "--report", "a", "--poses", "a"}, "--report and --poses: expected ..., got 'a' for both"},
+      {{"--headless", "--poses", "a", "--record", "./a"}, "--poses and --record: expected ..., got 'a' and './a'"},
       {{"--png", "x"}, "only with --headless"},
       {{"--colour"}, "--colour"}};
   for (const auto& [arguments, expected] : bad) {

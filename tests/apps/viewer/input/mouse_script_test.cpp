@@ -40,7 +40,17 @@ TEST(MouseScript, SaysWhatIsWrong) {
       EXPECT_THAT(error.what(), says("mouse, line 2: expected ..., got '" + std::string(line) + "'")) << line;
     }
   }
-  EXPECT_THROW(readMouseScript(scratch.file("none")), InputError);
+  for (const auto& [file, expected] :
+       {std::pair(scratch.file("none"), std::string("none: expected a file that can be read")),
+        std::pair(scratch.file(""), std::string("expected a file, got a folder")),
+        std::pair(std::string("/dev/zero"), std::string("/dev/zero, line 1: expected at most 1 MB"))}) {
+    try {
+      readMouseScript(file);
+      ADD_FAILURE() << file;
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.what(), ::testing::HasSubstr(expected));
+    }
+  }
 }
 
 }  // namespace
