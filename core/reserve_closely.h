@@ -5,8 +5,8 @@
 
 namespace springtower {
 
-/// Makes room for `size` values, an eighth and some more where there is too little. Vectors by themselves double then, which is
-/// too much of what is large.
+/// Reserves room for `size` values; where there is too little, for an eighth and eight more. std::vector by itself would double
+/// its room, which wastes memory in large vectors.
 template <class T>
 void reserveClosely(std::size_t size, std::vector<T>& values) {
   if (size > values.capacity()) values.reserve(size + size / 8 + 8);

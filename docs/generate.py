@@ -24,7 +24,7 @@ def measurements(peers_stacks):
     """Tables of docs/performance.md, of what docs/measure.py has recorded so far."""
     tables = {"runs": recorded.runs, "rows": recorded.rows, "motion": recorded.motion, "game": recorded.motion, "game_parts": recorded.game_parts,
               "towers": recorded.towers, "roofline": recorded.roofline, "factors": recorded.factors,
-              "stacks": lambda rows: recorded.stacks(rows, peers_stacks), "falls": recorded.falls}
+              "stacks": lambda rows: recorded.stacks(rows, peers_stacks), "falls": recorded.falls, "starts": recorded.starts}
     parts = {}
     for name, table in tables.items():
         file = DATA / ("kernels.csv" if name in ("roofline", "factors") else f"{name}.csv")

@@ -11,6 +11,7 @@ on a quiet machine. Parts:
   game      docs/data/game.csv         the recorded game, and game_parts.csv: parts of it, one sample
   towers    docs/data/towers.csv       64 and 640 towers, one thread and two
   stacks    docs/data/stacks.csv       walls and pyramids, with Bullet
+  starts    docs/data/starts.csv       the search for the equilibrium of towers
   falls     docs/data/falls.csv        what moves in large numbers, with Bullet
   kernels   docs/data/kernels.csv      kernels, factorisations and what the machine can do (springtower_benchmarks)
   accuracy  docs/data/accuracy.csv     the chart of speed against accuracy, every method and scene
@@ -51,6 +52,7 @@ PARTS = {
     "towers": ("profile --scenes towers --towers 64,640 --threads 1,2 --tolerances 1e-5 --methods implicit", "profile.csv",
                "towers.csv"),
     "stacks": ("profile --scenes walls,pyramids", "stacks.csv", "stacks.csv"),
+    "starts": ("profile --scenes starts --peer-limit 0", "stacks.csv", "starts.csv"),
     "falls": ("profile --scenes topple,hit,heaps,piles,rain", "falls.csv", "falls.csv"),
     "accuracy": ("chart --no-resume", "chart.csv", "accuracy.csv"),
     "validate": ("validate --full", "validation.json", "validation.json"),

@@ -143,6 +143,19 @@ def stacks(recorded, peers):
                   "Bullet: substeps, ms, penetration", "Box3D, 32 substeps: ms, penetration, verdict"], lines)
 
 
+def starts(recorded):
+    """The search for the equilibrium, for docs/performance.md."""
+    ours, _ = _ours(recorded, "stack")
+    names = {"tower": "equal rows", "uneven": "uneven heights", "tilted": "equal rows, tilted", "uneven-tilted": "uneven and tilted",
+             "tilted-towers": "towers of 18 rows, tilted"}
+    lines = []
+    for stack, row in ours.items():
+        name, size = stack.split(":")
+        what = f"{size} {names[name]}" if name == "tilted-towers" else f"{size} rows, {names[name].replace('equal rows, ', '').replace('equal rows', 'equal')}"
+        lines.append((f"`{stack}`", what, number(1e3 * float(row["1"]["equilibrium_s"])), f"{1e3 * float(row['1']['first_frame_allowed_s']):g}"))
+    return table(["`--stacks`", "", "took, ms", "required"], lines)
+
+
 def falls(recorded):
     """What moves in large numbers, for docs/performance.md."""
     ours, bullet = _ours(recorded, "fall")

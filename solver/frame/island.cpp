@@ -15,9 +15,10 @@ namespace springtower {
 
 namespace {
 
-// Puts an island back to where the part of the frame began: one that was in rigid steps, as its new springs have taken overlaps
-// as their rest depths, which would add up over the tries; or one that implicit steps have given energy. `failed`: they did not
-// converge, and all blocks have the same number of frames before the next try. Returns the time of the frame, s.
+// Puts an island back to where the part of the frame began. Needed where it was in rigid steps: its new springs have taken
+// overlaps as their rest depths, which would add up over the tries. Needed also where implicit steps have given it energy.
+// `failed`: they did not converge; all blocks then keep the same number of frames before the next try. Returns the time of the
+// frame, s.
 double takeBackImplicitSteps(IslandStep& step, bool failed) {
   std::vector<IslandHistory>& history = step.engine.memo.islandHistory;
   const std::int32_t frames = history[static_cast<std::size_t>(step.blocks.front())].rigidFrames;

@@ -82,7 +82,7 @@ class FallDetector {
     const bool alike = std::abs(acceleration_ - before_) <= tuning::kSameAcceleration * before_;
     if (!alike) way_ = 0.0;
     before_ = acceleration_;
-    return way_ > tuning::kFallWay;
+    return way_ > tuning::kFallDistance;
   }
 
  private:

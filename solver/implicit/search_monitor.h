@@ -47,8 +47,8 @@ class SearchMonitor {
   std::atomic<bool> stopped_{false};
   std::atomic<bool> outOfTime_{false};
   std::mutex calling_;
-  double nextCall_s_ = 0.0;     // guarded by it,
-  bool endedByCaller_ = false;  // and this: who has ended the search is not called again
+  double nextCall_s_ = 0.0;     // guarded by calling_
+  bool endedByCaller_ = false;  // guarded by calling_; the caller has ended the search and is not called again
 };
 
 /// Whether a search that this watches, if there is one, is to end where it is. `monitor` may be null.

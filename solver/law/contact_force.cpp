@@ -112,7 +112,7 @@ SPRINGTOWER_INLINE void frictionLaw(const LawStep& s, const PointState& state, c
   squareRoot(squared, size);
   const Lanes keep = slides ? sticking / size : one;
   p.slipRatio = slides & touching ? (keep > tuning::kMinSlipRatio ? keep : zero + tuning::kMinSlipRatio) : zero;
-  // Slip releases a little of the rest depth; the dissipation of friction pays for the work.
+  // Slip releases a little of the rest depth; the work is at most what friction dissipates.
   Lanes displacementSize;
   squareRoot(displacement[0] * displacement[0] + displacement[1] * displacement[1] + displacement[2] * displacement[2],
              displacementSize);

@@ -19,7 +19,7 @@ struct Springs {
   double tolerance_m;  ///< how deep a push may press blocks into one another
   double rounding_m;   ///< of gaps
   bool heap;           ///< whether most blocks have fallen: what springs push out then stays an overlap without force
-  double share;        ///< of its mean over about a frame by which a push counts in a substep
+  double share;        ///< weight of a substep's push in its running mean over about a frame
 };
 
 /// Arms, normals, gaps and effective masses of all packed points at the present poses and orientations of the island's bodies.

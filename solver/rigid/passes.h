@@ -40,7 +40,8 @@ std::size_t solveAll(const Pass& pass, std::vector<BodyMotion>& bodies, PackedPo
 double solveActive(const Pass& pass, std::vector<BodyMotion>& bodies, PackedPoints& packed);
 
 /// Notes that pass `number` through an impact (0: what meets in it) has changed a body's velocity: the pairs in which it is are
-/// due in the next pass, and in this one where they come later. Precondition: `changed` and `due` are set, to no more.
+/// due in the next pass, and in this one where they come later. Preconditions: island.changed [bodies + 1] and `due` of both
+/// packs [pairs] hold numbers of at most `number` + 1, and -1 where nothing has changed; listPairsOfBodies has been called.
 void noteChange(std::int32_t body, int number, RigidIsland& island);
 
 /// Pass `number` through an impact: over those points of which a body's velocity has changed since they were solved last, as

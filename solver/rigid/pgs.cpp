@@ -172,7 +172,7 @@ void stopAtContact(IslandStep& step, RigidIsland& island, int passes) {
 }
 
 // Passes that remove the push-out from the velocities, and by which what has met rebounds.
-// Returns whether any has.
+// Returns whether any pair has rebounded.
 bool relaxAndRebound(IslandStep& step, RigidIsland& island, int passes) {
   readVelocities(island);
   const bool rebounds = fastestImpact(island) > 0.0;

@@ -34,8 +34,8 @@ Rises risesOf(const Scene& scene, int frames) {
   return rises;
 }
 
-// Without friction, a point that no longer pushes has no impulse left. 1e-6 of the energy is what the issue allows where nothing
-// is pushed apart.
+// Without friction, a point that no longer pushes has no impulse left. 1e-6 of the energy is the required bound where nothing is
+// pushed apart.
 TEST(ImpactEnergy, DoesNotRiseWithoutFriction) {
   for (const char* name : {"heap:3", "heap:8", "heap:25"}) {
     Scene scene = sceneNamed(name);

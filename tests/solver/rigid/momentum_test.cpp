@@ -31,7 +31,7 @@ Scene cloud(Method method, int blocks, double restitution) {
 struct Cloud : ::testing::TestWithParam<std::tuple<Method, int, double>> {};
 
 // Every impulse acts on two blocks, equal and opposite; only rounding is left of the sum, 1e-16 of all of it each of some
-// thousand times. Bounds are the issue's: 1e-12 and, about a place, 1e-9.
+// thousand times. The required bounds: 1e-12 and, about a place, 1e-9.
 TEST_P(Cloud, KeepsItsMomenta) {
   const auto [method, blocks, restitution] = GetParam();
   Simulation simulation(cloud(method, blocks, restitution));

@@ -56,7 +56,7 @@ struct ReboundCase {
 struct FlatDrop : ::testing::TestWithParam<ReboundCase> {};
 
 // Speed after over speed before is the coefficient, whatever the height, the number of blocks, the tolerance and the frame. 0.03
-// is what issue and truth allow; the passes through a stack of four end at 1 % of the speed.
+// is the required bound; the passes through a stack of four end at 1 % of the speed.
 TEST_P(FlatDrop, ReboundsWithTheCoefficient) {
   const Method method = GetParam().method;
   for (const double coefficient : {0.0, 0.5, 0.9}) {

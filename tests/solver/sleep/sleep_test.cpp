@@ -62,7 +62,7 @@ TEST(Sleep, AtOnceIsNotBeforeRest) {
 
 // Gravity turns by less than what wakes a sleeper, another block falls asleep, and gravity turns as far again: by more than that
 // against the gravity under which the first one sleeps. The limit is a ten-thousandth, 0.0057 degrees.
-TEST(Sleep, GravityThatTurnsSlowlyWakesWhoHasSleptLong) {
+TEST(Sleep, GravityThatTurnsSlowlyWakesBlocksThatHaveSleptLong) {
   Scene scene;
   scene.blocks.resize(2);
   for (std::size_t b = 0; b < 2; ++b) scene.blocks[b].centre = Vec3(static_cast<double>(b), 0.0, 0.5 * kBlockHeight_m);
