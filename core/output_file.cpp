@@ -3,6 +3,8 @@
 #include "core/error.h"
 #include "core/limits.h"
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -43,8 +45,8 @@ int lockedFile(const std::string& name) {
   }
 }
 
-// Where a link leads that points to a file that is not there yet; any other path as it is. Throws
-// std::filesystem::filesystem_error where it cannot be read.
+}  // namespace
+
 std::string withoutDanglingLinks(std::string path) {
   namespace fs = std::filesystem;
   constexpr int kMostLinks = 40;  // as Linux follows
@@ -53,8 +55,6 @@ std::string withoutDanglingLinks(std::string path) {
   }
   return path;
 }
-
-}  // namespace
 
 OutputFile::OutputFile(std::string path, std::string option) : path_(std::move(path)), option_(std::move(option)) {
   namespace fs = std::filesystem;
@@ -80,7 +80,7 @@ OutputFile::OutputFile(std::string path, std::string option) : path_(std::move(p
     if (openPartial(fmt::format("{}-{}", partial, getpid()))) return;
     // The folder takes no new files, but one that is there may be written: it keeps its content until the new one is whole.
     if (fs::exists(status) && openTemporary()) return;
-    fail(std::strerror(why));
+    if (!fs::exists(status)) fail(std::strerror(why));
   }
   stream_.open(path_, std::ios::binary);
   if (!stream_.is_open()) fail(std::strerror(errno));
@@ -107,15 +107,31 @@ bool OutputFile::openTemporary() {
   if (file < 0) return false;
   close(file);
   temporary_ = openPartial(name);
+  if (!temporary_) std::remove(name.c_str());
   return temporary_;
 }
 
+// Of two processes that copy at the same time the second one waits: the file is one's or the other's.
 bool OutputFile::copyTemporary() const {
   std::ifstream from(partial_, std::ios::binary);
-  std::ofstream to(path_, std::ios::binary | std::ios::trunc);
-  if (from.peek() != std::ifstream::traits_type::eof()) to << from.rdbuf();
-  to.close();
-  return from && !from.bad() && to;
+  if (!from.is_open()) return false;
+  const int to = open(path_.c_str(), O_WRONLY | O_CLOEXEC);
+  if (to < 0) return false;
+  bool good = flock(to, LOCK_EX) == 0 && ftruncate(to, 0) == 0;
+  std::array<char, 1U << 16U> bytes{};
+  while (good && from.read(bytes.data(), bytes.size()).gcount() > 0) {
+    const std::streamsize count = from.gcount();
+    for (std::streamsize done = 0; good && done < count;) {
+      const ssize_t written = write(to, bytes.data() + done, static_cast<std::size_t>(count - done));
+      good = written > 0 || (written < 0 && errno == EINTR);
+      done += std::max<ssize_t>(written, 0);
+    }
+  }
+  good = good && !from.bad();
+  const int why = errno;
+  const bool closed = close(to) == 0;
+  if (!good) errno = why;
+  return good && closed;
 }
 
 void OutputFile::unlock() {

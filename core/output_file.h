@@ -7,14 +7,19 @@
 
 namespace springtower {
 
+/// Where a link leads that points to a file that is not there yet; any other path as it is. Throws
+/// std::filesystem::filesystem_error where it cannot be read.
+std::string withoutDanglingLinks(std::string path);
+
 /// A file that is written while the program works and appears under its name only when it is complete. It is opened at once, so
 /// that a name that cannot be written is known before any work is done. Until `commit` the content stands beside it in
-/// NAME.partial, which the destructor removes; a device or pipe is written directly, and what replaces a file in a folder that
-/// takes no new ones stands in the system's folder for temporary files until then. A process that is killed leaves NAME.partial
-/// as it was last flushed, and the next one that writes to NAME takes its place. Of two processes that write to NAME at the same
-/// time the second one writes NAME.partial-PID, and NAME is in the end that of the one that finishes last. NAME.partial is locked
-/// (flock) while its process lives: that is how the second one distinguishes it from what a killed process has left. A link is
-/// followed, whether there is a file at its end yet or not.
+/// NAME.partial, which the destructor removes; a device or pipe is written directly. What replaces a file in a folder that takes
+/// no new ones stands in the system's folder for temporary files until then, and is copied: a process that is killed while it
+/// copies leaves part of it. Where there is no such folder either, that file is written directly. A process that is killed leaves
+/// NAME.partial as it was last flushed, and the next one that writes to NAME takes its place. Of two processes that write to NAME
+/// at the same time the second one writes NAME.partial-PID, and NAME is in the end that of the one that finishes last.
+/// NAME.partial is locked (flock) while its process lives: that is how the second one distinguishes it from what a killed process
+/// has left. A link is followed, whether there is a file at its end yet or not.
 class OutputFile {
  public:
   /// Opens `path`; `option` names the command line option it came from. Throws InputError naming both when it cannot be written.

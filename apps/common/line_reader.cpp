@@ -32,14 +32,12 @@ LineReader::~LineReader() {
 }
 
 bool LineReader::next(std::string& line, const std::function<bool()>& stop) {
+  if (refused_) refuse();
   ++number_;
   std::size_t searched = begin_;
   std::size_t end = buffer_.find('\n', searched);
   while (end == std::string::npos) {
-    if (buffer_.size() - begin_ > kMaxLineBytes) {
-      throw InputError(
-          fmt::format("{}: line {}: expected at most {} MB in a line, got more", source_, number_, kMaxLineBytes >> 20U));
-    }
+    if (buffer_.size() - begin_ > kMaxLineBytes) refuse();
     buffer_.erase(0, begin_);
     begin_ = 0;
     searched = buffer_.size();
@@ -49,8 +47,15 @@ bool LineReader::next(std::string& line, const std::function<bool()>& stop) {
   if (!ended_ && end == std::string::npos) return false;  // interrupted or stopped
   if (end == std::string::npos && begin_ == buffer_.size()) return false;
   line = buffer_.substr(begin_, end - begin_);
+  if (line.size() > kMaxLineBytes) refuse();
   begin_ = end == std::string::npos ? buffer_.size() : end + 1;
   return true;
+}
+
+void LineReader::refuse() {
+  refused_ = true;
+  throw InputError(
+      fmt::format("{}: line {}: expected at most {} MB in a line, got more", source_, number_, kMaxLineBytes >> 20U));
 }
 
 // Appends what there is. Returns false at the end of the input, when a signal has come, and when `stop` says so.

@@ -20,11 +20,13 @@ class LineReader {
   [[nodiscard]] const std::string& source() const { return source_; }
 
   /// The next line without its end. Returns false at the end of the input, and when a signal has come (interruption.h) or `stop`
-  /// has become true while it waited for more. Throws InputError when reading fails, and for a line of more than kMaxLineBytes.
+  /// has become true while it waited for more. Throws InputError when reading fails, and for a line of more than kMaxLineBytes,
+  /// in every call from then on.
   bool next(std::string& line, const std::function<bool()>& stop);
 
  private:
   bool fill(const std::function<bool()>& stop);
+  [[noreturn]] void refuse();  // a line that is too long
 
   std::string source_;
   int file_ = -1;
@@ -32,6 +34,7 @@ class LineReader {
   std::size_t begin_ = 0;  // of what is not handed out yet
   std::size_t number_ = 0;
   bool ended_ = false;
+  bool refused_ = false;  // the line of number_ is too long: none is read after it
 };
 
 }  // namespace springtower

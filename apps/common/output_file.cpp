@@ -10,11 +10,17 @@
 namespace springtower {
 namespace {
 
-// Without links and steps through folders, where it can be known; else as it is.
+// The file that a name leads to, without links and steps through folders; the name itself of what is no file, as of a terminal,
+// which may be named twice, and where it cannot be known.
 std::string resolved(const std::string& name) {
-  std::error_code error;
-  const std::filesystem::path path = std::filesystem::weakly_canonical(std::filesystem::absolute(name, error), error);
-  return error || path.empty() ? name : path.string();
+  namespace fs = std::filesystem;
+  try {
+    const std::string path = withoutDanglingLinks(name);
+    if (fs::exists(path) && !fs::is_regular_file(path)) return name;
+    return fs::weakly_canonical(fs::absolute(path)).string();
+  } catch (const fs::filesystem_error&) {
+    return name;
+  }
 }
 
 }  // namespace

@@ -134,6 +134,12 @@ TEST(OutputFile, KeepsTheOldFileWhereNoNewOneCanBeMadeBesideIt) {
     EXPECT_EQ(contentOf(name), text);
     EXPECT_FALSE(std::filesystem::exists(written));
   }
+  std::ofstream(name) << "old";
+  OutputFile lost(name, "--out");
+  lost.stream() << "new";
+  std::filesystem::remove(lost.writtenPath());
+  EXPECT_THROW(lost.commit(), InputError) << "somebody has cleared the folder for temporary files";
+  EXPECT_EQ(contentOf(name), "old");
   EXPECT_EQ(filesIn(scratch), 1);
 }
 

@@ -191,7 +191,10 @@ int executeMaps(const ChartCommand& command) {
   if (command.quick) limits = {{2, 8, 32, 128}, {5e-4, 1e-4}, {1, 3}, 0.25, 0.5};
   if (command.seconds) limits.seconds = *command.seconds;
   if (command.case_s) limits.case_s = *command.case_s;
-  for (const std::string& name : command.methods) limits.methods.push_back(mappedMethod(name));
+  for (const std::string& name : command.methods) {
+    const Method method = mappedMethod(name);
+    if (std::find(limits.methods.begin(), limits.methods.end(), method) == limits.methods.end()) limits.methods.push_back(method);
+  }
   makeOutputFolder(command.out);
   const Provenance provenance = provenanceNow();
   const std::string unfinished = (std::filesystem::path(command.out) / kUnfinishedMaps).string();
@@ -231,14 +234,14 @@ void readAllPeers(const ChartCommand& command, const std::vector<Peer>& here, Ch
   }
 }
 
-// The cases of a scene. Throws Interrupted; chart.json says so then.
-std::vector<ChartResult> measureScene(const ChartCommand& command, const std::vector<ChartCase>& cases, Chart& chart,
-                                      const std::function<void(const ChartCase&)>& progress) {
+// The cases of a scene. Throws Interrupted; chart.json says so then, where this run has written it (`isWritten`).
+std::vector<ChartResult> measureScene(const ChartCommand& command, const std::vector<ChartCase>& cases, bool isWritten,
+                                      Chart& chart, const std::function<void(const ChartCase&)>& progress) {
   try {
     return measureChart(cases, chart.limits, progress);
   } catch (const Interrupted&) {
     chart.interrupted = true;
-    writeOutputFile(command.out, "chart.json", [&](std::ostream& stream) { writeChartJson(stream, chart); });
+    if (isWritten) writeOutputFile(command.out, "chart.json", [&](std::ostream& stream) { writeChartJson(stream, chart); });
     throw;
   }
 }
@@ -314,18 +317,20 @@ int executeChart(const ChartCommand& command) {
   }
   int done = 0;
   std::size_t charts = 0;
+  bool isWritten = false;
   Progress progress(steps, "steps");
   for (const std::vector<ChartCase>& cases : work) {
     if (std::all_of(cases.begin(), cases.end(), known)) {
       done += static_cast<int>(cases.size()) * (1 + chart.limits.samples);
     } else {
-      const std::vector<ChartResult> results = measureScene(command, cases, chart, [&](const ChartCase& now) {
+      const std::vector<ChartResult> results = measureScene(command, cases, isWritten, chart, [&](const ChartCase& now) {
         progress.update(++done, fmt::format("{}, {}", nameOf(now.scene), nameOf(now)));
       });
       std::erase_if(chart.results,
                     [&](const ChartResult& old) { return std::find(cases.begin(), cases.end(), old.what) != cases.end(); });
       chart.results.insert(chart.results.end(), results.begin(), results.end());
       writeOutputFile(command.out, "chart.json", [&](std::ostream& stream) { writeChartJson(stream, chart); });
+      isWritten = true;
     }
     progress.clear();
     if (cases.empty()) continue;

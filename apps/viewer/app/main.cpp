@@ -275,7 +275,9 @@ int runViewer(const Command& command, std::chrono::steady_clock::time_point star
       poses->commit();
     });
   }
-  if (recorder) attempts.attempt([&] { recorder->finish(viewer.choice, viewer.session); });
+  // Where a signal ended the search before the first frame, an older recording stays.
+  if (recorder && !(viewer.watch.interrupted && viewer.session.log.empty()))
+    attempts.attempt([&] { recorder->finish(viewer.choice, viewer.session); });
   attempts.finish();
   return outcomeOf(viewer, command.headless);
 }

@@ -2,6 +2,7 @@
 #include "tests/support/program.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <map>
@@ -98,6 +99,18 @@ TEST(ChartMaps, TimesOutWhatIsTooSlow) {
                                                           "5", "--case-limit", "0.01", "--out", folder.file("out")});
   ASSERT_EQ(result.exitCode, 0) << result.error;
   EXPECT_THAT(contentOf(folder.file("out/maps.csv")), HasSubstr("times out"));
+}
+
+TEST(ChartMaps, HaveAMethodThatIsNamedTwiceOnce) {
+  const ScratchFolder folder;
+  const auto points = [&](const std::string& methods) {
+    const ProgramResult result = runProgram(
+        "springtower", {"chart", "--maps", "--quick", "--methods", methods, "--seconds", "0.2", "--out", folder.file(methods)});
+    EXPECT_EQ(result.exitCode, 0) << result.error;
+    EXPECT_FALSE(std::filesystem::exists(folder.file(methods + "/maps.unfinished.json")));
+    return linesOf(contentOf(folder.file(methods + "/maps.csv"))).size();
+  };
+  EXPECT_EQ(points("xpbd,xpbd"), points("xpbd"));
 }
 
 TEST(ChartMaps, RefuseWhatTheyDoNotUse) {

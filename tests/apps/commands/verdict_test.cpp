@@ -181,6 +181,8 @@ TEST(Verdict, ALineOfMoreThanAMegabyteIsRefused) {
   const ProgramResult result = runProgram("springtower", {"verdict", "/dev/zero"});
   EXPECT_EQ(result.exitCode, 2);
   EXPECT_THAT(result.error, HasSubstr("/dev/zero: line 1: expected at most 1 MB in a line, got more"));
+  EXPECT_THAT(verdict(std::string((1U << 20U) + 1, ' ') + "\n").error, HasSubstr("expected at most 1 MB in a line"));
+  EXPECT_EQ(verdict(std::string(1U << 20U, ' ') + "\n{\"id\":\"a\",\"config\":\"(010)\"}\n").exitCode, 0) << "as long as may be";
 }
 
 INSTANTIATE_TEST_SUITE_P(
