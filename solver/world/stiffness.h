@@ -16,8 +16,7 @@ BlockStiffness stiffnessForTolerance(const LoadEstimate& loads, double tolerance
 
 /// Makes the springs of explicit methods stiff enough for the speeds of a scene: four edges along a block's least side are
 /// strained by tuning::kMaxMotionStrain at most where they stop the speed of the scene's fastest corner at its start, and what a
-/// fall from its highest centre to the floor adds, and what its forces add that friction under the weight of all blocks does not
-/// hold; not what hands, drives and forces that a program sets add. Slow scenes keep what their loads need.
+/// fall from its highest centre to the floor adds; not what forces, hands and drives add. Slow scenes keep what their loads need.
 /// Implicit and rigid methods do not need it: their blocks take impulses as rigid bodies. `referenceLength_m`: m, of the edges
 /// that `edge_n_m` (N/m, [blocks]) is of, as in BlockStiffness.
 void stiffenForMotion(const Scene& scene, double referenceLength_m, std::vector<double>& edge_n_m);

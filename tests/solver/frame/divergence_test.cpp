@@ -133,36 +133,5 @@ TEST(Divergence, IsNotThatOfAFastBlockOfSprings) {
   }
 }
 
-// A force of fourteen weights on the corner of a top block gives it 30 m/s and spins it; a torque does the same.
-TEST(Divergence, IsNotThatOfABlockThatAForceSpeedsUp) {
-  const UserForce onCorner{.block = 3, .corner = 4, .force = Vec3(0.0, 2.7, 0.0), .start_s = 0.1, .end_s = 0.34};
-  const UserForce torque{.block = 3, .start_s = 0.1, .end_s = 0.34, .torque = Vec3(0.05, 0.0, 0.0)};
-  for (const Method method : {Method::semiImplicitEuler, Method::rungeKutta4}) {
-    for (const UserForce& force : {onCorner, torque}) {
-      SCOPED_TRACE(testing::Message() << nameOf(method) << (force.corner < 0 ? ", torque" : ", force"));
-      Scene scene = bitCodeScene("(111)-(010)");
-      scene.settings.method = method;
-      scene.settings.tolerance_m = 2e-4;
-      scene.seconds = 0.6;
-      scene.forces = {force};
-      Simulation simulation(scene);
-      prepare(simulation);
-      EXPECT_EQ(messageOf(simulation, 36), "none");
-    }
-  }
-}
-
-// What friction holds speeds nothing up, and what presses on the floor does not either: such scenes are as stiff as without.
-TEST(Divergence, OfForcesThatAreHeldNeedsNoStifferSprings) {
-  Scene scene = bitCodeScene("(111)-(111)-(111)-(111)");
-  scene.settings.method = Method::semiImplicitEuler;
-  const Simulation without(scene);
-  scene.forces = {UserForce{.block = 4, .force = Vec3(0.3, 0.0, 0.0), .end_s = 10.0},
-                  UserForce{.block = 11, .force = Vec3(0.0, 0.0, -5.0), .end_s = 10.0},
-                  UserForce{.block = 4, .end_s = 10.0, .torque = Vec3(0.0, 0.0, 0.01)}};
-  const Simulation held(scene);
-  for (std::size_t b = 0; b < scene.blocks.size(); ++b) EXPECT_EQ(held.stiffness.edge_n_m[b], without.stiffness.edge_n_m[b]);
-}
-
 }  // namespace
 }  // namespace springtower
