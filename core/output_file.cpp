@@ -3,8 +3,6 @@
 #include "core/error.h"
 #include "core/limits.h"
 
-#include <algorithm>
-#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -115,23 +113,19 @@ bool OutputFile::openTemporary() {
 bool OutputFile::copyTemporary() const {
   std::ifstream from(partial_, std::ios::binary);
   if (!from.is_open()) return false;
-  const int to = open(path_.c_str(), O_WRONLY | O_CLOEXEC);
-  if (to < 0) return false;
-  bool good = flock(to, LOCK_EX) == 0 && ftruncate(to, 0) == 0;
-  std::array<char, 1U << 16U> bytes{};
-  while (good && from.read(bytes.data(), bytes.size()).gcount() > 0) {
-    const std::streamsize count = from.gcount();
-    for (std::streamsize done = 0; good && done < count;) {
-      const ssize_t written = write(to, bytes.data() + done, static_cast<std::size_t>(count - done));
-      good = written > 0 || (written < 0 && errno == EINTR);
-      done += std::max<ssize_t>(written, 0);
-    }
+  const int lock = open(path_.c_str(), O_WRONLY | O_CLOEXEC);
+  if (lock < 0) return false;
+  bool good = flock(lock, LOCK_EX) == 0;
+  if (good) {
+    std::ofstream to(path_, std::ios::binary | std::ios::trunc);
+    if (from.peek() != std::ifstream::traits_type::eof()) to << from.rdbuf();
+    to.close();
+    good = !to.fail() && !from.bad();
   }
-  good = good && !from.bad();
   const int why = errno;
-  const bool closed = close(to) == 0;
-  if (!good) errno = why;
-  return good && closed;
+  close(lock);
+  errno = why;
+  return good;
 }
 
 void OutputFile::unlock() {

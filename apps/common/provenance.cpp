@@ -2,6 +2,7 @@
 
 #include "apps/common/output_file.h"
 #include "core/error.h"
+#include "core/limits.h"
 #include "core/version.h"
 
 #include <chrono>
@@ -83,6 +84,26 @@ void checkCommitted(const Provenance& then, const Provenance& now, const std::st
       "{}: expected results of builds of a commit, or --no-resume, got others: {} has uncommitted changes, so that its "
       "commit does not say whether they are of the same sources",
       where, isDirty ? "this build" : "the build that measured them"));
+}
+
+void readKept(const std::string& path, const Provenance& now, const nlohmann::ordered_json& settings,
+              const std::function<void(const nlohmann::ordered_json&)>& read) {
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) return;
+  try {
+    const auto json = nlohmann::ordered_json::parse(stream);
+    const Provenance then = provenanceFromJson(json);
+    checkCommitted(then, now, "kept results");
+    bool same = sameOrigin(then, now);
+    for (const auto& [key, value] : settings.items()) same = same && json.at(key) == value;
+    if (!same) throw InputError("expected results of this run, or --no-resume, got those of another build, machine or options");
+    read(json);
+  } catch (const nlohmann::json::exception& error) {
+    throw InputError(fmt::format("{}: expected what an earlier run of this version leaves, or --no-resume, got other content: {}",
+                                 onOneLine(path), onOneLine(error.what())));
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: {}", onOneLine(path), error.what()));
+  }
 }
 
 std::string csvText(const Provenance& provenance) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
@@ -30,6 +31,12 @@ bool sameOrigin(const Provenance& a, const Provenance& b);
 /// Whether an earlier run may be gone on with as far as its build is concerned: throws InputError with the reason when one of
 /// both builds has uncommitted changes, of which its commit says nothing. `where` begins the message.
 void checkCommitted(const Provenance& then, const Provenance& now, const std::string& where);
+
+/// Hands the JSON file that an earlier run has left to `read`, to go on from there; does nothing where there is no such file.
+/// `settings`: the keys whose values decide what is measured, as they are in this run. Throws InputError naming the file for one
+/// that this version does not write, and for one of another build, machine or settings.
+void readKept(const std::string& path, const Provenance& now, const nlohmann::ordered_json& settings,
+              const std::function<void(const nlohmann::ordered_json&)>& read);
 
 /// Commit, compiler, flags, processor and date, as the last columns of a line of CSV.
 std::string csvText(const Provenance& provenance);

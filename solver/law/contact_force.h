@@ -23,8 +23,7 @@ struct ContactLaw {
   const FrictionTable* friction = nullptr;    ///< Coulomb's coefficients: static while any point of a contact sticks
   double impactPenetration_m = 1.0;           ///< target depth of an impact; determines the stiffening of a new contact
   double stiffeningTime_s = 1.0;              ///< s, time constant with which that stiffening fades
-  double restDepthPerSlip =
-      0.0;  ///< rest depth that fades per length of slip, over kinetic friction, whose work is more than this
+  double restDepthPerSlip = 0.0;              ///< rest depth that fades per length of slip, over kinetic friction
 
   /// k of a pair's points, N/m; `lower` is negative for the floor.
   [[nodiscard]] double stiffnessOf(std::int32_t upper, std::int32_t lower) const {

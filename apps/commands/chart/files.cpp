@@ -7,9 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <fmt/format.h>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <ostream>
 
@@ -111,23 +109,11 @@ void writeChartJson(std::ostream& stream, const Chart& chart) {
 }
 
 std::vector<ChartResult> readChartJson(const std::string& path, const Chart& now) {
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) return {};
-  try {
-    const Json json = Json::parse(stream);
-    const Provenance then = provenanceFromJson(json);
-    checkCommitted(then, now.provenance, "chart.json");
-    const bool same = sameOrigin(then, now.provenance) && json.at("limits") == limitsJson(now.limits);
-    if (!same) throw InputError("expected figures of this run, or --no-resume, got those of another build, machine or limits");
-    std::vector<ChartResult> results;
+  std::vector<ChartResult> results;
+  readKept(path, now.provenance, {{"limits", limitsJson(now.limits)}}, [&](const Json& json) {
     for (const Json& result : json.at("cases")) results.push_back(chartResultFromJson(result));
-    return results;
-  } catch (const Json::exception& error) {
-    throw InputError(
-        fmt::format("{}: not the chart.json of a chart of this version: {}", onOneLine(path), onOneLine(error.what())));
-  } catch (const InputError& error) {
-    throw InputError(fmt::format("{}: {}", onOneLine(path), error.what()));
-  }
+  });
+  return results;
 }
 
 void writeChartCsv(std::ostream& stream, const Chart& chart) {

@@ -4,9 +4,7 @@
 #include "core/limits.h"
 
 #include <algorithm>
-#include <filesystem>
 #include <fmt/format.h>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <ostream>
 
@@ -80,23 +78,11 @@ void writeKeptRows(std::ostream& stream, const std::vector<MapRow>& rows, const 
 }
 
 std::vector<MapRow> readKeptRows(const std::string& path, const MapLimits& limits, const Provenance& provenance) {
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) return {};
-  try {
-    const Json json = Json::parse(stream);
-    const Provenance then = provenanceFromJson(json);
-    checkCommitted(then, provenance, "maps");
-    if (!sameOrigin(then, provenance) || json.at("limits") != limitsJson(limits))
-      throw InputError("expected rows of this run, or --no-resume, got those of another build, machine or limits");
-    std::vector<MapRow> rows;
+  std::vector<MapRow> rows;
+  readKept(path, provenance, {{"limits", limitsJson(limits)}}, [&](const Json& json) {
     for (const Json& row : json.at("map_rows")) rows.push_back(rowFromJson(row));
-    return rows;
-  } catch (const Json::exception& error) {
-    throw InputError(
-        fmt::format("{}: expected rows of maps of this version, got another file: {}", onOneLine(path), onOneLine(error.what())));
-  } catch (const InputError& error) {
-    throw InputError(fmt::format("{}: {}", onOneLine(path), error.what()));
-  }
+  });
+  return rows;
 }
 
 }  // namespace springtower

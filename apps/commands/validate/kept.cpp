@@ -1,9 +1,7 @@
 #include "apps/commands/validate/kept.h"
 
 #include "apps/commands/validate/page.h"
-#include "core/error.h"
 #include "core/hash.h"
-#include "core/limits.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -81,26 +79,11 @@ void writeKeptParts(std::ostream& stream, std::span<const KeptPart> parts, const
 }
 
 std::vector<KeptPart> readKeptParts(const std::string& path, const ValidationPlan& plan, const Provenance& provenance) {
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) return {};
-  try {
-    const Json json = Json::parse(stream);
-    const Provenance then = provenanceFromJson(json);
-    checkCommitted(then, provenance, onOneLine(path));
-    if (!sameOrigin(then, provenance) || json.at("long_form") != plan.longForm || json.at("inputs") != hashOfInputs(plan)) {
-      throw InputError(
-          fmt::format("{}: expected results of this run, or --no-resume, got those of another build, machine, form or other "
-                      "reference sets",
-                      onOneLine(path)));
-    }
-    std::vector<KeptPart> parts;
+  std::vector<KeptPart> parts;
+  readKept(path, provenance, {{"long_form", plan.longForm}, {"inputs", hashOfInputs(plan)}}, [&](const Json& json) {
     for (const Json& part : json.at("parts")) parts.push_back({part.at("part").get<std::string>(), sectionFrom(part)});
-    return parts;
-  } catch (const Json::exception& error) {
-    throw InputError(
-        fmt::format("{}: expected what a broken-off validation of this version leaves, or --no-resume, got other content: {}",
-                    onOneLine(path), onOneLine(error.what())));
-  }
+  });
+  return parts;
 }
 
 }  // namespace springtower
