@@ -3,6 +3,7 @@
 #include "scenarios/registry.h"
 #include "solver/frame/prepare.h"
 #include "solver/world/simulation.h"
+#include "tests/support/prepare_and_step.h"
 
 #include <gtest/gtest.h>
 #include <limits>
