@@ -1,19 +1,19 @@
 #include "solver/hand/played_frame.h"
 
-#include "solver/frame/prepare.h"
-
 namespace springtower {
 
-void stepPlayed(const Hand& hand, Grip& grip, std::vector<ContactForce>& contacts, Simulation& simulation) {
+bool stepPlayed(const Hand& hand, Grip& grip, std::vector<ContactForce>& contacts, Simulation& simulation,
+                const PrepareOptions& search) {
   if (hand.block == kFloor) {
     grip = {};
     letGo(simulation);
   } else {
     hold(hand, contacts, grip, simulation);
   }
-  prepare(simulation);
+  if (prepare(simulation, search).end == PrepareEnd::cancelled) return false;
   stepFrame(simulation);
   contacts = contactForces(simulation);
+  return true;
 }
 
 }  // namespace springtower

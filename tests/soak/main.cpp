@@ -171,10 +171,10 @@ void soakViewer(const Soak& soak, Soaked& found) {
     playAtRandom(viewer, kPlay_s, dice);
     Session& session = viewer.session;
     longest = std::max(longest, session.log.size());
-    const std::uint64_t last = session.log.size();
-    goTo(session, static_cast<std::uint64_t>(dice.below(static_cast<int>(last) + 1)));
+    const std::uint64_t last = lastLogged(session);
+    goTo(session, session.forgotten + static_cast<std::uint64_t>(dice.below(static_cast<int>(session.log.size()) + 1)));
     goTo(session, last);
-    if (last > 0 && stateHash(session.simulation) != session.log[last - 1].hash) {
+    if (last > 0 && stateHash(session.simulation) != session.log.back().hash) {
       found.faults.push_back(fmt::format("other bits after going back and forth, frame {}", last));
     }
     // A vector that grows has up to twice the room that it fills, and three times while it is copied.

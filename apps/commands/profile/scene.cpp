@@ -123,7 +123,8 @@ void PreparedScene::restore() {
 void PreparedScene::step() {
   if (game != nullptr) {
     const bool goesOn = simulation.frame < game->frames.size();
-    return stepPlayed(goesOn ? game->frames[simulation.frame].input.hand : Hand{}, grip, contacts, simulation);
+    stepPlayed(goesOn ? game->frames[simulation.frame].input.hand : Hand{}, grip, contacts, simulation);
+    return;
   }
   prepareOrEnd(simulation);
   const BlockId held = hand.hand.block;

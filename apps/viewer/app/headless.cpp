@@ -75,9 +75,11 @@ void runHeadless(Viewer& viewer, const ViewerFiles& files, const Viewport& size,
   if (run.folder) std::filesystem::create_directories(*run.folder);
   viewer.pacer.waiting_s = 0.0;
   for (int i = 1; i <= run.frames; ++i) {
+    const std::uint64_t before = viewer.session.frame;
     stepPicture(viewer, run, i);
     if (files.recorder != nullptr) files.recorder->follow(viewer.choice, viewer.session);
-    viewer.watch.interrupted = i < run.frames && interrupted();
+    // A signal that comes in the last frame interrupts nothing, unless it ended the frame's search for an equilibrium.
+    viewer.watch.interrupted = interrupted() && (i < run.frames || viewer.session.frame == before);
     const bool refused = viewer.replay && !viewer.replay->refused.empty();
     const bool last = i == run.frames || viewer.watch.interrupted || refused;
     if ((i % run.every == 0 || last) && (run.folder || film)) {

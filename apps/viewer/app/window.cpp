@@ -214,9 +214,13 @@ void writeInspection(Desk& desk, const Picture& picture) {
 }
 
 void saveRecording(Desk& desk) {
+  const Session& session = desk.viewer.session;
+  if (session.forgotten > 0) {
+    throw InputError(fmt::format("recording: its first {:.0f} minutes are forgotten; --record FILE writes a whole game",
+                                 static_cast<double>(session.forgotten) * session.scene.settings.frame_s / 60.0));
+  }
   const std::string path = numbered(desk, "recording", ++desk.shots, ".jsonl");
   OutputFile file(path, "recording");
-  const Session& session = desk.viewer.session;
   const auto end = session.log.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(session.frame, session.log.size()));
   writeRecording(file.stream(), {desk.viewer.choice, {session.log.begin(), end}, {}});
   file.commit();

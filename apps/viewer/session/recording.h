@@ -21,7 +21,7 @@ class RecordingWriter {
 
   /// Writes what is new since the last call: call it after every frame. What the session has gone back from and stepped anew is
   /// taken back in the file, and all of it when the scene was chosen anew. A file that cannot be cut is written by `finish`
-  /// alone. Throws InputError when the disk is full.
+  /// alone, from a session that forgets nothing. Throws InputError when the disk is full.
   void follow(const SceneChoice& choice, Session& session);
 
   /// Leaves the frames up to the session's present one, and gives the file its name. Throws InputError.
@@ -30,13 +30,16 @@ class RecordingWriter {
  private:
   OutputFile& file_;
   std::string header_;
-  std::vector<std::uintmax_t> ends_;  // bytes of the file up to the end of the header, and of each frame
+  std::uint64_t begin_ = 0;  // frames before those of ends_: the session has forgotten them
+  std::vector<std::uintmax_t>
+      ends_;  // bytes of the file up to the end of frame begin_ (0: of the header), and of each one after it
 };
 
 /// Steps a session through a recording, frame by frame.
 struct Replay {
   Recording recording;
   std::optional<std::uint64_t> differs;  ///< the first frame (from 1, as the session counts) whose state was another
+  std::uint64_t begin = 0;               ///< frames of the session before the first of the recording
   std::string refused = {};              ///< why its next frame cannot be played; empty while it can
 };
 

@@ -48,10 +48,11 @@ void thinOut(Session& session) {
   std::deque<Keyframe>& keys = session.keyframes;
   std::size_t bytes = 0;
   for (const Keyframe& key : keys) bytes += key.bytes;
+  const std::size_t kept = session.forgotten > 0 ? 2 : 1;
   while (bytes > kKeyframeBytes && keys.size() > kLeastKeyframes) {
-    std::size_t best = 1;
+    std::size_t best = kept;
     double least = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 1; i + 1 < keys.size(); ++i) {
+    for (std::size_t i = kept; i + 1 < keys.size(); ++i) {
       const auto gap = static_cast<double>(keys[i + 1].frame - keys[i - 1].frame);
       const double share = gap / static_cast<double>(session.frame - keys[i - 1].frame);
       if (share >= least) continue;
@@ -73,15 +74,33 @@ void keep(Session& session) {
   thinOut(session);
 }
 
+// A signal ends the search for an equilibrium.
+PrepareOptions untilInterrupted() {
+  return {.goesOn = [](const PrepareProgress&) { return !interrupted(); }};
+}
+
+// Forgets the oldest quarter of a log that is too long, up to the next keyframe.
+void forget(Session& session) {
+  if (session.log.size() <= session.mostLogged) return;
+  std::deque<Keyframe>& keys = session.keyframes;
+  const std::uint64_t least = session.forgotten + (session.log.size() + 3) / 4;
+  const auto next = std::find_if(keys.begin() + 1, keys.end(), [&](const Keyframe& key) { return key.frame >= least; });
+  if (next == keys.end()) return;
+  session.log.erase(session.log.begin(), session.log.begin() + static_cast<std::ptrdiff_t>(next->frame - session.forgotten));
+  session.forgotten = next->frame;
+  keys.erase(keys.begin() + 1, next);
+}
+
 // One frame of physics and game, without the past. Returns the input that acted: without a hand that the game does not allow.
-FrameInput advance(Session& session, FrameInput input) {
+// Empty, and nothing stepped, where a signal ended the search for the equilibrium that a scene, method or tolerance begins with.
+std::optional<FrameInput> advance(Session& session, FrameInput input) {
   const auto start = std::chrono::steady_clock::now();
   Simulation& simulation = session.simulation;
   tune(session, input.tuning);
   session.before = simulation.state.position;
   if (!mayTake(session.game, input.hand.block)) input.hand = {};
   const BlockId held = input.hand.block;
-  stepPlayed(input.hand, session.grip, session.contacts, simulation);
+  if (!stepPlayed(input.hand, session.grip, session.contacts, simulation, untilInterrupted())) return {};
   session.gripForce = gripForce(simulation);
   session.hold = held == kFloor ? Hold::none : holdOf(session.contacts, held);
   ++session.frame;
@@ -128,7 +147,7 @@ Session::Session(const Scene& given, int players)
 void prepareStart(Session& session) {
   if (session.frame > 0 || !session.failure.empty() || isPrepared(session.simulation)) return;
   try {
-    prepare(session.simulation, {.goesOn = [](const PrepareProgress&) { return !interrupted(); }});
+    prepare(session.simulation, untilInterrupted());
   } catch (const DivergenceError&) {
     return;  // the first frame finds it again, and says so
   }
@@ -143,6 +162,7 @@ void startAgain(Session& session) {
   session.failure.clear();
   session.gripForce = {};
   session.log.clear();
+  session.forgotten = 0;
   session.logKept = 0;
   session.turns = {0};
   session.keyframes.resize(1);
@@ -152,24 +172,31 @@ void step(Session& session, const FrameInput& input) {
   if (!session.failure.empty()) return;
   while (session.keyframes.back().frame > session.frame) session.keyframes.pop_back();
   while (session.turns.back() > session.frame) session.turns.pop_back();
-  FrameInput acted;
+  std::optional<FrameInput> acted;
   try {
     acted = advance(session, input);
   } catch (const DivergenceError& error) {
     session.failure = error.what();
     return;
   }
+  if (!acted) return;
   // A future that was gone back from ends here.
-  session.log.resize(session.frame);
+  session.log.resize(session.frame - session.forgotten);
   session.logKept = std::min(session.logKept, session.frame - 1);
-  session.log.back() = {acted, stateHash(session.simulation)};
+  session.log.back() = {*acted, stateHash(session.simulation)};
+  forget(session);
+}
+
+std::uint64_t lastLogged(const Session& session) {
+  return session.forgotten + session.log.size();
 }
 
 void goTo(Session& session, std::uint64_t frame) {
   const Keyframe key = keyBefore(session, frame);
   if (frame < session.frame || key.frame > session.frame || !session.failure.empty()) restore(session, key);
   session.failure.clear();
-  while (session.frame < frame) advance(session, session.log[session.frame].input);
+  while (session.frame < frame && advance(session, session.log[session.frame - session.forgotten].input)) {
+  }
 }
 
 std::optional<std::uint64_t> undoFrame(const Session& session) {
@@ -177,10 +204,14 @@ std::optional<std::uint64_t> undoFrame(const Session& session) {
   if (game.players == 0) return {};
   // What falls before this turn's player has touched anything falls by the turn before.
   const bool fellBefore = game.phase == Phase::over && game.held == kFloor && game.laid != kFloor;
-  if (game.phase != Phase::choose && !fellBefore) return game.turnFrame;
-  const auto thisTurn = std::lower_bound(session.turns.begin(), session.turns.end(), game.turnFrame);
-  if (thisTurn == session.turns.begin()) return {};
-  return *(thisTurn - 1);
+  std::uint64_t frame = game.turnFrame;
+  if (game.phase == Phase::choose || fellBefore) {
+    const auto thisTurn = std::lower_bound(session.turns.begin(), session.turns.end(), game.turnFrame);
+    if (thisTurn == session.turns.begin()) return {};
+    frame = *(thisTurn - 1);
+  }
+  if (frame < session.forgotten) return {};
+  return frame;
 }
 
 void between(const Session& session, double share, ParticleArray& position) {

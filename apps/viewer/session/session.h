@@ -30,6 +30,10 @@ struct Keyframe {
 inline constexpr std::size_t kKeyframeBytes = std::size_t{64} << 20U;
 inline constexpr std::size_t kLeastKeyframes = 8;
 
+/// The most frames that the log holds: an hour and forty minutes of 60 frames a second, some 60 MB. Where it is longer, the
+/// oldest quarter is forgotten, and can no longer be gone back to or saved; a recording that is written all along has it.
+inline constexpr std::size_t kMostLogged = 360000;
+
 /// A running scene with its past. Frame by frame it is a function of the scene and the inputs alone, so going back is to restore
 /// the last keyframe before and to step the logged inputs again; undo, history, recording and replay all are that.
 struct Session {
@@ -45,12 +49,14 @@ struct Session {
   GripForce gripForce;  ///< of the last frame
   Hold hold = Hold::none;
   Game game;
-  std::vector<LoggedFrame> log;      ///< [frame]; longer than `frame` after going back
-  std::uint64_t logKept = 0;         ///< so many of its frames have not changed since the recorder set this
-  std::deque<Keyframe> keyframes;    ///< ascending; the first is of frame 0
-  std::vector<std::uint64_t> turns;  ///< frames in which turns of the game began, ascending; the first is 0
-  double frame_ms = 0.0;             ///< what the last frame took
-  std::string failure;               ///< why the simulation ended; empty while it goes on
+  std::vector<LoggedFrame> log;          ///< [frame - forgotten]; reaches beyond `frame` after going back
+  std::uint64_t forgotten = 0;           ///< frames of which the log has nothing any more; 0, or there is a keyframe after them
+  std::size_t mostLogged = kMostLogged;  ///< frames; without bound where the recording is written from the log at the end
+  std::uint64_t logKept = 0;             ///< so many of its frames have not changed since the recorder set this
+  std::deque<Keyframe> keyframes;        ///< ascending; the first is of frame 0, the next is `forgotten` where that is not 0
+  std::vector<std::uint64_t> turns;      ///< frames in which turns of the game began, ascending; the first is 0
+  double frame_ms = 0.0;                 ///< what the last frame took
+  std::string failure;                   ///< why the simulation ended; empty while it goes on
 };
 
 /// Finds the equilibrium that the first frame starts from, ahead of it: for uneven towers that takes as long as many frames. Does
@@ -64,12 +70,15 @@ void startAgain(Session& session);
 /// failure; a divergence becomes one. What was logged after the present frame is forgotten.
 void step(Session& session, const FrameInput& input);
 
+/// The frame that the log ends with.
+std::uint64_t lastLogged(const Session& session);
+
 /// Goes to another frame of the log; the game and the hand's grip go with it. What was logged after it stays until the next step,
-/// so one can go forth again. Precondition: frame <= session.log.size().
+/// so one can go forth again. Precondition: session.forgotten <= frame <= lastLogged(session).
 void goTo(Session& session, std::uint64_t frame);
 
 /// The frame that undoing the last move leads to: the begin of this turn, or of the one before when nothing has been drawn yet.
-/// Empty when there is no move to undo.
+/// Empty when there is no move to undo, or it is forgotten.
 std::optional<std::uint64_t> undoFrame(const Session& session);
 
 /// Positions between the last two frames, m; `share` 0 is the frame before, 1 the present one.

@@ -31,7 +31,9 @@ void runPanel(Viewer& viewer) {
   const std::string speed = fmt::format("1/{:.0f} speed", 1.0 / viewer.pacer.rate);
   if (ImGui::Button(viewer.pacer.rate == 1.0 ? "Slow" : speed.c_str())) viewer.pacer.rate = nextRate(viewer.pacer.rate);
   int frame = static_cast<int>(viewer.session.frame);
-  if (ImGui::SliderInt("Frame", &frame, 0, static_cast<int>(viewer.session.log.size()), "%d", ImGuiSliderFlags_AlwaysClamp)) {
+  const int first = static_cast<int>(viewer.session.forgotten);
+  if (ImGui::SliderInt("Frame", &frame, first, static_cast<int>(lastLogged(viewer.session)), "%d",
+                       ImGuiSliderFlags_AlwaysClamp)) {
     travel(viewer, static_cast<std::uint64_t>(frame));
   }
 }

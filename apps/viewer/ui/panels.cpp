@@ -115,12 +115,14 @@ void beginPlain(const char* name, const Rect& rect) {
 }
 
 void drawTimeLine(Viewer& viewer, float width) {
-  const std::size_t played = viewer.session.log.size();
-  const std::size_t frames = viewer.replay ? std::max(viewer.replay->recording.frames.size(), played) : played;
+  const std::uint64_t played = lastLogged(viewer.session);
+  const std::uint64_t frames =
+      viewer.replay ? std::max(viewer.replay->begin + viewer.replay->recording.frames.size(), played) : played;
   int frame = static_cast<int>(viewer.session.frame);
   ImGui::SameLine();
   ImGui::SetNextItemWidth(width);
-  if (ImGui::SliderInt("##frame", &frame, 0, static_cast<int>(frames), "Frame %d", ImGuiSliderFlags_AlwaysClamp))
+  if (ImGui::SliderInt("##frame", &frame, static_cast<int>(viewer.session.forgotten), static_cast<int>(frames), "Frame %d",
+                       ImGuiSliderFlags_AlwaysClamp))
     seek(viewer, static_cast<std::uint64_t>(frame));
 }
 

@@ -165,7 +165,7 @@ void restart(Viewer& viewer, const SceneChoice& choice) {
 }
 
 void travel(Viewer& viewer, std::uint64_t frame) {
-  if (frame > viewer.session.log.size()) return;
+  if (frame < viewer.session.forgotten || frame > lastLogged(viewer.session)) return;
   letGo(viewer.controls);
   endFall(viewer);
   goTo(viewer.session, frame);
@@ -186,7 +186,7 @@ void undo(Viewer& viewer) {
 }
 
 void startReplay(Viewer& viewer) {
-  if (!viewer.replay) viewer.replay = Replay{{viewer.choice, viewer.session.log}, {}};
+  if (!viewer.replay) viewer.replay = Replay{{viewer.choice, viewer.session.log}, {}, viewer.session.forgotten};
   seek(viewer, 0);
   viewer.paused = false;
   viewer.mode = Mode::replay;
@@ -199,12 +199,14 @@ void playOn(Viewer& viewer) {
 }
 
 void seek(Viewer& viewer, std::uint64_t frame) {
-  std::vector<LoggedFrame>& log = viewer.session.log;
+  Session& session = viewer.session;
   if (viewer.replay) {
     const std::vector<LoggedFrame>& frames = viewer.replay->recording.frames;
-    if (frames.size() > log.size()) log.insert(log.end(), frames.begin() + static_cast<std::ptrdiff_t>(log.size()), frames.end());
+    const std::uint64_t known = lastLogged(session) - viewer.replay->begin;
+    if (frames.size() > known)
+      session.log.insert(session.log.end(), frames.begin() + static_cast<std::ptrdiff_t>(known), frames.end());
   }
-  travel(viewer, std::min<std::uint64_t>(frame, log.size()));
+  travel(viewer, std::clamp(frame, session.forgotten, lastLogged(session)));
 }
 
 void setMode(Viewer& viewer, Mode mode) {

@@ -298,6 +298,29 @@ TEST(Interruption, ASignalEndsTheSearchOfTheViewerToo) {
   EXPECT_EQ(report.at("frames"), 0);
 }
 
+// Another method is another simulation, which searches for its own equilibrium in the middle of a game.
+TEST(Interruption, ASignalEndsTheSearchThatAnotherMethodBeginsWith) {
+  const ScratchFolder scratch;
+  const std::string game = scratch.file("game");
+  const ProgramResult first = runProgram(
+      "springtower-viewer", {"--headless", "--scene", "pyramid:100", "--method", "rigid-pgs", "--frames", "2", "--record", game});
+  ASSERT_EQ(first.exitCode, 0) << first.error;
+  const std::vector<std::string> lines = linesOf(contentOf(game));
+  ASSERT_THAT(lines, SizeIs(3));
+  Json second = Json::parse(lines[2]);
+  second.erase("hash");
+  second["tuning"] = {{"method", "implicit"}, {"sleep", "on"}, {"tolerance_m", 5e-5}, {"friction", 0.4}};
+  std::ofstream(game) << lines[0] << '\n' << lines[1] << '\n' << second.dump() << '\n';
+  RunningProgram viewer("springtower-viewer", {"--headless", "--replay", game, "--report", scratch.file("r.json")});
+  std::this_thread::sleep_for(2500ms);
+  viewer.send(SIGTERM);
+  const ProgramResult result = viewer.wait();
+  EXPECT_EQ(result.exitCode, 143) << result.error;
+  const Json report = Json::parse(contentOf(scratch.file("r.json")));
+  EXPECT_EQ(report.at("interrupted"), true);
+  EXPECT_LT(report.at("frames"), 2) << "the frame whose search was ended is not stepped";
+}
+
 TEST(Interruption, AKilledViewerLeavesARecordingThatCanBeReplayed) {
   const ScratchFolder scratch;
   const std::string partial = scratch.file("game.partial");

@@ -101,6 +101,34 @@ TEST(ViewerSession, GoesBackAndForthToTheVeryStatesItHad) {
   EXPECT_NE(session.log.back().hash, log[50].hash);
 }
 
+// A session that runs for days keeps its last hours, and its start.
+TEST(ViewerSession, ForgetsTheOldestFramesOfALongLog) {
+  Session whole = playedSession(0);
+  Session session = playedSession(0);
+  session.mostLogged = 100;
+  const auto play = [&](Session& played) {
+    Tuning tuning = played.tuning;
+    tuning.friction = 0.3 + 1e-3 * static_cast<double>(played.frame % 7);
+    step(played, {Hand{}, tuning});
+  };
+  for (int i = 0; i < 300; ++i) {
+    play(session);
+    play(whole);
+    ASSERT_LE(session.log.size(), 100U);
+    ASSERT_EQ(lastLogged(session), session.frame);
+  }
+  EXPECT_GT(session.forgotten, 199U) << "what is kept is at most 100 frames";
+  EXPECT_GE(session.log.size(), 100U - 25U - 30U) << "a quarter, and up to the next keyframe";
+  for (const std::uint64_t frame : {session.forgotten, std::uint64_t{299}, session.forgotten + 1, std::uint64_t{300}}) {
+    goTo(session, frame);
+    EXPECT_EQ(stateHash(session.simulation), whole.log[frame - 1].hash) << frame;
+  }
+  startAgain(session);
+  EXPECT_EQ(lastLogged(session), 0U);
+  play(session);
+  EXPECT_EQ(session.log[0].hash, whole.log[0].hash);
+}
+
 // What is logged is what acted, so that it plays the same without the rules of the game.
 TEST(ViewerSession, LogsNoHandThatTheGameDoesNotAllow) {
   Session session(towerScene(6), 1);
@@ -287,6 +315,59 @@ TEST(ViewerRecording, FollowsASessionBackAndForth) {
   goTo(session, 6);
   writer.finish(choice, session);
   EXPECT_EQ(contentOf(scratch.file("game")), expected(6));
+}
+
+TEST(ViewerRecording, AFileWrittenAllAlongHasWhatTheSessionForgets) {
+  const ScratchFolder scratch;
+  SceneChoice choice;
+  choice.name = kLooseTower;
+  OutputFile files[] = {OutputFile(scratch.file("whole"), "--record"), OutputFile(scratch.file("game"), "--record")};
+  RecordingWriter writers[] = {RecordingWriter(files[0]), RecordingWriter(files[1])};
+  Session sessions[] = {playedSession(0), playedSession(0)};
+  sessions[1].mostLogged = 50;
+  const auto play = [&](int frames, double friction) {
+    for (int i = 0; i < 2 * frames; ++i) {
+      Session& session = sessions[i % 2];
+      Tuning tuning = session.tuning;
+      tuning.friction = friction;
+      step(session, {Hand{}, tuning});
+      writers[i % 2].follow(choice, session);
+    }
+  };
+  const auto written = [&](std::size_t i) {
+    files[i].stream().flush();
+    return contentOf(scratch.file(i == 0 ? "whole.partial" : "game.partial"));
+  };
+  play(200, 0.4);
+  EXPECT_GT(sessions[1].forgotten, 100U);
+  EXPECT_EQ(written(1), written(0));
+  for (Session& session : sessions) goTo(session, 185);
+  play(5, 0.3);
+  EXPECT_EQ(written(1), written(0));
+  for (Session& session : sessions) startAgain(session);
+  play(8, 0.5);
+  EXPECT_EQ(written(1), written(0));
+  EXPECT_EQ(sessions[1].forgotten, 0U);
+  play(100, 0.5);
+  for (Session& session : sessions) goTo(session, 100);
+  for (std::size_t i = 0; i < 2; ++i) writers[i].finish(choice, sessions[i]);
+  EXPECT_EQ(contentOf(scratch.file("game")), contentOf(scratch.file("whole")));
+  EXPECT_EQ(readRecording(scratch.file("game")).frames.size(), 100U);
+}
+
+// A pipe is written at the end, from all frames.
+TEST(ViewerRecording, ASessionWhoseFileCannotBeCutForgetsNothing) {
+  const ScratchFolder scratch;
+  SceneChoice choice;
+  choice.name = kLooseTower;
+  OutputFile file("/dev/null", "--record");
+  RecordingWriter writer(file);
+  Session session = playedSession(0);
+  session.mostLogged = 10;
+  writer.follow(choice, session);
+  for (int i = 0; i < 100; ++i) step(session, idle(session));
+  EXPECT_EQ(session.forgotten, 0U);
+  EXPECT_EQ(session.log.size(), 100U);
 }
 
 }  // namespace
