@@ -12,7 +12,7 @@ namespace springtower {
 namespace {
 
 // Changes with whatever is written or read otherwise.
-constexpr std::uint32_t kFormat = 5;
+constexpr std::uint32_t kFormat = 4;
 
 constexpr std::size_t kLetters = 16;
 

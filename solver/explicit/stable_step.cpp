@@ -100,9 +100,8 @@ SpectralBound spectralBound(Simulation& simulation, std::span<const std::int32_t
   std::int32_t ofContacts = blocks.front();
   for (const std::int32_t block : blocks) {
     const auto b = static_cast<std::size_t>(block);
-    const double ofBlock = engine.memo.stepBound[b].springRadius;
-    if (ofBlock > springs) ofSprings = block;
-    springs = std::max(springs, ofBlock);
+    if (engine.springRadius[b] > springs) ofSprings = block;
+    springs = std::max(springs, engine.springRadius[b]);
     // The trace is an upper bound as well, and often shows that a block is not the largest.
     const Eigen::Matrix4d metric = metricOf(engine, b);
     if (metric.trace() <= contacts) continue;

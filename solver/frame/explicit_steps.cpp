@@ -10,7 +10,6 @@
 #include "solver/contact/update.h"
 #include "solver/explicit/leapfrog.h"
 #include "solver/explicit/stable_step.h"
-#include "solver/explicit/stiffen_for_speed.h"
 #include "solver/reference/midpoint.h"
 #include "solver/reference/report_frame.h"
 #include "solver/reference/report_step.h"
@@ -136,7 +135,6 @@ IslandOutcome runExplicitSteps(IslandStep& step) {
   const double begin_s = step.part.begin_s;
   const double rest_s = step.part.duration_s();
   copyFrameStart(step);
-  if (!isReport && simulation.fixedSubsteps == 0) stiffenForSpeed(step);
   step.pushedBefore_s = 0.0;
   IslandOutcome outcome;
   outcome.substeps = std::max(1, static_cast<int>(std::ceil(chooseSubsteps(step) * rest_s / settings.frame_s - 1e-9)));

@@ -147,7 +147,10 @@ void sizeEngine(Simulation& simulation) {
   e.scratch.contactForce.resize(count);
   const MethodFamily family = traitsOf(scene.settings.method).family;
   const bool isExplicit = family == MethodFamily::explicitSprings || family == MethodFamily::report;
-  if (isExplicit) e.memo.stepBound.assign(count, StepBound{});
+  if (isExplicit) {
+    e.springRadius.resize(count);
+    e.memo.stepBound.assign(count, StepBound{});
+  }
   e.memo.previous = simulation.state.position;
   e.memo.blockHistory.assign(count, BlockHistory{});
   e.memo.islandHistory.assign(count, IslandHistory{});
@@ -157,9 +160,7 @@ void sizeEngine(Simulation& simulation) {
   for (std::size_t b = 0; b < count; ++b) {
     if (isExplicit) {
       const bool equal = equalsPrevious(model, simulation.stiffness, b);
-      std::vector<StepBound>& bound = e.memo.stepBound;
-      bound[b].edge_n_m = simulation.stiffness.edge_n_m[b];
-      bound[b].springRadius = equal ? bound[b - 1].springRadius : blockSpectralRadius(model, scene.settings.inertia, b);
+      e.springRadius[b] = equal ? e.springRadius[b - 1] : blockSpectralRadius(model, scene.settings.inertia, b);
     }
     e.sleep.windows[b].centre = centre(simulation.state.position, b);
   }

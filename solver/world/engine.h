@@ -19,6 +19,8 @@ namespace springtower {
 /// contacts and sleep and whatever else the next frame depends on (copied into snapshots), and what may be lost between frames
 /// (docs/adr/0003-ownership.md). Vectors grow only when new pairs appear, the pool of contacts when more pairs touch than before.
 struct Engine {
+  std::vector<double>
+      springRadius;  ///< 1/s2, largest eigenvalue of M^-1 K of each block alone, in explicit methods; part of the model
   std::vector<double> roundingFactor;  ///< factor on the accepted residual of each block, at least 1; part of the model
   std::vector<StaticResponse>
       staticResponse;  ///< of blocks that may change to rigid steps, by runs of equal ones; part of the model

@@ -29,11 +29,8 @@ struct BlockHistory {
   double travel = 0.0;  ///< m; path length of the block's fastest corner, monotonic
 };
 
-/// What explicit steps go by: the springs of each block, and what they found for the contacts of an island, kept with its first
-/// block.
+/// What explicit steps of an island found for its contacts, kept with its first block.
 struct StepBound {
-  double edge_n_m = 0.0;               ///< N/m, as in BlockStiffness, which has the same; grows with the speeds of its islands
-  double springRadius = 0.0;           ///< 1/s2, largest eigenvalue of M^-1 K of the block alone
   double spectralRadius = 0.0;         ///< 1/s2; bound of the largest eigenvalue of its M^-1 K; 0: not yet known
   std::uint64_t contactSignature = 0;  ///< of the contacts for which it was computed
 };

@@ -160,12 +160,12 @@ MemoryUse memoryUse(const Simulation& simulation) {
   use.touching = engine.contacts.bytes();
   use.touchingSteps = engine.contacts.stepBytes();
   use.contacts = use.pairs + use.touching;
-  use.working =
-      use.touchingSteps + ofMemo(engine.memo) + ofScratch(engine.scratch) + ofFrameStart(engine.checkpoint) +
-      ofReport(engine.report) +
-      sumOf(engine.roundingFactor, engine.staticResponse, engine.responseStart, engine.sleep.windows, engine.sleep.checkedLoads) +
-      sumOf(simulation.stiffness.stack_n_m, simulation.stiffness.floor_n_m, simulation.stiffness.edge_n_m,
-            simulation.stiffness.loadShare);
+  use.working = use.touchingSteps + ofMemo(engine.memo) + ofScratch(engine.scratch) + ofFrameStart(engine.checkpoint) +
+                ofReport(engine.report) +
+                sumOf(engine.springRadius, engine.roundingFactor, engine.staticResponse, engine.responseStart,
+                      engine.sleep.windows, engine.sleep.checkedLoads) +
+                sumOf(simulation.stiffness.stack_n_m, simulation.stiffness.floor_n_m, simulation.stiffness.edge_n_m,
+                      simulation.stiffness.loadShare);
   return use;
 }
 

@@ -1,7 +1,6 @@
 #include "solver/world/snapshot.h"
 
 #include "core/error.h"
-#include "solver/block/springs.h"
 #include "solver/world/engine.h"
 #include "solver/world/snapshot_fields.h"
 
@@ -107,16 +106,6 @@ void restorePatches(const std::vector<SlipPatch>& patches, Engine& engine) {
   }
 }
 
-// The springs of explicit methods are those of the snapshot's memo.
-void restoreSprings(Simulation& simulation) {
-  const std::vector<StepBound>& bounds = simulation.engine->memo.stepBound;
-  for (std::size_t b = 0; b < bounds.size(); ++b) {
-    if (simulation.stiffness.edge_n_m[b] == bounds[b].edge_n_m) continue;
-    simulation.stiffness.edge_n_m[b] = bounds[b].edge_n_m;
-    setSprings(simulation.model, b, bounds[b].edge_n_m, simulation.lengths.blockHeight_m, simulation.dampingTime_s);
-  }
-}
-
 void checkPairs(const Snapshot& snapshot, const ByteReader& reader) {
   const PairTable& pairs = snapshot.pairs;
   const std::size_t count = pairs.size();
@@ -176,7 +165,6 @@ void restoreSnapshot(Simulation& s, const Snapshot& snapshot) {
   e.sleep = snapshot.sleepState;
   e.report = snapshot.report;
   e.memo = snapshot.memo;
-  restoreSprings(s);
   s.substeps = snapshot.substeps;
   s.counters = snapshot.counters;
   s.stageTimes = snapshot.stageTimes;

@@ -25,8 +25,7 @@ namespace springtower {
 class ByteReader;
 class ByteWriter;
 
-/// All that the next frames of a simulation depend on beside its model, which the scene decides but for the springs of explicit
-/// methods: these are in the memo. What a frame reads and this does
+/// All that the next frames of a simulation depend on beside its model, which the scene decides. What a frame reads and this does
 /// not hold is scratch, which each frame writes first (docs/adr/0003-ownership.md).
 struct Snapshot {
   // Inputs.

@@ -148,8 +148,8 @@ void fieldsOf(Stream& stream, IslandHistory& history) {
 
 template <class Stream>
 void fieldsOf(Stream& stream, StepBound& bound) {
-  auto& [edge_n_m, springRadius, spectralRadius, contactSignature] = bound;
-  stream(edge_n_m, springRadius, spectralRadius, contactSignature);
+  auto& [spectralRadius, contactSignature] = bound;
+  stream(spectralRadius, contactSignature);
 }
 
 template <class Stream>

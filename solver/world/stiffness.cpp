@@ -25,11 +25,6 @@ BlockStiffness stiffnessForTolerance(const LoadEstimate& loads, double tolerance
   return result;
 }
 
-double edgeForSpeed(const Vec3& dimensions_m, double mass_kg, double squaredSpeed, double referenceLength_m) {
-  const double strained_m = tuning::kMaxMotionStrain * dimensions_m.minCoeff();
-  return 0.25 * mass_kg * squaredSpeed / (strained_m * tuning::kMaxMotionStrain * referenceLength_m);
-}
-
 void stiffenForMotion(const Scene& scene, double referenceLength_m, std::vector<double>& edge_n_m) {
   double fastest_m_s = 0.0;
   double top_m = 0.0;
@@ -41,7 +36,9 @@ void stiffenForMotion(const Scene& scene, double referenceLength_m, std::vector<
   const double squared = elementary::square(fastest_m_s) + (scene.floor ? 2.0 * scene.gravity.magnitude * top_m : 0.0);
   for (std::size_t b = 0; b < scene.blocks.size(); ++b) {
     const BlockSpec& block = scene.blocks[b];
-    edge_n_m[b] = std::max(edge_n_m[b], edgeForSpeed(block.dimensions, block.mass, squared, referenceLength_m));
+    const double strained_m = tuning::kMaxMotionStrain * block.dimensions.minCoeff();
+    edge_n_m[b] =
+        std::max(edge_n_m[b], 0.25 * block.mass * squared / (strained_m * tuning::kMaxMotionStrain * referenceLength_m));
   }
 }
 

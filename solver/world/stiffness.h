@@ -14,13 +14,9 @@ namespace springtower {
 /// buckling.
 BlockStiffness stiffnessForTolerance(const LoadEstimate& loads, double tolerance_m);
 
-/// Stiffness of a block's edges, N/m, at which the four along its least side are strained by tuning::kMaxMotionStrain where they
-/// stop its mass. `squaredSpeed`: m2/s2; `referenceLength_m`: m, of the edges that it is of, as in BlockStiffness.
-double edgeForSpeed(const Vec3& dimensions_m, double mass_kg, double squaredSpeed, double referenceLength_m);
-
-/// Makes the springs of explicit methods stiff enough (edgeForSpeed) for the speed of the scene's fastest corner at its start,
-/// and what a fall from its highest centre to the floor adds; not for what forces, hands and drives add, for which springs get
-/// stiffer as it comes (solver/explicit/stiffen_for_speed.h). Slow scenes keep what their loads need.
+/// Makes the springs of explicit methods stiff enough for the speeds of a scene: four edges along a block's least side are
+/// strained by tuning::kMaxMotionStrain at most where they stop the speed of the scene's fastest corner at its start, and what a
+/// fall from its highest centre to the floor adds; not what forces, hands and drives add. Slow scenes keep what their loads need.
 /// Implicit and rigid methods do not need it: their blocks take impulses as rigid bodies. `referenceLength_m`: m, of the edges
 /// that `edge_n_m` (N/m, [blocks]) is of, as in BlockStiffness.
 void stiffenForMotion(const Scene& scene, double referenceLength_m, std::vector<double>& edge_n_m);

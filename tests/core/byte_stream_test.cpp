@@ -136,7 +136,7 @@ TEST(Seal, RefusesOtherFilesByWhatTheyAre) {
   std::string newer = sealed(SealKind::run, "");
   newer[16] = 9;
   EXPECT_THAT([&] { unsealed(SealKind::run, newer, "the source"); },
-              ThrowsMessage<InputError>(HasSubstr("expected format 5, got 9")));
+              ThrowsMessage<InputError>(HasSubstr("expected format 4, got 9")));
 }
 
 // Of an endless file nothing is read but the beginning.

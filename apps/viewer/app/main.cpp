@@ -188,7 +188,7 @@ Viewer viewerOf(const Command& command) {
   std::optional<Replay> replay;
   if (command.replay) replay = Replay{readRecording(*command.replay), {}};
   const SceneChoice choice = replay ? replay->recording.choice : choiceOf(command);
-  Viewer viewer(choice, replay ? tuningOf(sceneOf(choice)) : tuningOf(command, choice));
+  Viewer viewer(choice, replay ? replay->tuning() : tuningOf(command, choice));
   if (replay && !replay->recording.missing.empty()) {
     viewer.message = replay->recording.missing;
     complain("springtower-viewer", viewer.message);

@@ -47,6 +47,10 @@ void RecordingWriter::finish(const SceneChoice& choice, Session& session) {
   file_.commit();
 }
 
+Tuning Replay::tuning() const {
+  return recording.frames.empty() ? tuningOf(sceneOf(recording.choice)) : recording.frames.front().input.tuning;
+}
+
 std::optional<FrameInput> nextInput(const Replay& replay, const Session& session) {
   if (session.frame >= replay.begin + replay.recording.frames.size()) return {};
   return replay.recording.frames[session.frame - replay.begin].input;

@@ -41,6 +41,9 @@ struct Replay {
   std::optional<std::uint64_t> differs;  ///< the first frame (from 1, as the session counts) whose state was another
   std::uint64_t begin = 0;               ///< frames of the session before the first of the recording
   std::string refused = {};              ///< why its next frame cannot be played; empty while it can
+
+  /// What it begins with.
+  [[nodiscard]] Tuning tuning() const;
 };
 
 /// The input of the session's next frame, or empty at the recording's end.

@@ -11,6 +11,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace springtower {
 namespace {
@@ -25,22 +26,25 @@ bool needsRebuild(const Tuning& a, const Tuning& b) {
 }
 
 // Another method or stiffness is another simulation, which takes the blocks over as they lie and move; contacts start anew.
-void rebuild(Session& session, const Tuning& tuning) {
+// Before the first frame it begins as its scene does, as in a session that has had this tuning from the start. Returns the one
+// before.
+Simulation rebuild(Session& session, const Tuning& tuning) {
   Simulation next(withTuning(session.scene, tuning));
-  next.state = session.simulation.state;
-  session.simulation = std::move(next);
+  if (session.frame > 0) next.state = session.simulation.state;
   session.tuning = tuning;
+  return std::exchange(session.simulation, std::move(next));
 }
 
-void tune(Session& session, const Tuning& tuning) {
-  if (tuning == session.tuning) return;
-  if (needsRebuild(tuning, session.tuning)) {
-    rebuild(session, tuning);
-    return;
-  }
+// Returns the simulation before, where another one had to take its place.
+std::optional<Simulation> tune(Session& session, const Tuning& tuning) {
+  if (tuning == session.tuning) return {};
+  // Friction decides which equilibrium a scene begins in.
+  if (needsRebuild(tuning, session.tuning) || (session.frame == 0 && tuning.friction != session.tuning.friction))
+    return rebuild(session, tuning);
   setFriction(session.simulation, tuning.friction, tuning.friction);
   setSleep(session.simulation, tuning.sleep);
   session.tuning = tuning;
+  return {};
 }
 
 // Removes the keyframe whose neighbours are nearest to each other, over how long ago they were, until all fit into their bytes.
@@ -91,26 +95,6 @@ void forget(Session& session) {
   keys.erase(keys.begin() + 1, next);
 }
 
-// One frame of physics and game, without the past. Returns the input that acted: without a hand that the game does not allow.
-// Empty, and nothing stepped, where a signal ended the search for the equilibrium that a scene, method or tolerance begins with.
-std::optional<FrameInput> advance(Session& session, FrameInput input) {
-  const auto start = std::chrono::steady_clock::now();
-  Simulation& simulation = session.simulation;
-  tune(session, input.tuning);
-  session.before = simulation.state.position;
-  if (!mayTake(session.game, input.hand.block)) input.hand = {};
-  const BlockId held = input.hand.block;
-  if (!stepPlayed(input.hand, session.grip, session.contacts, simulation, untilInterrupted())) return {};
-  session.gripForce = gripForce(simulation);
-  session.hold = held == kFloor ? Hold::none : holdOf(session.contacts, held);
-  ++session.frame;
-  const bool turnEnded = followGame(session.game, simulation, held, session.frame);
-  session.frame_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-  if (turnEnded && session.turns.back() < session.frame) session.turns.push_back(session.frame);
-  if (turnEnded || session.frame % kKeyEvery == 0) keep(session);
-  return input;
-}
-
 // The last keyframe at or before a frame; the first one is of frame 0.
 const Keyframe& keyBefore(const Session& session, std::uint64_t frame) {
   const auto after = std::upper_bound(session.keyframes.begin(), session.keyframes.end(), frame,
@@ -129,6 +113,37 @@ void restore(Session& session, const Keyframe& key) {
   session.hold = Hold::none;
   session.before = session.simulation.state.position;
   session.contacts = contactForces(session.simulation);
+}
+
+// One frame of physics and game, without the past. Returns the input that acted: without a hand that the game does not allow.
+// Empty, and all as before, where a signal ended the search for the equilibrium that a scene, method or tolerance begins with.
+std::optional<FrameInput> advance(Session& session, FrameInput input) {
+  const auto start = std::chrono::steady_clock::now();
+  Simulation& simulation = session.simulation;
+  const Tuning tuningBefore = session.tuning;
+  const Grip gripBefore = session.grip;
+  std::optional<Simulation> simulationBefore = tune(session, input.tuning);
+  session.before = simulation.state.position;
+  if (!mayTake(session.game, input.hand.block)) input.hand = {};
+  const BlockId held = input.hand.block;
+  if (!stepPlayed(input.hand, session.grip, session.contacts, simulation, untilInterrupted())) {
+    if (!simulationBefore) {  // in the first frame
+      restore(session, session.keyframes.front());
+      return {};
+    }
+    simulation = std::move(*simulationBefore);
+    session.tuning = tuningBefore;
+    session.grip = gripBefore;
+    return {};
+  }
+  session.gripForce = gripForce(simulation);
+  session.hold = held == kFloor ? Hold::none : holdOf(session.contacts, held);
+  ++session.frame;
+  const bool turnEnded = followGame(session.game, simulation, held, session.frame);
+  session.frame_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  if (turnEnded && session.turns.back() < session.frame) session.turns.push_back(session.frame);
+  if (turnEnded || session.frame % kKeyEvery == 0) keep(session);
+  return input;
 }
 
 }  // namespace

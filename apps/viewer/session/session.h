@@ -30,8 +30,9 @@ struct Keyframe {
 inline constexpr std::size_t kKeyframeBytes = std::size_t{64} << 20U;
 inline constexpr std::size_t kLeastKeyframes = 8;
 
-/// The most frames that the log holds: an hour and forty minutes of 60 frames a second, some 60 MB. Where it is longer, the
-/// oldest quarter is forgotten, and can no longer be gone back to or saved; a recording that is written all along has it.
+/// The most frames that the log holds: an hour and forty minutes of 60 frames a second, 63 MB in a vector that may have room for
+/// 92. Where it is longer, the oldest quarter is forgotten, up to the next keyframe, and can no longer be gone back to or saved;
+/// a recording that is written all along has it.
 inline constexpr std::size_t kMostLogged = 360000;
 
 /// A running scene with its past. Frame by frame it is a function of the scene and the inputs alone, so going back is to restore

@@ -1,5 +1,6 @@
 #include "apps/viewer/view/state.h"
 
+#include "apps/common/interruption.h"
 #include "apps/common/json_values.h"
 #include "apps/viewer/view/fall.h"
 #include "core/error.h"
@@ -39,6 +40,7 @@ void measure(Viewer& viewer) {
 }
 
 void stepOnce(Viewer& viewer) {
+  if (interrupted()) return;  // the play ends with the frame before
   Session& session = viewer.session;
   if (!viewer.replay) leadHand(viewer.controls, session, viewer.limit_n);
   viewer.heldOnce = viewer.heldOnce || viewer.controls.hand.block != kFloor;
@@ -50,7 +52,8 @@ void stepOnce(Viewer& viewer) {
       viewer.tuning = input.tuning;
     }
   }
-  const StageTimes before = session.simulation.stageTimes;
+  const std::uint64_t before = session.frame;
+  const StageTimes timesBefore = session.simulation.stageTimes;
   try {
     step(session, input);
   } catch (const InputError& error) {  // a tuning that does not fit the scene
@@ -63,9 +66,10 @@ void stepOnce(Viewer& viewer) {
     viewer.paused = true;
     return;
   }
+  if (session.frame == before && session.failure.empty()) return;  // a signal has ended the search that it began with
   ++viewer.watch.frames;
   if (viewer.mode == Mode::play) viewer.poses.add(session.simulation.state.position);
-  keepBar(viewer, before);
+  keepBar(viewer, timesBefore);
   if (viewer.replay) compare(*viewer.replay, session);
   if (!session.failure.empty()) {
     ++viewer.watch.failures;

@@ -311,14 +311,19 @@ TEST(Interruption, ASignalEndsTheSearchThatAnotherMethodBeginsWith) {
   second.erase("hash");
   second["tuning"] = {{"method", "implicit"}, {"sleep", "on"}, {"tolerance_m", 5e-5}, {"friction", 0.4}};
   std::ofstream(game) << lines[0] << '\n' << lines[1] << '\n' << second.dump() << '\n';
-  RunningProgram viewer("springtower-viewer", {"--headless", "--replay", game, "--report", scratch.file("r.json")});
-  std::this_thread::sleep_for(2500ms);
+  RunningProgram viewer("springtower-viewer", {"--headless", "--replay", game, "--report", scratch.file("r.json"), "--png",
+                                               scratch.file("pictures"), "--size", "64x64"});
+  viewer.waitForFile(scratch.file("pictures/frame-00001.png"), 1);
+  std::this_thread::sleep_for(500ms);
   viewer.send(SIGTERM);
   const ProgramResult result = viewer.wait();
   EXPECT_EQ(result.exitCode, 143) << result.error;
   const Json report = Json::parse(contentOf(scratch.file("r.json")));
   EXPECT_EQ(report.at("interrupted"), true);
-  EXPECT_LT(report.at("frames"), 2) << "the frame whose search was ended is not stepped";
+  EXPECT_EQ(report.at("frames"), 1) << "the frame whose search was ended is not stepped";
+  EXPECT_EQ(report.at("frames_stepped"), 1);
+  EXPECT_TRUE(report.at("replay_differs_in_frame").is_null());
+  EXPECT_EQ(report.at("state_hash"), Json::parse(lines[1]).at("hash"));
 }
 
 TEST(Interruption, AKilledViewerLeavesARecordingThatCanBeReplayed) {

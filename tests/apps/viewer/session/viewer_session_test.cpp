@@ -129,6 +129,18 @@ TEST(ViewerSession, ForgetsTheOldestFramesOfALongLog) {
   EXPECT_EQ(session.log[0].hash, whole.log[0].hash);
 }
 
+TEST(ViewerSession, AForgottenMoveCannotBeTakenBack) {
+  Session session(towerScene(3), 1);
+  session.mostLogged = 60;
+  for (int i = 0; i < 150; ++i) step(session, idle(session));
+  ASSERT_GT(session.forgotten, 0U);
+  session.game.phase = Phase::moving;
+  session.game.turnFrame = session.forgotten;
+  EXPECT_EQ(undoFrame(session), session.forgotten);
+  session.game.turnFrame = session.forgotten - 1;
+  EXPECT_FALSE(undoFrame(session));
+}
+
 // What is logged is what acted, so that it plays the same without the rules of the game.
 TEST(ViewerSession, LogsNoHandThatTheGameDoesNotAllow) {
   Session session(towerScene(6), 1);
@@ -240,6 +252,40 @@ TEST(ViewerRecording, ReadsBackAndReplaysToTheSameStates) {
   EXPECT_EQ(again.frame, 100U);
   EXPECT_FALSE(replay.differs);
   EXPECT_EQ(stateHash(again.simulation), stateHash(session.simulation));
+}
+
+// A search for an equilibrium comes before the first frame, by the tuning that this frame has.
+TEST(ViewerRecording, OfAnotherTuningThanItsScenesPlaysToTheSameStates) {
+  SceneChoice choice;
+  choice.name = "tower:3";
+  const Tuning own = tuningOf(sceneOf(choice));
+  std::vector<Tuning> tunings(5, own);
+  tunings[0].method = Method::rigidPgs;
+  tunings[1].method = Method::semiImplicitEuler;
+  tunings[2].method = Method::xpbd;
+  tunings[3].tolerance_m = 1e-4;
+  tunings[4].friction = 0.5;
+  for (const Tuning& tuning : tunings) {
+    SCOPED_TRACE(testing::Message() << nameOf(tuning.method) << ", " << tuning.tolerance_m << " m, " << tuning.friction);
+    Session session(withTuning(sceneOf(choice), tuning));
+    Session late(sceneOf(choice));  // where it is chosen in the lab, before the first frame
+    for (Session* played : {&session, &late}) {
+      prepareStart(*played);
+      for (int i = 0; i < 5; ++i) step(*played, {Hand{}, tuning});
+    }
+    EXPECT_EQ(stateHash(late.simulation), stateHash(session.simulation));
+    Replay replay{{choice, session.log}, {}};
+    Session again(withTuning(sceneOf(choice), replay.tuning()));
+    prepareStart(again);
+    while (const auto input = nextInput(replay, again)) {
+      step(again, *input);
+      compare(replay, again);
+    }
+    EXPECT_EQ(again.frame, 5U);
+    EXPECT_FALSE(replay.differs) << *replay.differs;
+    goTo(late, 2);
+    EXPECT_EQ(stateHash(late.simulation), session.log[1].hash);
+  }
 }
 
 // What plays it without the viewer (`springtower profile`, the instruction counts) plays the same frames.
