@@ -68,9 +68,9 @@ def files(folder):
     """{path from the root: text} of all that is generated."""
     program, viewer_program = (str(pathlib.Path(folder, name)) for name in ("springtower", "springtower-viewer"))
     commands, viewer, scenes, settings, constants = reference.read(program, viewer_program)
-    changes = recorded.what_constants_change(recorded.read_csv(DATA / "constants.csv"))
+    moves = recorded.what_rests_on_moves(recorded.read_csv(DATA / "constants.csv"))
     written = {
-        "docs/tuning.md": reference.tuning(constants, (ROOT / "core" / "tuning.def").read_text(), changes),
+        "docs/tuning.md": reference.tuning(constants, (ROOT / "core" / "tuning.def").read_text(), moves),
         "docs/claims.md": recorded.claims_page(recorded.read_json(DATA / "validation.json")),
     }
     for page, parts in marked_parts(commands, viewer, scenes, settings).items():

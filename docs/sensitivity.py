@@ -2,8 +2,8 @@
 """Moves each constant of core/tuning.def by a tenth and records what changes: docs/sensitivity.py PROGRAM [CONSTANT ...]
 
 PROGRAM is springtower of the preset `tune` (build/tune/bin/springtower), which reads constants from a file. Every constant, or those
-named, is made a tenth less and a tenth more (whole numbers by 1 at least), one at a time, and short scenes are run with it, one
-thread each, in some twenty minutes. Written to docs/data/constants.csv: for each value the number of scenes whose end state differs
+named, is made a tenth less and a tenth more (whole numbers by 1 at least), and what nothing else is on record for also half and twice
+as large, one at a time, and short scenes are run with it, one thread each, in some thirty minutes. Written to docs/data/constants.csv: for each value the number of scenes whose end state differs
 in any bit, those that end otherwise (stand, fall, diverge), for each kind of scene the work and the depth over those of the constants
 as they are, and the largest rise of energy in a frame of what falls, as a share of what there was. docs/generate.py makes docs/sensitivity.md of it.
 
@@ -48,7 +48,7 @@ SCENES = {
                 "collapse:4 --method rigid-pgs --seconds 1", "askew:3 --method rigid-lcp --seconds 1",
                 "tower:4 --method xpbd --seconds 1"],
 }
-COLUMNS = ["constant", "value", "states", "ends"] + [f"{kind}_{figure}" for kind in SCENES for figure in ("work", "depth")] + ["rise", "commit", "date"]
+COLUMNS = ["constant", "by", "value", "states", "ends"] + [f"{kind}_{figure}" for kind in SCENES for figure in ("work", "depth")] + ["rise", "commit", "date"]
 # Evaluations of a contact's points (22 ns each) that take as long as one iteration of Newton's method and one factorisation, a
 # block, in the tower of 18 rows (0.024 and 0.059 ms for its 54 blocks).
 ITERATION = 20
@@ -97,10 +97,10 @@ def mean_ratio(before, after):
     return math.exp(sum(logs) / len(logs)) if logs else 1.0
 
 
-def row(name, value, usual, found):
+def row(name, by, value, usual, found):
     """A line of the file: what `found` is beside `usual`."""
     ends = [f"{scene.split(' --')[0]} {found[scene][1]}" for scene in usual if found[scene][1] != usual[scene][1]]
-    line = {"constant": name, "value": value, "states": sum(found[s][0] != usual[s][0] for s in usual), "ends": "; ".join(ends)}
+    line = {"constant": name, "by": by, "value": value, "states": sum(found[s][0] != usual[s][0] for s in usual), "ends": "; ".join(ends)}
     for kind, scenes in SCENES.items():
         for figure, at in (("work", 2), ("depth", 3)):
             line[f"{kind}_{figure}"] = round(mean_ratio([usual[s][at] for s in scenes], [found[s][at] for s in scenes]), 4)
@@ -109,12 +109,13 @@ def row(name, value, usual, found):
     return line
 
 
-def moved(kind, value):
-    """The values a tenth less and a tenth more."""
+def moved(kind, value, bare):
+    """(how, value) of the values a tenth less and a tenth more; of a constant that rests on nothing else half and twice of it too."""
     if kind in ("double", "float"):
-        return [value * 0.9, value * 1.1]
+        return [("tenth", value * 0.9), ("tenth", value * 1.1)] + ([("half", value * 0.5), ("twice", value * 2.0)] if bare else [])
     step = max(1, round(abs(value) / 10))
-    return [int(v) for v in (value - step, value + step) if v >= 1]
+    near = [("tenth", int(v)) for v in (value - step, value + step) if v >= 1]
+    return near + ([("half", max(1, int(value) // 2)), ("twice", 2 * int(value))] if bare else [])
 
 
 def main():
@@ -124,6 +125,7 @@ def main():
     kinds = constants()
     listed = json.loads(subprocess.run([program, "settings", "--all", "--json"], capture_output=True, check=True).stdout)["tuning"]
     values = {entry["name"]: entry["value"] for entry in listed if entry["name"] in kinds}
+    bare = {entry["name"] for entry in listed if entry["evidence"] == "none"}
     unknown = [name for name in named if name not in values]
     if unknown:
         sys.exit(f"sensitivity.py: expected constants of core/tuning.def that are no sizes of arrays, got {', '.join(unknown)}")
@@ -131,14 +133,14 @@ def main():
         writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
         writer.writeheader()
         usual = outcomes(program, pool, {})
-        writer.writerow(row("none", "", usual, usual))
+        writer.writerow(row("none", "", "", usual, usual))
         for run in range(1, SCATTER_RUNS + 1):
             change = {name: values[name] * (1.0 + 1e-6 * run) for name in SCATTERED}
-            writer.writerow(row("scatter", run, usual, outcomes(program, pool, change)))
+            writer.writerow(row("scatter", "", run, usual, outcomes(program, pool, change)))
         for number, name in enumerate(named or values):
             print(f"{number + 1} of {len(named or values)}: {name}", flush=True)
-            for value in moved(kinds[name], values[name]):
-                writer.writerow(row(name, value, usual, outcomes(program, pool, {name: value})))
+            for by, value in moved(kinds[name], values[name], name in bare):
+                writer.writerow(row(name, by, value, usual, outcomes(program, pool, {name: value})))
             file.flush()
     if named:
         print(f"of some constants: {PARTIAL}")

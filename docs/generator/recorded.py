@@ -411,18 +411,38 @@ def _effects(row, scatter):
 
 
 def _moved(recorded):
-    """The rows of the scatter, and {constant: its rows}."""
+    """The rows of the scatter, {constant: its rows a tenth from it}, and {constant: {"half": row, "twice": row}}."""
     scatter = [row for row in recorded if row["constant"] in ("none", "scatter")]
-    moved = {}
+    moved, wide = {}, {}
     for row in recorded:
-        if row["constant"] not in ("none", "scatter"):
+        if row["by"] == "tenth":
             moved.setdefault(row["constant"], []).append(row)
-    return scatter, moved
+        elif row["by"]:
+            wide.setdefault(row["constant"], {})[row["by"]] = row
+    return scatter, moved, wide
+
+
+def _effects_or_none(row, scatter):
+    """What a moved constant changes, in words, also where that is nothing."""
+    if int(row["states"]) == 0 and not row["ends"]:
+        return "no state"
+    return _effects(row, scatter) or "no figure"
+
+
+def what_rests_on_moves(recorded):
+    """{constant: what half and twice of it change, in words}, of those for which nothing else is on record."""
+    scatter, _, wide = _moved(recorded)
+    found = {}
+    for name, rows in wide.items():
+        half, twice = (_effects_or_none(rows[by], scatter) for by in ("half", "twice"))
+        words = f"half or twice of it: {half}" if half == twice else f"half of it: {half}; twice: {twice}"
+        found[name] = f"measured: {words}"
+    return found
 
 
 def what_constants_change(recorded):
     """{constant: "nothing", "states" or "figures"}: what changes where it is moved by a tenth, figures beyond the scatter."""
-    scatter, moved = _moved(recorded)
+    scatter, moved, _ = _moved(recorded)
     def most(rows):
         if all(int(row["states"]) == 0 and not row["ends"] for row in rows):
             return "nothing"
@@ -432,7 +452,7 @@ def what_constants_change(recorded):
 
 def constants(recorded):
     """What changes when a constant is moved by a tenth, for docs/sensitivity.md: counts, lists and a table."""
-    scatter, moved = _moved(recorded)
+    scatter, moved, _ = _moved(recorded)
     changes = what_constants_change(recorded)
     lines = []
     for name, rows in moved.items():

@@ -62,25 +62,22 @@ def reasons(definition):
     return found
 
 
-# What docs/sensitivity.md says of a constant, where nothing else is on record.
-CHANGES = {"nothing": "none; a tenth more or less changes no state", "states": "none; a tenth more or less changes states, no figure",
-           "figures": "none; a tenth more or less changes figures"}
-
-
-def tuning(rows, definition, changes):
-    """The whole page docs/tuning.md. changes: of recorded.what_constants_change."""
+def tuning(rows, definition, moves):
+    """The whole page docs/tuning.md. moves: of recorded.what_rests_on_moves."""
     why = reasons(definition)
     bare = [row["name"] for row in rows if row["evidence"] == "none"]
-    deciding = sum(changes.get(name) == "figures" for name in bare)
+    unmoved = [name for name in bare if name not in moves]
     def evidence(row):
-        return CHANGES.get(changes.get(row["name"]), "none") if row["evidence"] == "none" else row["evidence"]
+        return moves.get(row["name"], "none") if row["evidence"] == "none" else row["evidence"]
     page = [
         "# Constants of the engine", "",
         "Made by `docs/generate.py` from `springtower settings --all --json` and the comments of [`core/tuning.def`](../core/tuning.def).", "",
         "These are the numbers that are choices, rather than physics or layout, and that no scene sets: thresholds, limits, safety factors. "
         "h is the height of the scene's lowest block, g is gravity. "
-        f"Of {len(rows)} constants, {len(rows) - len(bare)} rest on something that is on record; for {len(bare)} nothing is ('none'): "
-        f"{deciding} of these change a figure where they are a tenth more or less ([sensitivity.md](sensitivity.md)). "
+        f"Of {len(rows)} constants, {len(rows) - len(bare)} rest on a derivation, a measurement or a reason. For {len(bare) - len(unmoved)} "
+        "stands what changes where they are half or twice as large: which figures of the scenes of [sensitivity.md](sensitivity.md), beyond "
+        "the scatter that is explained there; 'no figure' where end states alone do, 'no state' where nothing does. "
+        f"For {len(unmoved)}, sizes of arrays, nothing is on record ('none'). "
         "To try others: the preset `tune` ([CONTRIBUTING.md](../CONTRIBUTING.md)).",
     ]
     groups = []
