@@ -48,7 +48,11 @@ SCENES = {
                 "collapse:4 --method rigid-pgs --seconds 1", "askew:3 --method rigid-lcp --seconds 1",
                 "tower:4 --method xpbd --seconds 1"],
 }
-COLUMNS = ["constant", "by", "value", "states", "ends"] + [f"{kind}_{figure}" for kind in SCENES for figure in ("work", "depth")] + ["rise", "commit", "date"]
+# Arguments of `springtower statics`, for the constants of statics.
+STATICS = ["tower:6 --pull 2:2,+x --pull 1:1,-y", "(111)-(1L1)-(010)", "tower:9 --heights-sigma 0.0002 --seed 5",
+           "tower:12 --heights-sigma 0.0002 --seed 3 --no-removals", "tower:6 --gravity-tilt 8 --no-removals", "tower:6 --mass-sigma 0.004",
+           "wall:6x4", "pyramid:5", "heavy:6", "holes", "slope"]
+COLUMNS = ["constant", "by", "value", "states", "ends"] + [f"{kind}_{figure}" for kind in SCENES for figure in ("work", "depth")] + ["rise", "verdicts", "margin_deg", "load_weights", "commit", "date"]
 # Evaluations of a contact's points (22 ns each) that take as long as one iteration of Newton's method and one factorisation, a
 # block, in the tower of 18 rows (0.024 and 0.059 ms for its 54 blocks).
 ITERATION = 20
@@ -85,6 +89,39 @@ def outcome(program, values, scene):
     return figures["state_hash"], end, work, figures["max_penetration_all_mm"], figures["max_energy_rise"]
 
 
+def statics_outcome(program, values, scene):
+    """(verdicts, margins in degrees, loads in weights of a block) of statics with these values of constants; None where it fails."""
+    with tempfile.TemporaryDirectory() as folder:
+        given, report = pathlib.Path(folder, "constants"), pathlib.Path(folder, "report.json")
+        given.write_text("".join(f"{name} {value!r}\n" for name, value in values.items()))
+        try:
+            subprocess.run([program, "statics", *scene.split(), "--threads", "1", "--report", str(report)], cwd=ROOT,
+                           env={"SPRINGTOWER_TUNING": str(given)}, capture_output=True, timeout=120)
+            found = json.loads(report.read_text())
+        except (subprocess.TimeoutExpired, FileNotFoundError):
+            return None
+    blocks = found["blocks"]
+    whole = [found, *(block["removal"] for block in blocks if block.get("removal"))]
+    flags = [(one["stands"], one["leans"]) for one in whole] + [(block.get("covered"), block.get("loose")) for block in blocks]
+    weight = sum(block.get("weight_n", 1.0) for block in blocks) / len(blocks)  # blocks of what falls have no loads
+    loads = [block.get(key) for block in blocks for key in ("above_n", "least_above_n", "greatest_above_n")]
+    loads += [pull["limit_n"] for pull in found["pulls"]]
+    return flags, [one["tilt_deg"] for one in whole], [load / weight if load is not None else math.inf for load in loads]
+
+
+def statics_change(before, after):
+    """(verdicts that differ, largest change of a margin in degrees, of a load in weights) over the scenes."""
+    verdicts, margin, load = 0, 0.0, 0.0
+    for one, other in zip(before, after):
+        if other is None or [len(part) for part in one] != [len(part) for part in other]:
+            verdicts += 1
+            continue
+        verdicts += sum(a != b for a, b in zip(one[0], other[0]))
+        margin = max([margin, *(abs(a - b) for a, b in zip(one[1], other[1]) if a is not None and b is not None)])
+        load = max([load, *(abs(a - b) for a, b in zip(one[2], other[2]) if math.isfinite(a) and math.isfinite(b))])
+    return {"verdicts": verdicts, "margin_deg": margin, "load_weights": load}
+
+
 def outcomes(program, pool, values):
     """{scene: outcome}"""
     scenes = [scene for kind in SCENES.values() for scene in kind]
@@ -97,7 +134,7 @@ def mean_ratio(before, after):
     return math.exp(sum(logs) / len(logs)) if logs else 1.0
 
 
-def row(name, by, value, usual, found):
+def row(name, by, value, usual, found, statics=None):
     """A line of the file: what `found` is beside `usual`."""
     ends = [f"{scene.split(' --')[0]} {found[scene][1]}" for scene in usual if found[scene][1] != usual[scene][1]]
     line = {"constant": name, "by": by, "value": value, "states": sum(found[s][0] != usual[s][0] for s in usual), "ends": "; ".join(ends)}
@@ -106,7 +143,7 @@ def row(name, by, value, usual, found):
             line[f"{kind}_{figure}"] = round(mean_ratio([usual[s][at] for s in scenes], [found[s][at] for s in scenes]), 4)
     line["commit"], line["date"] = COMMIT, DATE
     line["rise"] = max((found[s][4] for s in SCENES["falls"] if found[s][4] == found[s][4]), default=0.0)
-    return line
+    return line | (statics or {})
 
 
 def moved(kind, value, bare):
@@ -126,6 +163,7 @@ def main():
     listed = json.loads(subprocess.run([program, "settings", "--all", "--json"], capture_output=True, check=True).stdout)["tuning"]
     values = {entry["name"]: entry["value"] for entry in listed if entry["name"] in kinds}
     bare = {entry["name"] for entry in listed if entry["evidence"] == "none"}
+    of_statics = {entry["name"] for entry in listed if entry["group"] == "statics"}
     unknown = [name for name in named if name not in values]
     if unknown:
         sys.exit(f"sensitivity.py: expected constants of core/tuning.def that are no sizes of arrays, got {', '.join(unknown)}")
@@ -133,6 +171,7 @@ def main():
         writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
         writer.writeheader()
         usual = outcomes(program, pool, {})
+        at_rest = list(pool.map(lambda scene: statics_outcome(program, {}, scene), STATICS))
         writer.writerow(row("none", "", "", usual, usual))
         for run in range(1, SCATTER_RUNS + 1):
             change = {name: values[name] * (1.0 + 1e-6 * run) for name in SCATTERED}
@@ -140,7 +179,10 @@ def main():
         for number, name in enumerate(named or values):
             print(f"{number + 1} of {len(named or values)}: {name}", flush=True)
             for by, value in moved(kinds[name], values[name], name in bare):
-                writer.writerow(row(name, by, value, usual, outcomes(program, pool, {name: value})))
+                statics = None
+                if name in of_statics:
+                    statics = statics_change(at_rest, pool.map(lambda scene: statics_outcome(program, {name: value}, scene), STATICS))
+                writer.writerow(row(name, by, value, usual, outcomes(program, pool, {name: value}), statics))
             file.flush()
     if named:
         print(f"of some constants: {PARTIAL}")

@@ -422,11 +422,25 @@ def _moved(recorded):
     return scatter, moved, wide
 
 
+STATICS_ROUNDING = 1e-3  # degrees, weights: what changes a margin or a load by less is none
+
+
+def _statics_effects(row):
+    """What a moved constant changes in statics, in words."""
+    found = [f"{row['verdicts']} answers of statics"] if int(row["verdicts"]) > 0 else []
+    for column, words in (("margin_deg", "a margin by {} degrees"), ("load_weights", "a load by {} weights of a block")):
+        if float(row[column]) >= STATICS_ROUNDING:
+            found.append(words.format(number(row[column], 2)))
+    return ", ".join(found) or "no effect"
+
+
 def _effects_or_none(row, scatter):
     """What a moved constant changes, in words, also where that is nothing."""
+    if row["verdicts"]:
+        return _statics_effects(row)
     if int(row["states"]) == 0 and not row["ends"]:
-        return "no state"
-    return _effects(row, scatter) or "no figure"
+        return "no effect"
+    return _effects(row, scatter) or "end states alone"
 
 
 def what_rests_on_moves(recorded):

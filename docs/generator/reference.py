@@ -62,22 +62,28 @@ def reasons(definition):
     return found
 
 
+# Groups of constants that the scenes of docs/sensitivity.md do not use, or that no end state depends on.
+NOT_EXERCISED = ("measuring", "threads and memory")
+
+
 def tuning(rows, definition, moves):
     """The whole page docs/tuning.md. moves: of recorded.what_rests_on_moves."""
     why = reasons(definition)
-    bare = [row["name"] for row in rows if row["evidence"] == "none"]
-    unmoved = [name for name in bare if name not in moves]
+    bare = [row for row in rows if row["evidence"] == "none"]
+    def is_measured(row):
+        return row["name"] in moves and row["group"] not in NOT_EXERCISED
     def evidence(row):
-        return moves.get(row["name"], "none") if row["evidence"] == "none" else row["evidence"]
+        return moves[row["name"]] if row in bare and is_measured(row) else row["evidence"]
+    measured = sum(is_measured(row) for row in bare)
     page = [
         "# Constants of the engine", "",
         "Made by `docs/generate.py` from `springtower settings --all --json` and the comments of [`core/tuning.def`](../core/tuning.def).", "",
         "These are the numbers that are choices, rather than physics or layout, and that no scene sets: thresholds, limits, safety factors. "
         "h is the height of the scene's lowest block, g is gravity. "
-        f"Of {len(rows)} constants, {len(rows) - len(bare)} rest on a derivation, a measurement or a reason. For {len(bare) - len(unmoved)} "
-        "stands what changes where they are half or twice as large: which figures of the scenes of [sensitivity.md](sensitivity.md), beyond "
-        "the scatter that is explained there; 'no figure' where end states alone do, 'no state' where nothing does. "
-        f"For {len(unmoved)}, sizes of arrays, nothing is on record ('none'). "
+        f"Of {len(rows)} constants, {len(rows) - len(bare)} rest on a derivation, a measurement or a reason. For {measured} "
+        "stands what changes where they are half or twice as large: which figures of the 46 scenes of [sensitivity.md](sensitivity.md), beyond "
+        "the scatter that is explained there, or end states alone; 'no effect' where no bit of them differs, or no scene comes to the rule. Constants of statics are judged by eleven answers of `springtower statics`. "
+        f"For {len(bare) - measured}, of measuring, threads and sizes of arrays, which these scenes do not show, nothing is on record ('none'). "
         "To try others: the preset `tune` ([CONTRIBUTING.md](../CONTRIBUTING.md)).",
     ]
     groups = []

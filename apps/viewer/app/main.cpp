@@ -184,11 +184,20 @@ void offerGame(const Command& command, Viewer& viewer) {
   if (choice.players > 0) restart(viewer, choice);
 }
 
+// In the state that a replay begins in; a tuning that does not fit the scene is refused as its first frame.
+Viewer viewerOf(const Replay& replay) {
+  const SceneChoice& choice = replay.recording.choice;
+  try {
+    return Viewer(choice, replay.tuning());
+  } catch (const InputError&) {
+    return Viewer(choice, tuningOf(sceneOf(choice)));
+  }
+}
+
 Viewer viewerOf(const Command& command) {
   std::optional<Replay> replay;
   if (command.replay) replay = Replay{readRecording(*command.replay), {}};
-  const SceneChoice choice = replay ? replay->recording.choice : choiceOf(command);
-  Viewer viewer(choice, replay ? replay->tuning() : tuningOf(command, choice));
+  Viewer viewer = replay ? viewerOf(*replay) : Viewer(choiceOf(command), tuningOf(command, choiceOf(command)));
   if (replay && !replay->recording.missing.empty()) {
     viewer.message = replay->recording.missing;
     complain("springtower-viewer", viewer.message);
