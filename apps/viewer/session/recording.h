@@ -30,9 +30,8 @@ class RecordingWriter {
  private:
   OutputFile& file_;
   std::string header_;
-  std::uint64_t begin_ = 0;  // frames before those of ends_: the session has forgotten them
-  std::vector<std::uintmax_t>
-      ends_;  // bytes of the file up to the end of frame begin_ (0: of the header), and of each one after it
+  std::uint64_t begin_ = 0;           // frames that the session has forgotten, of which ends_ has none
+  std::vector<std::uintmax_t> ends_;  // bytes of the file up to the end of frame begin_ (0: the header), and of each one after it
 };
 
 /// Steps a session through a recording, frame by frame.
