@@ -45,22 +45,32 @@ def charted(peers_falls):
     return {name: text + "\n\n" + here for name, text in tables.items()}
 
 
+def random_scenes():
+    """Tables of docs/random-scenes.md."""
+    return {"random": recorded.random_scenes(recorded.read_csv(DATA / "random.csv")),
+            "bounds": recorded.random_bounds((ROOT / "tests" / "random" / "bounds.cpp").read_text())}
+
+
 def marked_parts(commands, viewer, scenes, settings):
     """{page: {name of the part: text}}."""
     peers_at_rest = [row for row in recorded.read_csv(PEERS / "records.csv") if row["scene"] == "uniform" and row["rows"] == "18"
                      and row["engine"] in ("Box3D", "Jolt")]
     peers_stacks = recorded.read_csv(PEERS / "stacks.csv")
+    peers_falls = recorded.read_csv(PEERS / "falls.csv")
     return {
-        "README.md": {"claims": recorded.claims_line(recorded.read_json(DATA / "validation.json"))},
+        "README.md": {"claims": recorded.claims_line(recorded.read_json(DATA / "validation.json")),
+                      "headline": recorded.headline(*(recorded.read_csv(DATA / f"{name}.csv") for name in ("runs", "motion", "stacks")),
+                                                    peers_at_rest, peers_stacks, peers_falls)},
         "docs/command-line.md": {"options": reference.command_options(commands + viewer)},
         "docs/scenes.md": {"scenes": reference.scene_names(scenes), "settings": reference.settings(settings)},
         "docs/validation.md": {"claims": recorded.claims_summary(recorded.read_json(DATA / "validation.json"))},
         "docs/performance.md": measurements(peers_stacks),
+        "docs/random-scenes.md": random_scenes(),
         "docs/sensitivity.md": {"constants": recorded.constants(recorded.read_csv(DATA / "constants.csv"))},
         "docs/accuracy.md": {"peers-at-rest": recorded.peers_at_rest(peers_at_rest),
                              "peers-stacks": recorded.peers_stacks(peers_stacks),
-                             "peers-falls": recorded.peers_falls(recorded.read_csv(PEERS / "falls.csv")),
-                             **charted(recorded.read_csv(PEERS / "falls.csv"))},
+                             "peers-falls": recorded.peers_falls(peers_falls),
+                             **charted(peers_falls)},
     }
 
 

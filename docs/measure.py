@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Records what the tables of docs/ are made of: docs/measure.py BIN_DIR [PART ...], all parts in some tens of minutes.
+"""Records what the tables of docs/ are made of: docs/measure.py BIN_DIR [PART ...], all parts in about an hour.
 
-BIN_DIR holds springtower (build/release/bin, of a commit without changes; run ./run.sh before). Each part writes files of
+BIN_DIR holds springtower, random_scenes and springtower_benchmarks (build/ci/bin, of a commit without changes; docs/remake.sh build). Each part writes files of
 docs/data, as the program wrote them (of the chart what was measured here); docs/generate.py makes tables of them. Beside builds times came out up to twice as long: run it
 on a quiet machine. Parts:
 
@@ -16,6 +16,7 @@ on a quiet machine. Parts:
   kernels   docs/data/kernels.csv      kernels, factorisations and what the machine can do (springtower_benchmarks)
   accuracy  docs/data/accuracy.csv     the chart of speed against accuracy, every method and scene
   validate  docs/data/validation.json  the claims, in the long form
+  random    docs/data/random.csv       faults of 3000 random scenes, by kind, method and masses
 """
 import csv
 import datetime
@@ -95,13 +96,18 @@ def processor():
     return f"{fields['model name']}, family {fields['cpu family']} model {fields['model']}"
 
 
+def commit_of(folder):
+    """The commit of which the programs are."""
+    version = subprocess.run([str(folder / "springtower"), "--version"], check=True, capture_output=True, text=True).stdout
+    return version.split("(")[1].split(",")[0]
+
+
 def record_kernels(folder):
     folder = pathlib.Path(folder).resolve()
     command = [str(folder / "springtower_benchmarks"), f"--benchmark_filter={KERNELS}", "--benchmark_format=json", "--benchmark_repetitions=5",
                "--benchmark_min_time=0.2"]
     print(" ".join(command), flush=True)
     printed = subprocess.run(command, check=True, capture_output=True, text=True).stdout
-    version = subprocess.run([str(folder / "springtower"), "--version"], check=True, capture_output=True, text=True).stdout
     date = datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%dT%H:%M:%SZ")
     fastest = {}
     for row in json.loads(printed)["benchmarks"]:
@@ -113,7 +119,7 @@ def record_kernels(folder):
     with open(DATA / "kernels.csv", "w", newline="") as file:
         writer = csv.DictWriter(file, columns, extrasaction="ignore", lineterminator="\n")
         writer.writeheader()
-        writer.writerows(row | {"commit": version.split("(")[1].split(",")[0], "cpu": processor(), "date": date} for row in rows)
+        writer.writerows(row | {"commit": commit_of(folder), "cpu": processor(), "date": date} for row in rows)
 
 
 # Frames of the recorded game, from 1, and what happens in them.
@@ -141,6 +147,34 @@ def keep_game_parts(trace, game):
                              *(measured[name] for name in ("commit", "cpu", "date"))])
 
 
+# As the target random_3000.
+RANDOM = ["--from", "1000", "--count", "3000", "--limit", "1"]
+
+
+def record_random(folder):
+    """The table that random_scenes prints: a line for all scenes of a kind, of a method, of a ratio of masses."""
+    folder = pathlib.Path(folder).resolve()
+    print("random_scenes " + " ".join(RANDOM), flush=True)
+    result = subprocess.run([str(folder / "random_scenes"), *RANDOM], stdout=subprocess.PIPE, text=True)
+    print(result.stdout, end="", flush=True)
+    if result.returncode != 0:
+        sys.exit(f"measure.py: random_scenes: expected exit code 0, got {result.returncode}")
+    keep_random(result.stdout, folder)
+
+
+def keep_random(printed, folder):
+    head, *lines = printed.split("\n\n", 1)[0].splitlines()
+    faults = head.split()
+    date = datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%dT%H:%M:%SZ")
+    with open(DATA / "random.csv", "w", newline="") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(["scenes_of", *faults, "commit", "cpu", "date"])
+        for line in lines:
+            words = line.split()
+            name = " ".join(words[:-len(faults)])
+            writer.writerow([name, *words[-len(faults):], commit_of(folder), processor(), date])
+
+
 def keep_chart(written):
     """What was measured here, without what is the same in all lines."""
     with open(written, newline="") as file:
@@ -156,10 +190,11 @@ def main():
     if len(sys.argv) < 2 or sys.argv[1] in ("-h", "--help"):
         sys.exit(__doc__)
     program = str(pathlib.Path(sys.argv[1], "springtower").resolve())
-    parts = sys.argv[2:] or ["runs", "kernels", *PARTS]
-    unknown = [part for part in parts if part not in ("runs", "kernels", *PARTS)]
+    known = ["runs", "kernels", *PARTS, "random"]
+    parts = sys.argv[2:] or known
+    unknown = [part for part in parts if part not in known]
     if unknown:
-        sys.exit(f"measure.py: expected parts among runs, kernels, {', '.join(PARTS)}, got {unknown[0]}")
+        sys.exit(f"measure.py: expected parts among {', '.join(known)}, got {unknown[0]}")
     DATA.mkdir(exist_ok=True)
     for part in parts:
         with tempfile.TemporaryDirectory() as scratch:
@@ -168,6 +203,9 @@ def main():
                 continue
             if part == "kernels":
                 record_kernels(sys.argv[1])
+                continue
+            if part == "random":
+                record_random(sys.argv[1])
                 continue
             command, written, kept = PARTS[part]
             trace = pathlib.Path(scratch, "trace.json")

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cstddef>
 #include <fmt/format.h>
+#include <regex>
+#include <utility>
 #include <vector>
 
 namespace springtower {
@@ -37,6 +39,22 @@ std::string nearestName(const std::string& word, const std::vector<std::string>&
   return nearest;
 }
 
+// What CLI11 says of arguments that are missing, too many or do not go together, as what was expected and what was given.
+std::string asExpected(const std::string& said) {
+  constexpr std::pair<const char*, const char*> kForms[] = {
+      {R"(^(\S+) is required$)", "expected $1, got none"},
+      {R"(^(\S+) requires (\S+)$)", "$1: expected $2 as well, got none"},
+      {R"(^(\S+) excludes (\S+)$)", "expected $1 or $2, got both"},
+      {R"(^(\S+): \d+ required (.+) missing$)", "$1: expected $2, got none"},
+      {R"(^(\S+): At Most (\d+) required but received (\d+)$)", "$1: expected at most $2, got $3"},
+  };
+  for (const auto& [form, ours] : kForms) {
+    const std::regex pattern(form);
+    if (std::regex_match(said, pattern)) return std::regex_replace(said, pattern, ours);
+  }
+  return said;
+}
+
 }  // namespace
 
 int lettersApart(const std::string& one, const std::string& other) {
@@ -65,7 +83,7 @@ std::string complaintAbout(const CLI::App& program, const CLI::ParseError& error
   const std::vector<std::string> unknown = kind == CLI::ExitCodes::ExtrasError || kind == CLI::ExitCodes::RequiredError
                                                ? program.remaining(true)
                                                : std::vector<std::string>{};
-  if (unknown.empty()) return onOneLine(error.what());
+  if (unknown.empty()) return asExpected(onOneLine(error.what()));
   const CLI::App* command = &program;
   while (!command->get_subcommands().empty()) command = command->get_subcommands().front();
   const std::vector<std::string> names = namesOf(*command);

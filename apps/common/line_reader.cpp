@@ -24,7 +24,7 @@ LineReader::LineReader(const std::string& path) : source_(path == "-" ? "standar
   // A named pipe that nobody writes yet is opened all the same and waited for in `fill`, where a signal is seen: poll finds its
   // end only once somebody has written it.
   file_ = path == "-" ? fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, 0) : ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-  if (file_ < 0) throw InputError(fmt::format("{}: cannot be read", source_));
+  if (file_ < 0) throw InputError(fmt::format("{}: expected a file that can be read, got one that cannot", source_));
 }
 
 LineReader::~LineReader() {
@@ -71,7 +71,9 @@ bool LineReader::fill(const std::function<bool()>& stop) {
     buffer_.resize(before + static_cast<std::size_t>(count > 0 ? count : 0));
     if (count > 0) return true;
     if (count < 0 && (errno == EINTR || errno == EAGAIN)) continue;
-    if (count < 0) throw InputError(fmt::format("{}: cannot be read: {}", source_, std::strerror(errno)));
+    if (count < 0)
+      throw InputError(
+          fmt::format("{}: expected a file that can be read, got one that cannot: {}", source_, std::strerror(errno)));
     ended_ = true;
   }
   return false;

@@ -352,7 +352,8 @@ Scene sceneFromToml(const std::string& path, const TowerOptions& options) {
     parsed = toml::parse(text, path);
   } catch (const toml::parse_error& error) {
     const toml::source_position& place = error.source().begin;
-    throw InputError(fmt::format("{}:{}:{}: {}", file, place.line, place.column, onOneLine(error.description())));
+    throw InputError(fmt::format("{}:{}:{}: expected TOML, got what cannot be read as such: {}", file, place.line, place.column,
+                                 onOneLine(error.description())));
   }
   Scene scene = readScene(Table(parsed, "", file,
                                 {"name", "seconds", "plane", "tower", "block", "force", "drive", "moves", "floor", "friction",

@@ -1,6 +1,8 @@
 """Parts that come from recorded files: docs/data (docs/measure.py writes it) and bench/data/peers."""
 import csv
 import json
+import math
+import re
 
 from .markdown import cell, number, table
 
@@ -56,6 +58,93 @@ def claims_line(data):
     form = "springtower validate --full" if data["long_form"] else "springtower validate"
     total = data["passed"] + data["failed"]
     return f"{data['passed']} of {total} claims of `{form}` hold: [those that fail](docs/validation.md#claims)."
+
+
+DEEPEST_SHOWN_MM = 0.5
+SPLIT = "8 steps x 4 substeps"  # of Box3D in falls: one of the least deep settings
+
+
+def headline(at_rest, motion, stacks, peers_rest, peers_stacks, peers_falls):
+    """Ours beside Box3D and Jolt, for README: others at rest at their cheapest setting with less than DEEPEST_SHOWN_MM."""
+    def engine(rows, name):
+        return [row for row in rows if row["engine"] == name]
+
+    def tower(name, finer):
+        rows = [row for row in engine(peers_rest, name) if row["stands_60_s"].startswith("yes")]
+        coarse = min((row for row in rows if float(row["worst_penetration_mm"]) < DEEPEST_SHOWN_MM), key=lambda row: float(row["ms_per_frame"]))
+        row = next(row for row in rows if row["settings"].split(",")[0] == finer) if finer else coarse
+        return f"{row['ms_per_frame']} ms, {row['worst_penetration_mm']} mm ({row['settings'].split(',')[0]})"
+
+    def ours(tolerance, arguments):
+        run = next(row for row in at_rest if row["arguments"] == arguments)
+        again = next(row for row in motion if row["scene"] == "rest" and float(row["tolerance_m"]) == tolerance)
+        return f"{_extent([run, again], 'cpu_ms_median', 2)} ms, {number(run['max_penetration_mm'])} mm"
+
+    def wall(name):
+        found = {}
+        for row in engine(peers_stacks, name):
+            if row["scene"] == "wall:40x25" and row["threads"] == "1" and float(row["penetration_end_mm"]) < DEEPEST_SHOWN_MM:
+                found.setdefault(row["settings"], []).append(row)
+        setting, rows = min(found.items(), key=lambda item: min(float(row["median_ms"]) for row in item[1]))
+        moved = next((re.search(r"is ([\d.]+ mm) aside", row["verdict"]) for row in rows if row["verdict"] != "stands"), None)
+        words = " ".join(reversed(setting.split()))
+        return f"{_extent(rows, 'median_ms', 2)} ms, {_extent(rows, 'penetration_end_mm', 2)} mm ({words})" + (f"; a block moves by {moved[1]}" if moved else "")
+
+    def fall(name, setting, words):
+        rows = [row for row in engine(peers_falls, name)
+                if (row["scene"], row["settings"], row["threads"], row["frames"]) == ("collapse:18", setting, "1", "120")]
+        times = f"{_extent(rows, 'median_ms', 3)} ms" if name == "Jolt" else f"**{_extent(rows, 'median_ms', 3)} ms**"
+        return f"{times}, slowest {_extent(rows, 'worst_ms', 2)}; {_extent(rows, 'penetration_max_mm', 2)} mm ({words})"
+
+    ours_wall = next(row for row in stacks if (row["engine"], row["stack"], row["threads"]) == ("springtower", "wall:40x25", "1"))
+    collapse = next(row for row in motion if row["scene"] == "collapse" and float(row["tolerance_m"]) == 5e-5)
+    return table(["scene", "Springtower", "Box3D", "Jolt"], [
+        ("tower of 18 rows at rest", f"**{ours(5e-5, '')}**", tower("Box3D", None), tower("Jolt", None)),
+        ("the same, engines set finer", ours(1e-5, "--tolerance 1e-5"), tower("Box3D", "64 substeps"), tower("Jolt", "8 steps")),
+        (f"wall of {ours_wall['blocks']} blocks at rest", f"**{number(ours_wall['cpu_ms_median'])} ms, {number(ours_wall['penetration_mm'])} mm**",
+         wall("Box3D"), wall("Jolt")),
+        ("tower of 18 rows toppling (`collapse`), its first 2 s",
+         f"{number(collapse['cpu_ms_median'])} ms, slowest {number(collapse['cpu_ms_max'])}; {number(collapse['max_penetration_mm'])} mm",
+         fall("Box3D", SPLIT, "8 steps of 4 substeps"), fall("Jolt", "steps 16", "16 steps")),
+    ])
+
+
+def random_scenes(recorded):
+    """Faults of random scenes by kind, method and masses, for docs/random-scenes.md: of faults that some scene has, and a line of the others."""
+    total = next(row for row in recorded if row["scenes_of"] == "all")
+    faults = [name for name in total if name not in ("scenes_of", "scenes", "commit", "cpu", "date")]
+    shown = [name for name in faults if int(total[name]) > 0]
+    ours = [row for row in recorded if row["scenes_of"] in ("implicit", "auto")]
+    def counts(names, rows):
+        return ", ".join(f"`{name}` {sum(int(row[name]) for row in rows)}" for name in names)
+    def name_of(text):
+        return text if text in ("all", "stack", "plank", "air", "space", "shot", "hand") or "masses" in text else f"`{text}`"
+    lines = [(name_of(row["scenes_of"]).replace("implicit, auto,", "`implicit`, `auto`,"), row["scenes"], *(row[name] for name in shown)) for row in recorded]
+    return "\n\n".join([
+        f"Of {total['scenes']} scenes: {counts(shown, [total])}; all other faults 0. Of the {sum(int(row['scenes']) for row in ours)} by `implicit` and `auto`: "
+        f"{counts(shown, ours)}.",
+        table(["", "scenes", *(f"`{name}`" for name in shown)], lines),
+        condition(recorded),
+    ])
+
+
+def most_allowed(rate, scenes, false_alarm=1e-6):
+    """As mostAllowed of tests/random/bounds.h: the least count that more have with a probability below false_alarm."""
+    below = 0.0
+    for count in range(scenes):
+        ways = math.lgamma(scenes + 1) - math.lgamma(count + 1) - math.lgamma(scenes - count + 1)
+        below += math.exp(ways + count * math.log(rate) + (scenes - count) * math.log1p(-rate))
+        if 1 - below < false_alarm:
+            return count
+    return scenes
+
+
+def random_bounds(source):
+    """Bounds of the scenes of a commit, for docs/random-scenes.md. source: the text of tests/random/bounds.cpp."""
+    found = re.findall(r'\{Fault::(\w+), ([\d.]+), "(\d+) of (\d+)(?:: |([^":]*): )?([^"]*)"\}', source)
+    lines = [(f"`{fault}`", f"{count} of {scenes}{machine}", rate, str(most_allowed(float(rate), 300)), reason)
+             for fault, rate, count, scenes, machine, reason in found]
+    return table(["fault", "largest count", "rate that the bound rests on", "most of 300", "which scenes"], lines)
 
 
 def runs(rows):

@@ -3,6 +3,7 @@
 #include "core/error.h"
 #include "core/lanes.h"
 #include "core/tuning.h"
+#include "solver/block/shape_change.h"
 #include "solver/contact/create.h"
 #include "solver/world/checkpoint.h"
 #include "solver/world/driven_blocks.h"
@@ -21,7 +22,7 @@ namespace {
 // Motion of a block in a step.
 struct BlockTravel {
   double path;    // m, of its fastest corner
-  double spread;  // m2, squared displacements of the corners relative to their mean, summed
+  double spread;  // m2, squared displacements of the corners relative to their mean, summed; no less than the change of shape
 };
 
 SPRINGTOWER_INLINE BlockTravel blockTravel(const ParticleArray& now, const ParticleArray& before, std::size_t b) {
@@ -41,20 +42,6 @@ SPRINGTOWER_INLINE BlockTravel blockTravel(const ParticleArray& now, const Parti
   }
   const Lanes most = squared[0] > squared[1] ? squared[0] : squared[1];
   return {std::sqrt(std::max(std::max(most[0], most[1]), std::max(most[2], most[3]))), sum(spread)};
-}
-
-// Change of a block's shape in a step, m2: squared changes of the distances between its corners, summed over pairs, over the
-// number of corners. Rotation changes none; what else spreads the corners is at most BlockTravel::spread (the sum of squares
-// about the mean is that over pairs over their number).
-double shapeChange(const ParticleArray& now, const ParticleArray& before, std::size_t b) {
-  double squared = 0.0;
-  for (std::size_t c = 0; c < kCorners; ++c) {
-    for (std::size_t d = 0; d < c; ++d) {
-      const double change = (now.at(b, c) - now.at(b, d)).norm() - (before.at(b, c) - before.at(b, d)).norm();
-      squared += change * change;
-    }
-  }
-  return squared / static_cast<double>(kCorners);
 }
 
 // A path longer than the margin of the box does not necessarily lead out of it.

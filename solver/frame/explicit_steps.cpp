@@ -1,5 +1,6 @@
 #include "solver/frame/explicit_steps.h"
 
+#include "core/elementary.h"
 #include "core/error.h"
 #include "core/tuning.h"
 #include "solver/block/inertia.h"
@@ -10,6 +11,7 @@
 #include "solver/contact/update.h"
 #include "solver/explicit/leapfrog.h"
 #include "solver/explicit/stable_step.h"
+#include "solver/explicit/strain_limit.h"
 #include "solver/reference/midpoint.h"
 #include "solver/reference/report_frame.h"
 #include "solver/reference/report_step.h"
@@ -48,8 +50,15 @@ double shortening(double radius, double dampingTime_s, double damping) {
   return longest(dampingTime_s * radius + damping) / longest(dampingTime_s * radius);
 }
 
-[[noreturn]] void refuseSteps(const IslandStep& step, double needed) {
+[[noreturn]] void refuseSteps(const IslandStep& step, double needed, const MotionBound& motion) {
   const double time_s = step.simulation.time_s;
+  if (motion.steps >= needed && std::isfinite(needed))
+    throw StepLimitError(
+        fmt::format("block {} at {:.6f} s: it spins, or is pushed, so fast that method {} needs {:.3g} steps for the "
+                    "next frame, allowed are {:.3g}",
+                    motion.block, time_s, nameOf(step.simulation.scene.settings.method), needed,
+                    static_cast<double>(tuning::kMaxExplicitSubsteps)),
+        motion.block, time_s);
   const std::int32_t block = spectralBound(step.simulation, step.blocks, step.pairs).block;
   if (!std::isfinite(needed))
     throw DivergenceError(fmt::format("block {} diverged at {:.6f} s: no step is small enough for its stiffness", block, time_s),
@@ -60,6 +69,12 @@ double shortening(double radius, double dampingTime_s, double damping) {
                   block, time_s, nameOf(step.simulation.scene.settings.method), needed,
                   static_cast<double>(tuning::kMaxExplicitSubsteps)),
       block, time_s);
+}
+
+// Steps a frame that a spin (rad/s) needs with method midpoint. It takes corners half a step along their tangents and there feels
+// springs of frequency w that are too long: the energy of the spin grows by (w dt)^2 (spin dt)^2 / 8 in each step.
+double midpointSteps(double radius, double spin, double frame_s) {
+  return frame_s * elementary::cbrt(frame_s * radius * spin * spin / (8.0 * tuning::kMaxMidpointGain));
 }
 
 // Chooses the number of steps of an island for this frame, and the largest stiffening of contacts made in it.
@@ -91,14 +106,17 @@ int chooseSubsteps(IslandStep& step) {
     const TetherRates held = tetherRates(step);
     const double begun = standing + (approach.meeting || stiffening > 1.0 ? together * born : 0.0);
     const double needed = std::max(begun, standing + (stiffening > 1.0 ? stiffening * born : 0.0));
+    const MotionBound motion = isReport ? MotionBound{} : motionBound(step);
     const double margin = settings.stabilitySafety * (isReport ? tuning::kReportStepMargin : 1.0);
     const auto stepsFor = [&](double radius) {
       const double dt = stableStep(settings.method, radius + held.stiffness, simulation.dampingTime_s, margin) *
                         shortening(radius + held.stiffness, simulation.dampingTime_s, held.damping);
       return std::max(std::ceil(settings.frame_s / dt), 1.0);
     };
-    const double steps = std::min(stepsFor(needed), std::max<double>(tuning::kMaxImpactSubsteps, stepsFor(begun)));
-    if (!(steps <= tuning::kMaxExplicitSubsteps)) refuseSteps(step, steps);
+    const double stable = std::min(stepsFor(needed), std::max<double>(tuning::kMaxImpactSubsteps, stepsFor(begun)));
+    const double turning = settings.method == Method::midpoint ? midpointSteps(standing, motion.spin, settings.frame_s) : 1.0;
+    const double steps = std::max({stable, motion.steps, std::min<double>(tuning::kMaxImpactSubsteps, std::ceil(turning))});
+    if (!(steps <= tuning::kMaxExplicitSubsteps)) refuseSteps(step, steps, motion);
     substeps = static_cast<int>(steps);
     allowed =
         stableSpectralRadius(settings.method, settings.frame_s / substeps, simulation.dampingTime_s, settings.stabilitySafety);
@@ -154,6 +172,7 @@ IslandOutcome runExplicitSteps(IslandStep& step) {
     step.pushedFrom_s = leapfrog ? step.pushedUntil_s - step.kick_s : step.time_s;
     if (!isReport) findSlippingContacts(step);
     takeStep(step);
+    if (!isReport) limitStrain(step);
     last = step.drift_s;
     placeDriven(step, step.time_s, step.time_s + step.drift_s, which);
     outcome.inside = isReport ? acceptReportStep(step) : updateContacts(step, refreshTravelOfExplicitSteps(simulation));

@@ -186,8 +186,8 @@ Profile readProfileJson(const std::string& path) {
     for (const Json& result : json.at("cases")) profile.results.push_back(profileResultFromJson(result));
     return profile;
   } catch (const Json::exception& error) {
-    throw InputError(
-        fmt::format("{}: not the profile.json of a profile of this version: {}", onOneLine(path), onOneLine(error.what())));
+    throw InputError(fmt::format("{}: expected the profile.json of a profile of this version, got another file: {}",
+                                 onOneLine(path), onOneLine(error.what())));
   } catch (const InputError& error) {
     throw InputError(fmt::format("{}: {}", onOneLine(path), error.what()));
   }

@@ -209,7 +209,7 @@ TEST(SaveResumeRun, WhatWouldChangeTheRunIsRefused) {
                                  {"--seed", "2"},
                                  {"--gravity-tilt", "3"},
                                  {"--prepare-budget", "1"}})
-    expectRefused(runWith({"--resume", file}, other), "excludes");
+    expectRefused(runWith({"--resume", file}, other), "got both");
   expectRefused(runWith({}, {"--seconds", "1"}), "expected SCENE or --resume, got neither");
   expectRefused(runWith({"(010)"}, {"--save", file, "--report", file}), "got '" + file + "' for both");
   expectRefused(runWith({"(010)"}, {"--save", scratch.file("no/such/folder")}), "--save");

@@ -113,7 +113,7 @@ TEST_P(StaticsBadArgumentsTest, AreNamed) {
 
 INSTANTIATE_TEST_SUITE_P(
     StaticsCommand, StaticsBadArgumentsTest,
-    ::testing::Values(BadStaticsArguments{"NoScene", {}, "SCENE is required"},
+    ::testing::Values(BadStaticsArguments{"NoScene", {}, "expected SCENE, got none"},
                       BadStaticsArguments{"Typo", {"(012)"}, "character 4"},
                       BadStaticsArguments{"Friction", {"(010)", "--mu", "-1"}, "--mu"},
                       BadStaticsArguments{"RemoveAbsent", {"(010)", "--remove", "0:1"}, "--remove: expected ..., got '0:1'"},
@@ -126,7 +126,7 @@ INSTANTIATE_TEST_SUITE_P(
                       BadStaticsArguments{"TooMany", {"tower:400"}, "expected 1 to 1000 blocks for statics, got 1200"},
                       BadStaticsArguments{"CheckOfAScene", {"(010)", "--check"}, "--check: expected ..., got the scene"},
                       BadStaticsArguments{"OptionOfAList", {"-", "--mu", "0.3"}, "--mu: expected ..., got it with a list"},
-                      BadStaticsArguments{"NoFile", {"/does/not/exist.jsonl"}, "cannot be read"},
+                      BadStaticsArguments{"NoFile", {"/does/not/exist.jsonl"}, "a file that can be read"},
                       BadStaticsArguments{"Report", {"(010)", "--report", "/does/not/exist.json"}, "--report"}),
     [](const auto& test) { return test.param.name; });
 

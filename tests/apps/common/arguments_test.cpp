@@ -56,5 +56,14 @@ TEST(Arguments, UnknownOnesThatAreNearNothingHaveNoHint) {
               AllOf(StartsWith("springtower: expected a command among run, "), EndsWith(", got none")));
 }
 
+TEST(Arguments, MissingOnesAndThoseThatDoNotGoTogetherSayWhatIsExpected) {
+  EXPECT_EQ(firstLine("springtower", {"verdict"}), "springtower: expected FILE, got none");
+  EXPECT_EQ(firstLine("springtower", {"run", "(010)", "--seconds"}), "springtower: --seconds: expected S, got none");
+  EXPECT_EQ(firstLine("springtower", {"run", "(010)", "--seconds", "1", "--seconds", "2"}),
+            "springtower: --seconds: expected at most 1, got 2");
+  EXPECT_EQ(firstLine("springtower", {"run", "(010)", "--forces"}), "springtower: --forces: expected --report as well, got none");
+  EXPECT_EQ(firstLine("springtower", {"profile", "--quick", "--full"}), "springtower: expected --full or --quick, got both");
+}
+
 }  // namespace
 }  // namespace springtower

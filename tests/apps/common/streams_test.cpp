@@ -70,7 +70,7 @@ TEST(Streams, AClosedInputIsNoEmptyList) {
   RunningProgram verdict("springtower", {"verdict", "-"}, {.input = std::string(kClosed)});
   const ProgramResult result = verdict.wait();
   EXPECT_EQ(result.exitCode, 2);
-  EXPECT_THAT(result.error, ::testing::HasSubstr("standard input: cannot be read"));
+  EXPECT_THAT(result.error, ::testing::HasSubstr("standard input: expected a file that can be read, got one that cannot"));
 }
 
 // /dev/full takes what is written to it as a full disk does.
