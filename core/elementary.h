@@ -42,7 +42,7 @@ double cbrt(double value);
 /// 1e-140 and 1e150; beyond, scaled by a power of two.
 double hypot(double x, double y);
 
-/// A value times itself, which std::pow(value, 2) is by the compiler's leave alone.
+/// A value times itself, which std::pow(value, 2) is with some compilers alone.
 constexpr double square(double value) {
   return value * value;
 }

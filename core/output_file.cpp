@@ -166,7 +166,7 @@ void OutputFile::commit() {
 }
 
 void OutputFile::fail(const std::string& what) const {
-  throw InputError(fmt::format("{}: cannot write {}: {}", option_, inQuotes(path_), what));
+  throw InputError(fmt::format("{}: expected a file that can be written, got {}: {}", option_, inQuotes(path_), what));
 }
 
 }  // namespace springtower

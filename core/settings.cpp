@@ -25,7 +25,8 @@ constexpr auto kSettingTable = std::to_array<SettingRow>({
     {"stability_safety", "", "part of the stability limit that a step uses; the rest covers contacts that change within a step",
      0.05, 1, &Settings::stabilitySafety},
     {"spring_ratio", "",
-     "stiffness of an upright edge spring over that of a contact; explicit methods raise it where a scene's speeds need more",
+     "stiffness of an upright edge spring over that of a contact; explicit methods raise it where the speeds at the start need "
+     "more",
      0.01, 100, &Settings::springRatio},
     {"tangential_ratio", "", "tangential over normal stiffness of a contact; 2 (1 - nu) / (2 - nu) for elastic bodies (Mindlin)",
      0.01, 2, &Settings::tangentialRatio},

@@ -60,7 +60,9 @@ def marked_parts(commands, viewer, scenes, settings):
     return {
         "README.md": {"claims": recorded.claims_line(recorded.read_json(DATA / "validation.json")),
                       "headline": recorded.headline(*(recorded.read_csv(DATA / f"{name}.csv") for name in ("runs", "motion", "stacks")),
-                                                    peers_at_rest, peers_stacks, peers_falls)},
+                                                    peers_at_rest, peers_stacks, peers_falls),
+                      "random": recorded.random_line(recorded.read_csv(DATA / "random.csv"), short=True)},
+        "docs/limits.md": {"random": recorded.random_line(recorded.read_csv(DATA / "random.csv"), short=False)},
         "docs/command-line.md": {"options": reference.command_options(commands + viewer)},
         "docs/scenes.md": {"scenes": reference.scene_names(scenes), "settings": reference.settings(settings)},
         "docs/validation.md": {"claims": recorded.claims_summary(recorded.read_json(DATA / "validation.json"))},

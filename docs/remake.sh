@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Makes every figure and every table of the documents again, from the programs of the tree as it is. On two quiet cores it takes
-# about two hours; what differs afterwards are times, and how many random scenes are slow or run out of time.
+# Makes every generated table and every picture of the documents again, from the programs of the tree as it is. On two quiet cores it
+# takes about two hours; what differs afterwards are times, and how many random scenes are slow or run out of time. Recordings
+# of other engines (bench/data/peers), docs/pictures/opens_before.png and figures within sentences are of the commits they name.
 #   docs/remake.sh             every part
 #   docs/remake.sh PART...     these parts:
 #     build       build/ci and build/tune

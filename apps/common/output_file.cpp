@@ -29,7 +29,7 @@ void makeOutputFolder(const std::string& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error || !std::filesystem::is_directory(folder)) {
-    throw InputError(fmt::format("--out: cannot make the folder {}: {}", inQuotes(folder),
+    throw InputError(fmt::format("--out: expected a folder that is there or can be made, got {}: {}", inQuotes(folder),
                                  error ? error.message() : std::string("there is a file of that name")));
   }
   // Better now than after minutes of work. It is never committed, so it leaves nothing behind.

@@ -91,7 +91,7 @@ PeerProcess::PeerProcess(Peer peer, const PeerSettings& settings, const Scene& s
   const std::string program = programOf(peer);
   int ends[2] = {-1, -1};
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
-    throw InputError(fmt::format("{}: cannot be started: {}", program, std::strerror(errno)));
+    throw InputError(fmt::format("expected {} to start, got: {}", program, std::strerror(errno)));
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_adddup2(&actions, ends[1], STDIN_FILENO);
@@ -111,7 +111,7 @@ PeerProcess::PeerProcess(Peer peer, const PeerSettings& settings, const Scene& s
   if (sent) return;
   close(socket_);
   if (error == 0) waitpid(process_, nullptr, 0);
-  throw InputError(fmt::format("{}: cannot be started: {}", program, error != 0 ? std::strerror(error) : "it ended at once"));
+  throw InputError(fmt::format("expected {} to start, got: {}", program, error != 0 ? std::strerror(error) : "it ended at once"));
 }
 
 PeerProcess::~PeerProcess() {

@@ -250,7 +250,7 @@ void writePicture(std::ostream& stream, const ParticleArray& position, bool floo
   const cairo_status_t status = cairo_surface_write_to_png_stream(surface.get(), toStream, &stream);
   if (status == CAIRO_STATUS_WRITE_ERROR) return;  // the stream has failed: whoever has opened it can name the file
   if (status != CAIRO_STATUS_SUCCESS) {
-    throw InputError(std::string("the picture cannot be written: ") + cairo_status_to_string(status));
+    throw InputError(std::string("expected a picture that can be drawn, got: ") + cairo_status_to_string(status));
   }
 }
 

@@ -288,7 +288,7 @@ using Surface = std::unique_ptr<cairo_surface_t, decltype(&cairo_surface_destroy
 void check(cairo_status_t status) {
   // Where the stream has failed whoever has opened it can name the file.
   if (status == CAIRO_STATUS_SUCCESS || status == CAIRO_STATUS_WRITE_ERROR) return;
-  throw InputError(std::string("the chart cannot be written: ") + cairo_status_to_string(status));
+  throw InputError(std::string("expected a chart that can be drawn, got: ") + cairo_status_to_string(status));
 }
 
 // How large the chart becomes: depends on the widths of its words.

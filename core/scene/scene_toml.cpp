@@ -24,7 +24,7 @@ namespace {
 constexpr std::uintmax_t kMaxBytes = 256U << 20U;
 constexpr std::int64_t kMaxWhole = std::numeric_limits<std::int64_t>::max();
 
-// Corners as `run --poses` writes them. Near which cuboid they lie is for checkScene to see.
+// Corners as `run --poses` writes them. checkScene finds the cuboid that fits them.
 void readCorners(const Table& table, BlockSpec& block) {
   for (const std::string_view key : {"centre_m", "rotation_deg"}) {
     if (table.has(key)) throw InputError(fmt::format("{}: expected {} or corners_m, got both", table.where(key), key));

@@ -7,7 +7,7 @@ complete -c springtower-viewer -l players -x -d 'plays the game; 0 lets every bl
 complete -c springtower-viewer -l heights-sigma -x -d 'standard deviation of the blocks'\'' heights (default 0.0002 for tower:ROWS'
 complete -c springtower-viewer -l mass-sigma -x -d 'standard deviation of the masses; 0 to 0.0059 kg'
 complete -c springtower-viewer -l start-gap -x -d 'rows start this far apart and drop; 0 to 1 m'
-complete -c springtower-viewer -l seed -x -d 'of the heights and masses; 0 to 9000000000000000'
+complete -c springtower-viewer -l seed -x -d 'seed of the heights and masses; 0 to 9007199254740992'
 complete -c springtower-viewer -l method -x -a 'implicit bdf2 implicit-euler implicit-eigen bdf2-eigen semi-implicit-euler midpoint runge-kutta-4 report legacy-2003 rigid-pgs rigid-lcp xpbd auto' -d 'how a frame is stepped, as `springtower run --method`'
 complete -c springtower-viewer -l tolerance -x -d 'target penetration: no resting overlap exceeds it; 1e-07 to 0.01 m'
 complete -c springtower-viewer -l friction -x -d 'coefficient of friction; 0 to 10'

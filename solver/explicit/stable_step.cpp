@@ -28,8 +28,8 @@ std::array<double, 3> edgeEnd(int edge) {
   return place;
 }
 
-// The stiffness of each block's contacts on its affine part, over its mass (1/s2), lies where an implicit step holds what the
-// past contributes to it: columns 0 and 1 of the matrix in the x of the corners, 2 and 3 in their y.
+// The stiffness of each block's contacts on its affine part, over its mass (1/s2). It uses the memory in which implicit steps
+// keep extrapolated positions (scratch.pastPosition): columns 0 and 1 of the matrix in the x of the corners, 2 and 3 in their y.
 Eigen::Map<Eigen::Vector4d> metricColumn(Engine& engine, std::size_t block, std::size_t column) {
   return Eigen::Map<Eigen::Vector4d>(engine.scratch.pastPosition.values(column / 2, block) + 4 * (column % 2));
 }

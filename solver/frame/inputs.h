@@ -10,8 +10,8 @@ namespace springtower {
 // (solver/hand/grip.h). All of it is part of snapshots. Every function checks what it is given as checkScene does, and throws
 // InputError, with nothing changed, naming what is expected and what it got.
 
-/// A force at a block's centre through the coming frame. Who pushes again in the next frame replaces it (setOnlyForce).
-/// Throws InputError for a number that is no block's.
+/// A force at a block's centre through the coming frame. To push again in the next frame, set another in its place
+/// (setOnlyForce). Throws InputError for a number that is no block's.
 UserForce forceForOneFrame(const Simulation& simulation, std::size_t block, const Vec3& force);
 
 /// Adds a force to those that act on the scene; forces that ended before the last frame began are dropped.

@@ -138,9 +138,9 @@ IslandFacts islandFacts(const IslandStep& step) {
   std::size_t pinned = 0;
   for (const std::int32_t block : step.blocks)
     pinned += step.engine.memo.islandHistory[static_cast<std::size_t>(block)].rigidFrames > 0 ? 1U : 0U;
-  facts.rigidPinned = 2 * pinned > step.blocks.size();
+  facts.staysRigid = 2 * pinned > step.blocks.size();
   facts.mostlyFallen = isMostlyFallen(step);
-  if (facts.leftAlone && facts.rigidPinned) return facts;
+  if (facts.leftAlone && facts.staysRigid) return facts;
   facts.moves = isFasterThan(step, quiescentSpeed(step.simulation));
   const double entry = speedOf(step, tuning::kRigidEntrySpeed);
   facts.fast = mostIsFasterThan(step, entry, Vec3::Zero()) &&
@@ -162,7 +162,7 @@ IslandMode nextMode(ModeChange when, const IslandFacts& facts) {
   bool rigid = false;
   switch (when) {
     case ModeChange::frameBegins:
-      rigid = facts.fast || (facts.leftAlone && facts.rigidPinned);
+      rigid = facts.fast || (facts.leftAlone && facts.staysRigid);
       break;
     case ModeChange::frameContinues:
       rigid = facts.rigidBefore;

@@ -19,7 +19,7 @@ enum class ModeChange : std::uint8_t { frameBegins, frameContinues };
 struct IslandFacts {
   bool leftAlone = false;     ///< neither a hand nor a user force acts
   bool rigidBefore = false;   ///< rigid steps advanced one of its blocks in the last frame
-  bool rigidPinned = false;   ///< more than half of its blocks are to stay in rigid steps: they moved, or implicit ones failed
+  bool staysRigid = false;    ///< more than half of its blocks are to stay in rigid steps: they moved, or implicit ones failed
   bool moves = false;         ///< it is faster than what rests; not looked at where it is left alone and pinned
   bool mostlyFallen = false;  ///< more than half of its blocks have fallen since they slept last
   /// Whether blocks that have more than half of the mass are faster than 0.45 sqrt(g h): they could rise by a tenth of their

@@ -24,7 +24,7 @@ namespace springtower {
 
 namespace {
 
-// Where no equilibrium is known, what overlaps at the start is without force as it lies: it would be thrown apart otherwise. Of
+// Where no equilibrium is known, overlaps at the start have no force (rest depth): the blocks would be thrown apart otherwise. Of
 // pairs for which isWithout(block) holds.
 template <class IsWithout>
 void unloadOverlaps(IslandStep& step, const IsWithout& isWithout) {
@@ -134,7 +134,7 @@ void takePartAgain(Engine& engine, bool all) {
 }
 
 // Searches all islands, and those that left their swept boxes once more, with larger ones. Boxes for the whole way of every block
-// would find far more pairs than ever meet. One that is then joined with an island that has its equilibrium is left as placed.
+// would find far more pairs than ever meet. An island that is then joined with one that has its equilibrium is left as placed.
 void searchAll(Simulation& simulation, SearchMonitor& monitor, PrepareResult& result) {
   Engine& engine = *simulation.engine;
   engine.scratch.leftBox.assign(simulation.model.blockCount(), 0);

@@ -154,10 +154,14 @@ INSTANTIATE_TEST_SUITE_P(
         BadCall{
             "MissingFile", {"no-such-file.csv", "--kind", "vf"}, "no-such-file.csv: expected a file that can be read, got none"},
         BadCall{"Folder", {kSets, "--kind", "vf"}, kSets},
-        BadCall{"OutWithoutName", {kSmallSet, "--kind", "vf", "--out", ""}, "--out: cannot write '': an empty name"},
-        BadCall{"OutIsAFolder", {kSmallSet, "--kind", "vf", "--out", "/"}, "--out: cannot write '/'"},
+        BadCall{"OutWithoutName",
+                {kSmallSet, "--kind", "vf", "--out", ""},
+                "--out: expected a file that can be written, got '': an empty name"},
+        BadCall{"OutIsAFolder", {kSmallSet, "--kind", "vf", "--out", "/"}, "--out: expected a file that can be written, got '/'"},
         BadCall{"OutInNoFolder", {kSmallSet, "--kind", "vf", "--out", "/no/such/answers.csv"}, "/no/such/answers.csv"},
-        BadCall{"FullDisk", {kSmallSet, "--kind", "vf", "--out", "/dev/full"}, "--out: cannot write '/dev/full'"}),
+        BadCall{"FullDisk",
+                {kSmallSet, "--kind", "vf", "--out", "/dev/full"},
+                "--out: expected a file that can be written, got '/dev/full'"}),
     [](const auto& tested) { return tested.param.name; });
 
 TEST(CcdQueries, NameTheLineThatIsBrokenAndLeaveAnOlderFileAlone) {

@@ -204,15 +204,15 @@ CLI::App* defineProfile(CLI::App& program, ProfileCommand& command) {
   list("--scenes", command.scenes, "NAME,...", "what the blocks do (default rest,pull,game,collapse,asleep,towers; see below)");
   list("--methods", command.methods, "NAME,...", "as in `run` (default: its default; at rest also report, for comparison)");
   list("--tolerances", command.tolerances_m, "METRES,...", "as in `run` (default 5e-05; of `game` as it was played)");
-  list("--threads", command.threads, "N,N,...", "threads to use (default 1; of what has a name and a size 1,2)");
+  list("--threads", command.threads, "N,N,...", "threads to use (default 1; for --stacks and --falls 1,2)");
   list("--towers", command.towers, "N,N,...", "how many towers scene `towers` has (default 1,4,16,64)");
   list("--stacks", command.stacks, "NAME:SIZE,...",
        "what to time in scenes `walls`, `pyramids` and `starts`, which it implies: wall:COLUMNSxCOURSES, cubes:ROWS, "
-       "bricks:ROWS, tower:ROWS, uneven:ROWS, tilted:ROWS, uneven-tilted:ROWS, tilted-towers:TOWERS (default those that have "
-       "something to meet, 54 to 5050 blocks)");
+       "bricks:ROWS, tower:ROWS, uneven:ROWS, tilted:ROWS, uneven-tilted:ROWS, tilted-towers:TOWERS (default those with a "
+       "requirement, 54 to 5050 blocks)");
   list("--falls", command.falls, "NAME:SIZE,...",
        "what to time in scenes `topple`, `hit`, `heaps`, `piles` and `rain`, which it implies: topple:ROWS, towers:TOWERS, "
-       "shot:ROWS, heap:BLOCKS, pile:ROWS, rain:BLOCKS (default those that have something to meet, 54 to 3456 blocks)");
+       "shot:ROWS, heap:BLOCKS, pile:ROWS, rain:BLOCKS (default those with a requirement, 54 to 3456 blocks)");
   profile->add_option("--inertia", command.inertia, "cuboid (default) or lumped")->type_name("NAME");
   addWholeNumber(*profile, "--samples", command.samples, kProfileSamplesRange,
                  "of each case, interleaved with the others (default 5)");

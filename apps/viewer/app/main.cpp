@@ -80,7 +80,7 @@ void define(CLI::App& app, Command& c) {
             "standard deviation of the blocks' heights (default 0.0002 for tower:ROWS, else none)");
   addNumber(app, "--mass-sigma", c.massSigma_kg, kMassSigmaRange, "KG", "standard deviation of the masses");
   addNumber(app, "--start-gap", c.startGap_m, kStartGapRange, "METRES", "rows start this far apart and drop");
-  addWholeNumber(app, "--seed", c.seed, {0, 9e15, ""}, "of the heights and masses");
+  addWholeNumber(app, "--seed", c.seed, kSeedRange, "seed of the heights and masses");
   app.add_option("--method", c.method, "how a frame is stepped, as `springtower run --method`")->type_name("NAME");
   addNumber(app, "--tolerance", c.tolerance_m, {1e-7, 1e-2, "m"}, "METRES", "target penetration: no resting overlap exceeds it");
   addNumber(app, "--friction", c.friction, kFrictionRange, "MU", "coefficient of friction");

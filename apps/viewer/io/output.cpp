@@ -63,7 +63,8 @@ void writePng(const std::string& path, const std::string& option, const Image& i
       cairo_surface_destroy);
   const cairo_status_t status = cairo_surface_write_to_png_stream(surface.get(), toStream, &file.stream());
   if (status != CAIRO_STATUS_SUCCESS) {
-    throw InputError(fmt::format("{}: {} cannot be written: {}", option, inQuotes(path), cairo_status_to_string(status)));
+    throw InputError(fmt::format("{}: expected a file that can be written, got {}: {}", option, inQuotes(path),
+                                 cairo_status_to_string(status)));
   }
   file.commit();
 }
@@ -130,7 +131,8 @@ void Film::finish() {
   if (process_ > 0) waitpid(process_, &status, 0);
   process_ = -1;
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) {
-    throw InputError(fmt::format("--video: ffmpeg could not write {}", inQuotes(path_)));
+    throw InputError(fmt::format("--video: expected a video of {} by ffmpeg, got its exit code {}", inQuotes(path_),
+                                 WIFEXITED(status) ? WEXITSTATUS(status) : -1));
   }
   file_.commit();
 }

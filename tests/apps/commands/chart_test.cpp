@@ -37,7 +37,7 @@ TEST(Chart, RefusesWhatItDoesNotKnow) {
   expectRefusal({"--methods", "magic"}, "'magic'");
   expectRefusal({"--rows", "1"}, "2 to 200");
   expectRefusal({"--out", "/dev/null"}, "--out");
-  expectRefusal({"--out", "/proc"}, "--out: cannot write '/proc/");
+  expectRefusal({"--out", "/proc"}, "--out: expected a file that can be written, got '/proc/");
   expectRefusal({"--no-time-limit", "--quick"}, "--quick");
 }
 

@@ -153,7 +153,7 @@ TEST(Program, AFullDiskBehindTheReportIsAnError) {
   ASSERT_TRUE(std::ofstream("/dev/full")) << "every Linux has it";
   const ProgramResult result = run({"tower:1", "--seconds", "0.1", "--report", "/dev/full"});
   EXPECT_EQ(result.exitCode, 2);
-  EXPECT_THAT(result.error, HasSubstr("--report: cannot write '/dev/full'"));
+  EXPECT_THAT(result.error, HasSubstr("--report: expected a file that can be written, got '/dev/full'"));
 }
 
 // A run whose poses fill a disk ends there, and what else it was to write is written.
@@ -162,7 +162,7 @@ TEST(Program, AFullDiskBehindThePosesCostsNoOtherFile) {
   const ProgramResult result = run({"tower:18", "--no-sleep", "--seconds", "100000", "--poses", "/dev/full", "--report",
                                     scratch.file("r.json"), "--save", scratch.file("s"), "--picture", scratch.file("p.png")});
   EXPECT_EQ(result.exitCode, 2);
-  EXPECT_THAT(result.error, HasSubstr("--poses: cannot write '/dev/full'"));
+  EXPECT_THAT(result.error, HasSubstr("--poses: expected a file that can be written, got '/dev/full'"));
   const Json report = Json::parse(contentOf(scratch.file("r.json")));
   EXPECT_EQ(report.at("interrupted"), true);
   EXPECT_LT(report.at("simulated_s").get<double>(), 1e5);
@@ -386,7 +386,7 @@ TEST(RunCommand, DivergenceIsSaidWhereThePosesCannotBeWritten) {
                                     "--substeps", "2", "--allow-unstable", "--poses", "/dev/full"});
   EXPECT_EQ(result.exitCode, 3) << result.error;
   EXPECT_THAT(result.error, HasSubstr("diverged"));
-  EXPECT_THAT(result.error, HasSubstr("--poses: cannot write '/dev/full'"));
+  EXPECT_THAT(result.error, HasSubstr("--poses: expected a file that can be written, got '/dev/full'"));
 }
 
 // After the line of each move a table says how far every other block moved in it, as the report does; the block in the hand has

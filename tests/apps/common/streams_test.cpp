@@ -82,7 +82,8 @@ TEST(Streams, AFullDiskIsNamedWithTheFileThatFoundItSo) {
        {std::pair<std::string, std::string>{"--picture", picture}, {"--report", kFull}, {"--poses", kFull}}) {
     const ProgramResult result = runProgram("springtower", {"run", "(010)", "--seconds", "0.1", option, file});
     EXPECT_EQ(result.exitCode, 2);
-    EXPECT_THAT(result.error, ::testing::HasSubstr(option + ": cannot write '" + file + "': writing failed"));
+    EXPECT_THAT(result.error,
+                ::testing::HasSubstr(option + ": expected a file that can be written, got '" + file + "': writing failed"));
   }
 }
 

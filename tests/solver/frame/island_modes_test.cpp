@@ -9,7 +9,7 @@ IslandFacts movingIsland() {
   IslandFacts facts;
   facts.leftAlone = true;
   facts.rigidBefore = true;
-  facts.rigidPinned = true;
+  facts.staysRigid = true;
   return facts;
 }
 
@@ -28,7 +28,7 @@ TEST(IslandModes, FastIslandsTakeRigidSteps) {
 TEST(IslandModes, WhatMovesStaysInRigidSteps) {
   EXPECT_EQ(nextMode(ModeChange::frameBegins, movingIsland()), IslandMode::rigid);
   IslandFacts slow = movingIsland();
-  slow.rigidPinned = false;
+  slow.staysRigid = false;
   EXPECT_EQ(nextMode(ModeChange::frameBegins, slow), IslandMode::implicit);
   IslandFacts held = movingIsland();
   held.leftAlone = false;
