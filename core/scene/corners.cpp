@@ -1,9 +1,8 @@
 #include "core/scene/corners.h"
 
 #include "core/block.h"
+#include "core/nearest_rotation.h"
 
-#include <Eigen/LU>
-#include <Eigen/SVD>
 #include <memory>
 
 namespace springtower {
@@ -37,10 +36,7 @@ void placeByCorners(const CornerPlaces& corners, BlockSpec& block) {
   for (const Vec3& corner : corners) block.centre += corner / static_cast<double>(kCorners);
   Eigen::Matrix3d product = Eigen::Matrix3d::Zero();
   for (std::size_t c = 0; c < kCorners; ++c) product += (corners[c] - block.centre) * armOf(block, c).transpose();
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(product, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const double sense = svd.matrixU().determinant() * svd.matrixV().determinant();  // excludes mirror images
-  const Eigen::Matrix3d turn = svd.matrixU() * Vec3(1.0, 1.0, sense).asDiagonal() * svd.matrixV().transpose();
-  block.orientation = Eigen::Quaterniond(turn).normalized();
+  block.orientation = Eigen::Quaterniond(nearestRotation(product)).normalized();
   CornerPlaces strain;
   for (std::size_t c = 0; c < kCorners; ++c)
     strain[c] = block.orientation.conjugate() * (corners[c] - block.centre) - armOf(block, c);

@@ -1,13 +1,12 @@
 #include "solver/explicit/strain_limit.h"
 
+#include "core/nearest_rotation.h"
 #include "core/tuning.h"
 #include "solver/block/affine.h"
-#include "solver/block/inertia.h"
 #include "solver/block/shape_change.h"
 #include "solver/world/over_island.h"
 
 #include <Eigen/LU>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -32,15 +31,6 @@ Corners restCorners(const Vec3& dimensions) {
     corners.col(static_cast<Eigen::Index>(c)) = 0.5 * sides.cwiseProduct(dimensions);
   }
   return corners;
-}
-
-// The rotation that takes a rigid block's corners nearest to these, in the sum of squares (Kabsch 1976). What differs from it
-// then has no moment about the rigid corners, so that a displacement along it changes no angular momentum.
-Eigen::Matrix3d nearestRotation(const Corners& corners, const Corners& rest) {
-  const Eigen::Matrix3d moments = corners * rest.transpose();
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(moments, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const double handed = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0.0 ? -1.0 : 1.0;
-  return svd.matrixU() * Vec3(1.0, 1.0, handed).asDiagonal() * svd.matrixV().transpose();
 }
 
 // The largest difference of an edge from that of the rigid block, over its length; `apart`: of the corners, m.
@@ -100,40 +90,13 @@ void limitBlock(const IslandStep& step, std::size_t block) {
   const Vec3& dimensions = step.simulation.model.dimensions[block];
   const Corners corners = cornersOf(state.position, block, centre(state.position, block));
   const Corners rest = restCorners(dimensions);
-  const Corners rigid = nearestRotation(corners, rest) * rest;
+  // What differs from the nearest rigid block has no moment about it, so that taking it back turns no block.
+  const Corners rigid = nearestRotation(corners * rest.transpose()) * rest;
   const double strain = strainOf(corners - rigid, dimensions);
   if (!(strain > tuning::kMaxStrain)) return;
   const double diverged = tuning::kMaxDeformationPerStep * dimensions.minCoeff();
   if (!(shapeChange(state.position, step.engine.memo.previous, block) < diverged * diverged)) return;
   moveRigidly(state, block, corners, rigid + tuning::kMaxStrain / strain * (corners - rigid));
-}
-
-// Adds what a block needs that loads of these sizes (N, N m) act on, by its spin now, what they may add to it in the frame, and
-// what they do to a corner.
-void addBlock(const IslandStep& step, std::int32_t block, double force, double torque, MotionBound& bound) {
-  const Simulation& simulation = step.simulation;
-  const auto b = static_cast<std::size_t>(block);
-  const Vec3& dimensions = simulation.model.dimensions[b];
-  const double frame_s = simulation.scene.settings.frame_s;
-  const double mass = simulation.model.mass[b];
-  const double own = inverseMass(simulation.scene.settings.inertia).own;
-  const double arm = 0.5 * dimensions.norm();
-  const double side = dimensions.minCoeff();
-  const Vec3 squares = dimensions.cwiseAbs2();
-  const double moment = 2.0 * mass / own * (squares.sum() - squares.maxCoeff());  // the least principal one
-  // A constant force gives no more spin than its work on a corner that it takes from one side of the block to the other.
-  const double added =
-      std::min(force * arm / moment * frame_s, std::sqrt(4.0 * force * arm / moment)) + torque / moment * frame_s;
-  const double spin = rigidMotion(simulation.state, b).spin.norm();
-  // A step along the tangents stretches the longest edge by half the square of the turn; compared with the least one.
-  const double turn = tuning::kMaxExplicitTurn * std::sqrt(side / dimensions.maxCoeff());
-  const double acceleration = own * (force + torque / side) / mass;
-  const double pushed = std::sqrt(acceleration / (2.0 * tuning::kMaxExplicitPush * side));
-  const double steps = frame_s * std::max((spin + added) / turn, pushed);
-  bound.spin = std::max(bound.spin, spin);
-  if (!(steps > bound.steps)) return;
-  bound.steps = steps;
-  bound.block = block;
 }
 
 }  // namespace
@@ -146,27 +109,6 @@ void limitStrain(const IslandStep& step) {
       if (maySurpassLimit(step.engine.memo.frames[block], step.simulation.model.dimensions[block])) limitBlock(step, block);
     }
   });
-}
-
-MotionBound motionBound(const IslandStep& step) {
-  const Simulation& simulation = step.simulation;
-  const double begin_s = simulation.time_s;
-  const double end_s = begin_s + simulation.scene.settings.frame_s;
-  MotionBound bound;
-  for (const std::int32_t block : step.blocks) {
-    double force = 0.0;
-    double torque = 0.0;
-    for (const UserForce& user : simulation.scene.forces) {
-      if (user.block != block || !user.actsWithin(begin_s, end_s)) continue;
-      const Load load = user.at(std::max(begin_s, user.start_s));
-      const Load later = user.at(std::min(end_s, user.end_s));
-      if (user.corner >= 0 || user.point) force += std::max(load.force.norm(), later.force.norm());
-      torque += std::max(load.torque.norm(), later.torque.norm());
-    }
-    addBlock(step, block, force, torque, bound);
-  }
-  bound.steps = std::ceil(bound.steps);
-  return bound;
 }
 
 }  // namespace springtower

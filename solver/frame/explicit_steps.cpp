@@ -10,6 +10,7 @@
 #include "solver/contact/slip.h"
 #include "solver/contact/update.h"
 #include "solver/explicit/leapfrog.h"
+#include "solver/explicit/motion_bound.h"
 #include "solver/explicit/stable_step.h"
 #include "solver/explicit/strain_limit.h"
 #include "solver/reference/midpoint.h"

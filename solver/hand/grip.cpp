@@ -1,13 +1,13 @@
 #include "solver/hand/grip.h"
 
 #include "core/elementary.h"
+#include "core/nearest_rotation.h"
 #include "core/rotation_vector.h"
 #include "core/scene/input_check.h"
 #include "core/tuning.h"
 #include "solver/block/inertia.h"
 
 #include <Eigen/Geometry>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 
@@ -87,10 +87,7 @@ Eigen::Quaterniond orientationOf(const ParticleArray& position, std::size_t bloc
   length.minCoeff(&shortest);
   edges = (edges * length.asDiagonal()).eval();
   edges.col(shortest).setZero();
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(edges, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const double sense = svd.matrixU().determinant() * svd.matrixV().determinant();  // excludes mirror images of the two edges
-  const Eigen::Matrix3d turn = svd.matrixU() * Vec3(1.0, 1.0, sense).asDiagonal() * svd.matrixV().transpose();
-  return Eigen::Quaterniond(turn).normalized();
+  return Eigen::Quaterniond(nearestRotation(edges)).normalized();
 }
 
 void hold(const Hand& hand, std::span<const ContactForce> contacts, Grip& grip, Simulation& simulation) {

@@ -55,8 +55,7 @@ double kineticEnergy(const Simulation& simulation) {
 
 constexpr double kMostStrain = tuning::kMaxStrain + 1e-9;
 
-// The force accelerates the whole block as Newton's second law says, wherever it acts, and spins it by thousands of radians a
-// second: far more than the springs bear.
+// The force accelerates the whole block as Newton's second law says, wherever it acts, and spins it faster than its springs bear.
 TEST(StrainLimit, AStrongForceOnACornerSpinsABlockAndDoesNotTearIt) {
   for (const Method method : kExplicit) {
     SCOPED_TRACE(nameOf(method));
@@ -95,7 +94,7 @@ Scene pushedStack(std::uint64_t seed, Method method) {
   return scene;
 }
 
-// A third of such stacks was torn without the limit.
+// Of 160 stacks of this kind 51 were turned inside out without the limit (docs/adr/0025-strain-limit.md).
 TEST(StrainLimit, StacksOfWhichAStrongForceTakesABlockGoOn) {
   for (const Method method : kExplicit) {
     for (std::uint64_t seed = 1; seed <= 12; ++seed) {
@@ -169,16 +168,21 @@ TEST(StrainLimit, APlateKeepsTheEnergyThatAForceGivesIt) {
   }
 }
 
-// A block turns by no more than the bound in a step.
-TEST(StrainLimit, StepsAreAsShortAsASpinNeeds) {
-  for (const double spin : {100.0, 1000.0}) {
-    Scene scene = blockInSpace(Method::semiImplicitEuler);
-    scene.settings.tolerance_m = 1e-3;
-    scene.blocks[0].spin = Vec3(0.0, 0.0, spin);
-    Simulation simulation(scene);
-    prepareAndStep(simulation);
-    EXPECT_GE(simulation.substeps, spin * scene.settings.frame_s / tuning::kMaxExplicitTurn);
-  }
+// A block that a force has spun turns by no more than the bound in a step. Its springs alone need fewer steps, as before the
+// force.
+TEST(MotionBound, StepsAreAsShortAsASpinNeeds) {
+  Scene scene = blockInSpace(Method::semiImplicitEuler);
+  const double frame_s = scene.settings.frame_s;
+  const Vec3 force = 1000.0 * kStandardGravity_m_s2 * scene.blocks[0].mass * Vec3(0.0, 0.6, 0.8);
+  scene.forces = {constantForce(0, 3, force, frame_s, 7.0 * frame_s)};
+  Simulation simulation(scene);
+  prepareAndStep(simulation);
+  const int before = simulation.substeps;
+  stepFor(simulation, 8.0 * frame_s);
+  const double needed = rigidMotion(simulation.state, 0).spin.norm() * frame_s / tuning::kMaxExplicitTurn;
+  ASSERT_GT(needed, before);
+  stepFrame(simulation);
+  EXPECT_GE(simulation.substeps, needed);
 }
 
 // A step 5 % longer than the springs bear makes a deformation grow by a factor in each; the limit does not hide that.
