@@ -49,7 +49,7 @@ double strainOf(const Corners& apart, const Vec3& dimensions) {
 // Whether the affine part of a shape has so much strain that an edge may be past the limit: stretch of its mean edges, cosines
 // between them.
 bool maySurpassLimit(const BlockFrame& frame, const Vec3& dimensions) {
-  constexpr double kLookedAt = 0.25 * tuning::kMaxStrain;
+  const double kLookedAt = 0.25 * tuning::kMaxStrain;
   const auto& side = frame.place.side;
   const auto dot = [&](std::size_t a, std::size_t b) {
     return side[a][0] * side[b][0] + side[a][1] * side[b][1] + side[a][2] * side[b][2];

@@ -236,6 +236,13 @@ std::string_view machineDependent(std::string_view line) {
   return line.substr(static_cast<size_t>(found.position()), static_cast<size_t>(found.length()));
 }
 
+// Whether a line needs the value of a constant of core/tuning.def at compile time, which the preset `tune` reads from a file.
+bool fixesTuning(std::string_view line) {
+  line = line.substr(0, line.find("//"));
+  const size_t fixed = line.find("constexpr ");
+  return fixed != std::string_view::npos && line.find("tuning::", fixed) != std::string_view::npos;
+}
+
 bool decidesStates(std::string_view path) {
   if (path.starts_with("core/elementary.")) return false;  // defines functions of these names
   return std::find(std::begin(kDeciding), std::end(kDeciding), topOf(path)) != std::end(kDeciding);
@@ -264,6 +271,10 @@ std::vector<std::string> brokenRules(std::string_view path, std::string_view tex
     if (!inexact.empty()) {
       broken.push_back(std::string(path) + ":" + std::to_string(lineNumber) + ": expected functions of core/elementary.h and " +
                        "core/rotation_vector.h, got " + std::string(inexact) + ", whose last bits depend on the machine");
+    }
+    if (fixesTuning(line)) {
+      broken.push_back(std::string(path) + ":" + std::to_string(lineNumber) +
+                       ": expected const, got constexpr: the preset tune reads constants of core/tuning.def from a file");
     }
     const Include include = parseInclude(line);
     if (include.target.empty()) continue;

@@ -22,8 +22,8 @@ inline constexpr int kMaxFlatFiles = 12;
 /// and one another; within a folder that has rooms it reaches only the file's own room and those before it (kRooms); a header
 /// starts with `#pragma once` and includes what defines the names of the standard library that it uses; no file is longer than
 /// kMaxLines and no function longer than kMaxFunctionLines; where states are decided no function is called whose last bits depend
-/// on the machine. `path` is relative to the repository root and starts with the folder
-/// whose rules apply; `text` is the content of the file.
+/// on the machine; no line makes a constant at compile time of one of core/tuning.def. `path` is relative to the repository root
+/// and starts with the folder whose rules apply; `text` is the content of the file.
 std::vector<std::string> brokenRules(std::string_view path, std::string_view text);
 
 /// All C++ files (.h, .cpp) of the project's folders under `root`, relative to it, sorted.

@@ -191,6 +191,14 @@ TEST(SourceRules, NoStateDependsOnTheMachinesMathematics) {
     EXPECT_THAT(brokenRules("core/a.cpp", "x = " + found + ";\n"), IsEmpty()) << found;
 }
 
+TEST(SourceRules, AConstantOfTheTuningTableMayComeFromAFile) {
+  const std::string value = " double kHalf = 0.5 * tuning::kMaxStrain;\n";
+  EXPECT_THAT(brokenRules("solver/step.cpp", "const" + value), IsEmpty());
+  EXPECT_THAT(brokenRules("solver/step.cpp", "constexpr" + value),
+              ElementsAre(says("solver/step.cpp:1: expected const, got constexpr")));
+  EXPECT_THAT(brokenRules("solver/step.cpp", "constexpr double kHalf = 0.5;  // of tuning::kMaxStrain\n"), IsEmpty());
+}
+
 TEST(SourceRules, AHeaderIncludesWhatItUsesOfTheStandardLibrary) {
   const std::string head = "#pragma once\n";
   EXPECT_THAT(brokenRules("core/a.h", head + "std::vector<int> a;\n"), ElementsAre("core/a.h: std::vector needs <vector>"));

@@ -111,7 +111,7 @@ Eigen::Vector2d leftOver(const Camera& camera, const Viewport& viewport, const V
 }
 
 double pullSpeed(double left_m, double speed_m_s, double frame_s) {
-  constexpr double kGain_m_s2 = kGuidedPull_m_s * kGuidedPull_m_s / (2.0 * tuning::kDrawRampLength_m);
+  const double kGain_m_s2 = kGuidedPull_m_s * kGuidedPull_m_s / (2.0 * tuning::kDrawRampLength_m);
   // The speed from which it comes to rest in what is left, after a frame at it.
   const double frameGain = kGain_m_s2 * frame_s;
   const double stopping = std::sqrt(frameGain * frameGain + 2.0 * kGain_m_s2 * std::abs(left_m)) - frameGain;
