@@ -15,6 +15,7 @@ END {
   }
   for (i = 2; i <= columns; ++i) {
     fault = name[i]
+    if (fault == "cut" || fault == "step-limit") continue # no faults
     found = count[fault]
     if (found > 0) text = text ", " fault " " found
     if (found > most[fault] + 0) worse = worse ", " fault " " found " of " most[fault] + 0 " allowed"

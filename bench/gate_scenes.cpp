@@ -140,7 +140,9 @@ int gate(const std::vector<std::string_view>& arguments) {
     }
   }
   if (found) return 0;
-  fmt::print(stderr, "gate_scenes: expected a scene as the program lists them without arguments, got '{}'\n", arguments[0]);
+  std::fputs(  // which does not throw where standard error is closed
+      fmt::format("gate_scenes: expected a scene as the program lists them without arguments, got '{}'\n", arguments[0]).c_str(),
+      stderr);
   return 2;
 }
 

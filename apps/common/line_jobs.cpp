@@ -53,10 +53,16 @@ class LineWork {
     const std::scoped_lock lock(takeMutex_);
     std::string text;
     while (!stopped_) {
-      if (interrupted() || !input_.next(text, [&] { return stopped_.load(); })) {
-        if (interrupted()) noteInterrupted();
-        stopped_ = true;
-        break;
+      try {
+        if (interrupted() || !input_.next(text, [&] { return stopped_.load(); })) {
+          if (interrupted()) noteInterrupted();
+          stopped_ = true;
+          break;
+        }
+      } catch (const LongLineError&) {
+        ++number_;
+        refuse(lines_++);
+        continue;
       }
       ++number_;
       const std::size_t place = lines_;

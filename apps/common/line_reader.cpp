@@ -17,6 +17,8 @@ namespace {
 
 constexpr int kLookUp_ms = 100;  // the signal may have come to another thread, which does not interrupt poll here
 constexpr std::size_t kChunk = 1U << 16U;
+// Of a line that is left out: more has no line ends, such as a device.
+constexpr std::size_t kMaxSkippedBytes = std::size_t{64} << 20U;
 
 }  // namespace
 
@@ -32,7 +34,7 @@ LineReader::~LineReader() {
 }
 
 bool LineReader::next(std::string& line, const std::function<bool()>& stop) {
-  if (refused_) refuse();
+  if (refused_ && !skip(stop)) return false;
   ++number_;
   std::size_t searched = begin_;
   std::size_t end = buffer_.find('\n', searched);
@@ -52,9 +54,26 @@ bool LineReader::next(std::string& line, const std::function<bool()>& stop) {
   return true;
 }
 
+// Leaves out what is left of a line that is too long. Returns false where the input ends with it, and as `fill`.
+bool LineReader::skip(const std::function<bool()>& stop) {
+  std::size_t skipped = 0;
+  for (std::size_t end = buffer_.find('\n', begin_); end == std::string::npos; end = buffer_.find('\n')) {
+    skipped += buffer_.size() - begin_;
+    buffer_.clear();
+    begin_ = 0;
+    if (skipped > kMaxSkippedBytes)
+      throw InputError(
+          fmt::format("{}: line {}: expected its end within {} MB, got none", source_, number_, kMaxSkippedBytes >> 20U));
+    if (!fill(stop)) return false;
+  }
+  begin_ = buffer_.find('\n', begin_) + 1;
+  refused_ = false;
+  return true;
+}
+
 void LineReader::refuse() {
   refused_ = true;
-  throw InputError(
+  throw LongLineError(
       fmt::format("{}: line {}: expected at most {} MB in a line, got more", source_, number_, kMaxLineBytes >> 20U));
 }
 

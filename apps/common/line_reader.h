@@ -1,10 +1,17 @@
 #pragma once
 
+#include "core/error.h"
+
 #include <cstddef>
 #include <functional>
 #include <string>
 
 namespace springtower {
+
+/// A line of more than kMaxLineBytes. The next line can be read.
+struct LongLineError : InputError {
+  using InputError::InputError;
+};
 
 /// Reads a file or standard input line by line, as its lines come: of a pipe the first lines can be had before the last are
 /// written. For one thread at a time.
@@ -20,12 +27,13 @@ class LineReader {
   [[nodiscard]] const std::string& source() const { return source_; }
 
   /// The next line without its end. Returns false at the end of the input, and when a signal has come (interruption.h) or `stop`
-  /// has become true while it waited for more. Throws InputError when reading fails, and for a line of more than kMaxLineBytes,
-  /// in every call from then on.
+  /// has become true while it waited for more. Throws InputError when reading fails, and LongLineError for a line of more than
+  /// kMaxLineBytes, which the next call leaves out; where it does not end within 64 MB, that call throws InputError.
   bool next(std::string& line, const std::function<bool()>& stop);
 
  private:
   bool fill(const std::function<bool()>& stop);
+  bool skip(const std::function<bool()>& stop);
   [[noreturn]] void refuse();  // a line that is too long
 
   std::string source_;
@@ -34,7 +42,7 @@ class LineReader {
   std::size_t begin_ = 0;  // of what is not handed out yet
   std::size_t number_ = 0;
   bool ended_ = false;
-  bool refused_ = false;  // the line of number_ is too long: none is read after it
+  bool refused_ = false;  // the line of number_ is too long, and not read to its end
 };
 
 }  // namespace springtower

@@ -4,13 +4,16 @@
 #include "core/error.h"
 #include "core/limits.h"
 #include "core/version.h"
+#include "core/whole_file.h"
 
 #include <chrono>
+#include <filesystem>
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <oneapi/tbb/info.h>
+#include <system_error>
 #include <tuple>
 
 namespace springtower {
@@ -78,20 +81,26 @@ bool sameOrigin(const Provenance& a, const Provenance& b) {
 }
 
 void checkCommitted(const Provenance& then, const Provenance& now, const std::string& where) {
-  const bool isDirty = now.commit.ends_with("-dirty");
-  if (!isDirty && !then.commit.ends_with("-dirty")) return;
-  throw InputError(fmt::format(
-      "{}: expected results of builds of a commit, or --no-resume, got others: {} has uncommitted changes, so that its "
-      "commit does not say whether they are of the same sources",
-      where, isDirty ? "this build" : "the build that measured them"));
+  const auto why = [](const Provenance& build) {
+    if (build.commit == "unknown") return "was built outside a git clone";
+    return build.commit.ends_with("-dirty") ? "has uncommitted changes" : nullptr;
+  };
+  const char* reason = why(now) != nullptr ? why(now) : why(then);
+  if (reason == nullptr) return;
+  throw InputError(
+      fmt::format("{}: expected results of builds of a commit, or --no-resume, got others: {} {}, so that its commit does not "
+                  "say whether they "
+                  "are of the same sources",
+                  where, why(now) != nullptr ? "this build" : "the build that measured them", reason));
 }
 
 void readKept(const std::string& path, const Provenance& now, const nlohmann::ordered_json& settings,
               const std::function<void(const nlohmann::ordered_json&)>& read) {
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) return;
+  std::error_code missing;
+  if (!std::filesystem::exists(path, missing)) return;
+  const std::string text = wholeFile(path, onOneLine(path), kMaxResultsBytes);
   try {
-    const auto json = nlohmann::ordered_json::parse(stream);
+    const auto json = nlohmann::ordered_json::parse(text);
     const Provenance then = provenanceFromJson(json);
     checkCommitted(then, now, "kept results");
     bool same = sameOrigin(then, now);

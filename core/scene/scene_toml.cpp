@@ -6,13 +6,13 @@
 #include "core/scene/toml_keys.h"
 #include "core/scene/toml_moves.h"
 #include "core/scene/toml_table.h"
+#include "core/whole_file.h"
 
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <fmt/format.h>
-#include <fstream>
 #include <limits>
 #include <optional>
 #include <toml++/toml.h>
@@ -21,7 +21,6 @@
 namespace springtower {
 namespace {
 
-constexpr std::uintmax_t kMaxBytes = 256U << 20U;
 constexpr std::int64_t kMaxWhole = std::numeric_limits<std::int64_t>::max();
 
 // Corners as `run --poses` writes them. checkScene finds the cuboid that fits them.
@@ -327,18 +326,7 @@ std::string textOf(const std::string& path, const std::string& file) {
   if (!std::filesystem::exists(path, error)) {
     throw InputError(file + ": expected a scene file, tower:R with R rows, or a bit code such as (010)-(111), got no such file");
   }
-  std::ifstream stream(path, std::ios::binary);
-  std::string text;
-  constexpr std::size_t kChunk = std::size_t{1} << 16U;
-  for (std::streamsize got = 1; stream && got > 0;) {
-    const std::size_t size = text.size();
-    if (size > kMaxBytes) throw InputError(fmt::format("{}: expected at most {} bytes, got more", file, kMaxBytes));
-    text.resize(size + kChunk);
-    got = stream.read(text.data() + size, static_cast<std::streamsize>(kChunk)).gcount();
-    text.resize(size + static_cast<std::size_t>(got));
-  }
-  if (!stream.eof()) throw InputError(file + ": expected a scene file that can be read, got one that cannot");
-  return text;
+  return wholeFile(path, file);
 }
 
 }  // namespace

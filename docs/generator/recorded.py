@@ -111,12 +111,22 @@ def headline(at_rest, motion, stacks, peers_rest, peers_stacks, peers_falls):
     ])
 
 
+def none(count):
+    return str(count) if int(count) else "none"
+
+
+def rows_of_default(recorded):
+    return [row for row in recorded if row["scenes_of"] in ("implicit", "auto")]
+
+
 def random_scenes(recorded):
     """Faults of random scenes by kind, method and masses, for docs/random-scenes.md: of faults that some scene has, and a line of the others."""
     total = next(row for row in recorded if row["scenes_of"] == "all")
-    faults = [name for name in total if name not in ("scenes_of", "scenes", "commit", "cpu", "date")]
+    faults = [name for name in total if name not in ("scenes_of", "scenes", "cut", "step-limit", "commit", "cpu", "date")]
+    played = (f" {total['cut']} of all, {sum(int(row['cut']) for row in rows_of_default(recorded))} of these, were cut off at their limit of a second of CPU time: their faults are those of the part "
+              f"played. {none(total['step-limit']).capitalize()} ended as an explicit method would need too many steps (no fault).") if "cut" in total else ""
     shown = [name for name in faults if int(total[name]) > 0]
-    ours = [row for row in recorded if row["scenes_of"] in ("implicit", "auto")]
+    ours = rows_of_default(recorded)
     def counts(names, rows):
         return ", ".join(f"`{name}` {sum(int(row[name]) for row in rows)}" for name in names)
     def name_of(text):
@@ -124,7 +134,7 @@ def random_scenes(recorded):
     lines = [(name_of(row["scenes_of"]).replace("implicit, auto,", "`implicit`, `auto`,"), row["scenes"], *(row[name] for name in shown)) for row in recorded]
     return "\n\n".join([
         f"Of {total['scenes']} scenes: {counts(shown, [total])}; all other faults 0. Of the {sum(int(row['scenes']) for row in ours)} by `implicit` and `auto`: "
-        f"{counts(shown, ours)}.",
+        f"{counts(shown, ours)}.{played}",
         table(["", "scenes", *(f"`{name}`" for name in shown)], lines),
         condition(recorded),
     ])
@@ -134,8 +144,6 @@ def random_line(recorded, short):
     """The same as an item of a list, for docs/limits.md, and without what is only slow or gains energy for README."""
     rows = {row["scenes_of"]: {name: int(row[name]) for name in ("scenes", "diverged", "hung", "slow", "deep", "energy")} for row in recorded}
     total, ours = rows["all"], {name: rows["implicit"][name] + rows["auto"][name] for name in rows["all"]}
-    def none(count):
-        return str(count) if count else "none"
     if short:
         return (f"- Of {total['scenes']} random scenes by all methods {none(total['diverged'])} diverge{'s' if total['diverged'] == 1 else ''}, {total['hung']} are stopped as "
                 f"their frames take too long, {total['deep']} overlap by more than 5 % of the least side; of the {ours['scenes']} by `implicit` and `auto` "

@@ -8,15 +8,19 @@
 #include "core/version.h"
 #include "scenarios/registry.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cstdint>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <initializer_list>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <ostream>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
 
 namespace springtower {
@@ -49,6 +53,15 @@ const Json& valueOf(const Json& json, const char* key, const std::string& where)
   if (!json.is_object()) throw InputError(fmt::format("{}: expected an object, got {}", where, shown(json)));
   if (!json.contains(key)) throw InputError(fmt::format("{}: expected the key {}, got none", where, key));
   return json.at(key);
+}
+
+// What is misspelt would be left out: a frame without its hand, say.
+void refuseOtherKeys(const Json& json, std::initializer_list<std::string_view> known, const std::string& where) {
+  if (!json.is_object()) throw InputError(fmt::format("{}: expected an object, got {}", where, shown(json)));
+  for (const auto& [key, value] : json.items()) {
+    if (std::find(known.begin(), known.end(), key) == known.end())
+      throw InputError(fmt::format("{}: expected {}, got the unknown key {}", where, fmt::join(known, ", "), inQuotes(key)));
+  }
 }
 
 double numberOf(const Json& value, const Range& range, const std::string& where) {
@@ -96,6 +109,7 @@ Range rangeOfTolerance() {
 }
 
 Tuning tuningFrom(const Json& json, const std::string& where) {
+  refuseOtherKeys(json, {"method", "sleep", "tolerance_m", "friction"}, where);
   Tuning tuning;
   tuning.method = methodFromName(text(json, "method", where), where);
   tuning.sleep = sleepFromName(text(json, "sleep", where), where);
@@ -118,6 +132,7 @@ Json json(const Hand& hand) {
 }
 
 Hand handFrom(const Json& json, const Scene& scene, const std::string& where) {
+  refuseOtherKeys(json, {"block", "place", "turn", "limit_n", "velocity", "line", "rate_rad_s"}, where);
   Hand hand;
   const auto last = static_cast<std::int64_t>(scene.blocks.size()) - 1;
   const auto block = static_cast<std::size_t>(wholeNumber(json, "block", last, where));
@@ -178,6 +193,10 @@ Json json(const SceneChoice& choice) {
 SceneChoice choiceFrom(const Json& json, const std::string& where) {
   if (!json.is_object() || !json.contains("springtower_recording") || json.at("springtower_recording") != kFormat)
     throw InputError(where + ": expected a recording of the viewer, got none");
+  refuseOtherKeys(json,
+                  {"springtower_recording", "version", "scene", "scene_bytes", "players", "heights_sigma_m", "mass_sigma_kg",
+                   "seed", "start_gap_m"},
+                  where);
   SceneChoice choice;
   choice.name = text(json, "scene", where);
   if (json.contains("scene_bytes")) {
@@ -215,8 +234,8 @@ Scene sceneOf(const SceneChoice& choice, const std::string& where) {
 }
 
 LoggedFrame frameFrom(const Json& line, const Scene& scene, const Tuning& before, const std::string& where) {
+  refuseOtherKeys(line, {"hash", "tuning", "hand"}, where);
   LoggedFrame frame;
-  if (!line.is_object()) throw InputError(fmt::format("{}: expected an object, got {}", where, shown(line)));
   if (line.contains("hash")) frame.hash = hashFrom(text(line, "hash", where), where);
   frame.input.tuning = line.contains("tuning") ? tuningFrom(line.at("tuning"), where) : before;
   if (line.contains("hand")) frame.input.hand = handFrom(line.at("hand"), scene, where);

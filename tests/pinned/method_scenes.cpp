@@ -26,6 +26,17 @@ PinnedScene withSettings(const char* name, Settings (*change)(Settings)) {
           }};
 }
 
+// A force of thirty weights on a corner, which strains a block by more than explicit steps let it be
+// (docs/adr/0025-strain-limit.md).
+Scene pulledByACorner(Method method) {
+  Scene scene = bitCodeScene("(111)-(010)");
+  scene.settings.method = method;
+  scene.settings.tolerance_m = 5e-4;
+  const double weight_n = kStandardGravity_m_s2 * scene.blocks[3].mass;
+  scene.forces.push_back(constantForce(3, 5, 30.0 * weight_n * Vec3(0.48, 0.6, 0.64), 0.0, 0.2));
+  return scene;
+}
+
 // "semi-implicit-euler" as "MethodSemiImplicitEuler".
 std::string pinNameOf(Method method) {
   std::string name = "Method";
@@ -51,6 +62,8 @@ std::vector<PinnedScene> pinnedMethods() {
                       }});
   }
   const auto add = [&](const char* name, Settings (*change)(Settings)) { scenes.push_back(withSettings(name, change)); };
+  scenes.push_back({"StrainLimitOfEuler", 30, [] { return pulledByACorner(Method::semiImplicitEuler); }});
+  scenes.push_back({"StrainLimitOfRungeKutta", 30, [] { return pulledByACorner(Method::rungeKutta4); }});
   add("LumpedInertia", [](Settings s) { return s.inertia = Inertia::lumped, s; });
   add("FixedSubsteps", [](Settings s) { return s.substeps = 200, s.method = Method::semiImplicitEuler, s; });
   add("WithoutContinuousTests", [](Settings s) { return s.continuousTests = false, s; });

@@ -80,15 +80,19 @@ using Choice = std::function<bool(const Record&)>;
 std::string rowOf(std::string_view name, std::span<const Record> records, const Choice& chosen) {
   std::array<int, kFaults.size()> counts{};
   int scenes = 0;
+  int cut = 0;
+  int stepLimit = 0;
   for (const Record& record : records) {
     if (!chosen(record)) continue;
     ++scenes;
+    cut += record.cut ? 1 : 0;
+    stepLimit += record.stepLimit.empty() ? 0 : 1;
     for (const Fault fault : faultsOf(record)) ++counts[static_cast<std::size_t>(fault)];
   }
   if (scenes == 0) return {};
   std::string row = fmt::format("{:28}{:>8}", name, scenes);
   for (const int count : counts) row += fmt::format("{:>11}", count);
-  return row + "\n";
+  return row + fmt::format("{:>11}{:>11}\n", cut, stepLimit);
 }
 
 }  // namespace
@@ -113,7 +117,7 @@ int mostAllowed(double rate, int scenes, double falseAlarm) {
 std::string tableOf(std::span<const Record> records) {
   std::string table = fmt::format("{:28}{:>8}", "", "scenes");
   for (const Fault fault : kFaults) table += fmt::format("{:>11}", nameOf(fault));
-  table += "\n";
+  table += fmt::format("{:>11}{:>11}\n", "cut", "step-limit");
   for (const RandomKind kind : kRandomKinds) {
     table += rowOf(nameOf(kind), records, [&](const Record& record) { return record.kind == nameOf(kind); });
   }

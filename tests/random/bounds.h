@@ -27,7 +27,8 @@ inline constexpr double kFalseAlarm = 1e-6;
 int mostAllowed(double rate, int scenes, double falseAlarm = kFalseAlarm);
 
 /// The records by kind, by method, by ratio of masses, and implicit methods by ratio: how many there are, and how many have each
-/// fault. Lines for people.
+/// fault; then, which are no faults, how many were cut off at their limit of processor time, of which the faults are those of the
+/// part played, and how many an explicit method refused as it would need too many steps. Lines for people.
 std::string tableOf(std::span<const Record> records);
 
 /// Every fault with its count, what is allowed, and the seeds, worst first (at most 12).

@@ -109,6 +109,24 @@ INSTANTIATE_TEST_SUITE_P(
         BadRecording{"Deep", "limit_n", "[[[[1]]]]", "got an array"}),
     [](const auto& given) { return given.param.name; });
 
+// What is misspelt was left out: a frame without its hand, a hash that nothing was compared with.
+TEST(Recording, KeysThatItDoesNotKnowAreRefused) {
+  const ScratchFolder scratch;
+  const std::string good =
+      "{\"springtower_recording\":1,\"scene\":\"tower:1\",\"players\":0}\n{\"hash\":\"1\",\"tuning\":{\"method\":\"implicit\","
+      "\"sleep\":\"on\",\"tolerance_m\":5e-05,\"friction\":0.4},\"hand\":{\"block\":2,\"place\":[0,0,0.01],\"turn\":[1,0,0,0],"
+      "\"limit_n\":5,\"line\":[1,0,0]}}\n";
+  std::ofstream(scratch.file("good")) << good;
+  EXPECT_EQ(readRecording(scratch.file("good")).frames.size(), 1U);
+  for (const std::string key : {"players", "hash", "tuning", "friction", "hand", "limit_n", "line"}) {
+    std::string bad = good;
+    bad.replace(bad.find("\"" + key + "\""), key.size() + 2, "\"" + key + "s\"");
+    std::ofstream(scratch.file("bad")) << bad;
+    EXPECT_THAT([&] { readRecording(scratch.file("bad")); },
+                testing::ThrowsMessage<InputError>(says("expected ..., got the unknown key '" + key + "s'")));
+  }
+}
+
 TEST(Recording, FoldersLongLinesAndBlocksThatAreFixedAreRefused) {
   const ScratchFolder scratch;
   EXPECT_THAT([&] { readRecording(scratch.path().string()); },

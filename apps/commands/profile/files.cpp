@@ -5,10 +5,10 @@
 #include "apps/common/output_file.h"
 #include "core/error.h"
 #include "core/limits.h"
+#include "core/whole_file.h"
 
 #include <algorithm>
 #include <fmt/format.h>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <ostream>
@@ -168,12 +168,9 @@ void writeProfileJson(std::ostream& stream, const Profile& profile) {
 }
 
 Profile readProfileJson(const std::string& path) {
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream)
-    throw InputError(
-        fmt::format("--from: expected the profile.json of an earlier profile, got {}, which cannot be read", inQuotes(path)));
+  const std::string text = wholeFile(path, "--from " + inQuotes(path), kMaxResultsBytes);
   try {
-    const Json json = Json::parse(stream);
+    const Json json = Json::parse(text);
     Profile profile;
     profile.provenance = provenanceFromJson(json);
     const Json& limits = json.at("limits");

@@ -2,12 +2,12 @@
 
 #include "apps/commands/validate/page.h"
 #include "core/hash.h"
+#include "core/limits.h"
+#include "core/whole_file.h"
 
 #include <algorithm>
 #include <filesystem>
 #include <fmt/format.h>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <ostream>
 
@@ -28,8 +28,7 @@ std::string hashOfInputs(const ValidationPlan& plan) {
   std::sort(files.begin(), files.end());
   Hash hash;
   for (const std::filesystem::path& file : files) {
-    std::ifstream stream(file, std::ios::binary);
-    const std::string text{std::istreambuf_iterator<char>(stream), {}};
+    const std::string text = wholeFile(file.string(), onOneLine(file.string()));
     hash.bytes(text.data(), text.size());
     hash.word(text.size());
   }

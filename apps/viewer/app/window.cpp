@@ -306,7 +306,8 @@ void startGlfw() {
   if (glfwInit() == GLFW_TRUE) return;
   const char* why = nullptr;
   glfwGetError(&why);
-  throw InputError(fmt::format("no window: {}; without a display use --headless", why == nullptr ? "unknown" : why));
+  throw InputError(fmt::format("display: expected one that opens a window, got none: {}; without a display use --headless",
+                               why == nullptr ? "unknown" : why));
 }
 
 struct ImGuiUse {
@@ -353,7 +354,8 @@ GLFWwindow* openedWindow(const Viewport& size) {
   }
   const char* why = nullptr;
   glfwGetError(&why);
-  throw InputError(fmt::format("no window: {}; without OpenGL 3.3 use springtower run", why == nullptr ? "unknown" : why));
+  throw InputError(fmt::format("display: expected OpenGL 3.3, got none: {}; without it use springtower run",
+                               why == nullptr ? "unknown" : why));
 }
 
 }  // namespace

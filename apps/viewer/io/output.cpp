@@ -42,7 +42,8 @@ const std::string& checkedFilm(const std::string& path) {
   if (!path.ends_with(".mp4") && !path.ends_with(".gif")) {
     throw InputError(fmt::format("--video: expected a name that ends with .mp4 or .gif, got {}", inQuotes(path)));
   }
-  if (findProgram("ffmpeg").empty()) throw InputError("--video: ffmpeg is not installed; apt-get install ffmpeg");
+  if (findProgram("ffmpeg").empty())
+    throw InputError("--video: expected ffmpeg to be installed, got none; apt-get install ffmpeg");
   return path;
 }
 

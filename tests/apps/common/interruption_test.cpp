@@ -212,6 +212,32 @@ TEST_P(ListOf, TowersGoesOnAfterBadLinesWhenToldTo) {
   }
 }
 
+// A long line is one bad line, of which no more is kept than shows that; without a line end nothing comes behind it.
+TEST_P(ListOf, TowersGoesOnAfterALongLineWhenToldTo) {
+  const ScratchFolder scratch;
+  std::ofstream(scratch.file("list.jsonl")) << "{\"id\":\"a\",\"config\":\"(111)\"}\n"
+                                            << std::string(std::size_t{3} << 19U, ' ')
+                                            << "\n{\"id\":\"b\",\"config\":\"(010)\"}\n"
+                                            << std::string((std::size_t{1} << 20U) + 1, ' ') << '\n';
+  for (const char* threads : {"1", "3"}) {
+    const ProgramResult result =
+        runProgram("springtower", {GetParam(), scratch.file("list.jsonl"), "--keep-going", "--threads", threads});
+    EXPECT_EQ(result.exitCode, 2);
+    const std::vector<std::string> lines = linesOf(result.output);
+    ASSERT_THAT(lines, SizeIs(2)) << result.output;
+    EXPECT_EQ(Json::parse(lines[1]).at("id"), "b");
+    EXPECT_THAT(result.error, HasSubstr("list.jsonl: line 2: expected at most 1 MB in a line, got more"));
+    EXPECT_THAT(result.error, HasSubstr("list.jsonl: line 4: expected at most 1 MB in a line, got more"));
+    EXPECT_THAT(result.error, HasSubstr("2 of 4 lines were bad"));
+  }
+}
+
+TEST(Interruption, AListWithoutLineEndsIsNotReadForEver) {
+  const ProgramResult endless = runProgram("springtower", {"verdict", "/dev/zero", "--keep-going"});
+  EXPECT_EQ(endless.exitCode, 2);
+  EXPECT_THAT(endless.error, HasSubstr("/dev/zero: line 1: expected its end within 64 MB, got none"));
+}
+
 // The bad line is found by its job, while another thread waits for a line that does not come.
 TEST(Interruption, ABadLineIsReportedWhileTheNextIsWaitedFor) {
   const ScratchFolder scratch;

@@ -68,6 +68,8 @@ TEST(Resume, ProfileKeepsTheScenesThatAreDone) {
   EXPECT_THAT(stale.error, HasSubstr("--no-resume"));
   forge(kept, std::string(kGitCommit) + "-dirty");
   EXPECT_THAT(run(profile).error, HasSubstr("the build that measured them has uncommitted changes"));
+  forge(kept, "unknown");
+  EXPECT_THAT(run(profile).error, HasSubstr("the build that measured them was built outside a git clone"));
   std::ofstream(kept) << then.dump();
   EXPECT_EQ(run(profile, {"--samples", "1"}).exitCode, 2) << "other limits";
 }

@@ -128,7 +128,7 @@ TEST(ViewerHeadless, SaysThatFfmpegIsMissing) {
   const ProgramResult result =
       runProgram("springtower-viewer", {"--headless", "--scene", "(010)", "--frames", "1", "--video", scratch.file("film.gif")});
   EXPECT_EQ(result.exitCode, 2);
-  EXPECT_THAT(result.error, HasSubstr("ffmpeg is not installed"));
+  EXPECT_THAT(result.error, HasSubstr("expected ffmpeg to be installed"));
 }
 
 // A tolerance that no scene may have, and one that this scene cannot be stepped with: two steps a frame are fine with the
