@@ -40,7 +40,7 @@ SCENES = {
               "askew:5 --seconds 2", "falling-rows:3 --seconds 1", "falling-rows:5 --seconds 1", "dropped-flat --seconds 1",
               "dropped-on-corner --seconds 1", "sliding --seconds 1", "spinning --seconds 1", "thrown --seconds 1",
               "thin-wall --seconds 1", "sleeper --seconds 3", "scenes/two_thrown_blocks.toml --seconds 1"],
-    "hand": ["scenes/moves.toml --seconds 4", "scenes/prototypes.toml --seconds 1"],
+    "hand": ["scenes/moves.toml --seconds 33", "scenes/prototypes.toml --seconds 1"],
     "methods": ["tower:3 --method semi-implicit-euler --seconds 0.5", "falling-rows:2 --method semi-implicit-euler --seconds 0.5",
                 "tower:3 --method report --seconds 1", "scenes/report_t3.toml --seconds 1",
                 "scenes/dropped_block.toml --method midpoint --seconds 0.5", "tower:2 --method runge-kutta-4 --seconds 0.3",

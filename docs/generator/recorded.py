@@ -558,6 +558,9 @@ def _effects_or_none(row, scatter):
     return _effects(row, scatter) or "end states alone"
 
 
+NOT_REACHED = "nothing: half or twice of it changes no bit of these scenes"
+
+
 def what_rests_on_moves(recorded):
     """{constant: what half and twice of it change, in words}, of those for which nothing else is on record."""
     scatter, _, wide = _moved(recorded)
@@ -565,7 +568,7 @@ def what_rests_on_moves(recorded):
     for name, rows in wide.items():
         half, twice = (_effects_or_none(rows[by], scatter) for by in ("half", "twice"))
         words = f"half or twice of it: {half}" if half == twice else f"half of it: {half}; twice: {twice}"
-        found[name] = f"measured: {words}"
+        found[name] = NOT_REACHED if half == twice == "no effect" else f"measured: {words}"
     return found
 
 

@@ -4,6 +4,7 @@ import re
 
 from . import help_text
 from .markdown import cell, table
+from .recorded import NOT_REACHED
 
 
 def command_options(commands):
@@ -74,7 +75,8 @@ def tuning(rows, definition, moves):
         return row["name"] in moves and row["group"] not in NOT_EXERCISED
     def evidence(row):
         return moves[row["name"]] if row in bare and is_measured(row) else row["evidence"]
-    measured = sum(is_measured(row) for row in bare)
+    measured = sum(is_measured(row) and moves[row["name"]] != NOT_REACHED for row in bare)
+    not_reached = sum(is_measured(row) and moves[row["name"]] == NOT_REACHED for row in bare)
     page = [
         "# Constants of the engine", "",
         "Made by `docs/generate.py` from `springtower settings --all --json` and the comments of [`core/tuning.def`](../core/tuning.def).", "",
@@ -82,8 +84,9 @@ def tuning(rows, definition, moves):
         "h is the height of the scene's lowest block, g is gravity. "
         f"Of {len(rows)} constants, {len(rows) - len(bare)} rest on a derivation, a measurement or a reason. For {measured} "
         "stands what changes where they are half or twice as large: which figures of the 46 scenes of [sensitivity.md](sensitivity.md), beyond "
-        "the scatter that is explained there, or end states alone; 'no effect' where no bit of them differs, or no scene comes to the rule. Constants of statics are judged by eleven answers of `springtower statics`. "
-        f"For {len(bare) - measured}, of measuring, threads and sizes of arrays, which these scenes do not show, nothing is on record ('none'). "
+        "the scatter that is explained there, or end states alone. Constants of statics are judged by eleven answers of `springtower statics`. "
+        f"For {not_reached} half and twice change no bit of them: they decide in scenes that are not among these, or never. "
+        f"For {len(bare) - measured - not_reached}, of measuring, threads and sizes of arrays, which these scenes do not show, nothing is on record ('none'). "
         "To try others: the preset `tune` ([CONTRIBUTING.md](../CONTRIBUTING.md)).",
     ]
     groups = []
