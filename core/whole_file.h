@@ -5,9 +5,9 @@
 
 namespace springtower {
 
-/// The largest file that is read as a whole: 256 MB, a scene of a million blocks.
+/// The largest file that is read as a whole: 256 MB.
 inline constexpr std::size_t kMaxFileBytes = std::size_t{256} << 20U;
-/// The same for results that a program left: 16 MB, sixteen times the largest. As JSON they take forty times as much memory.
+/// The same for results that a program left: 16 MB, as JSON takes many times its text in memory.
 inline constexpr std::size_t kMaxResultsBytes = std::size_t{16} << 20U;
 
 /// The whole content of a file, of any bytes. `where` names the file in messages, on one line. Throws InputError "where: expected

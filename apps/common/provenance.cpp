@@ -85,13 +85,13 @@ void checkCommitted(const Provenance& then, const Provenance& now, const std::st
     if (build.commit == "unknown") return "was built outside a git clone";
     return build.commit.ends_with("-dirty") ? "has uncommitted changes" : nullptr;
   };
-  const char* reason = why(now) != nullptr ? why(now) : why(then);
+  const char* ours = why(now);
+  const char* reason = ours != nullptr ? ours : why(then);
   if (reason == nullptr) return;
   throw InputError(
       fmt::format("{}: expected results of builds of a commit, or --no-resume, got others: {} {}, so that its commit does not "
-                  "say whether they "
-                  "are of the same sources",
-                  where, why(now) != nullptr ? "this build" : "the build that measured them", reason));
+                  "say whether they are of the same sources",
+                  where, ours != nullptr ? "this build" : "the build that measured them", reason));
 }
 
 void readKept(const std::string& path, const Provenance& now, const nlohmann::ordered_json& settings,

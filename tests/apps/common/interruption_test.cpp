@@ -194,21 +194,29 @@ TEST_P(ListOf, TowersStopsAtABadLineWhenThoseBeforeItAreDone) {
   }
 }
 
+// A list of four lines of which two are bad, without an end at the first of these.
+ProgramResult goneOn(const std::string& command, const std::string& list, const char* threads) {
+  ProgramResult result = runProgram("springtower", {command, list, "--keep-going", "--threads", threads});
+  EXPECT_EQ(result.exitCode, 2);
+  EXPECT_THAT(result.error, HasSubstr("2 of 4 lines were bad"));
+  return result;
+}
+
+std::vector<std::string> idsOf(const ProgramResult& result) {
+  std::vector<std::string> ids;
+  for (const std::string& line : linesOf(result.output)) ids.push_back(Json::parse(line).at("id").get<std::string>());
+  return ids;
+}
+
 TEST_P(ListOf, TowersGoesOnAfterBadLinesWhenToldTo) {
   const ScratchFolder scratch;
   std::ofstream(scratch.file("list.jsonl")) << "{\"id\":\"a\",\"config\":\"(111)\"}\nno json\n\n"
                                                "{\"id\":\"a\",\"config\":\"(010)\"}\n{\"id\":\"d\",\"config\":\"(010)\"}";
   for (const char* threads : {"1", "3"}) {
-    const ProgramResult result =
-        runProgram("springtower", {GetParam(), scratch.file("list.jsonl"), "--keep-going", "--threads", threads});
-    EXPECT_EQ(result.exitCode, 2);
-    const std::vector<std::string> lines = linesOf(result.output);
-    ASSERT_THAT(lines, SizeIs(2)) << result.output;
-    EXPECT_EQ(Json::parse(lines[0]).at("id"), "a");
-    EXPECT_EQ(Json::parse(lines[1]).at("id"), "d");
+    const ProgramResult result = goneOn(GetParam(), scratch.file("list.jsonl"), threads);
+    EXPECT_EQ(idsOf(result), std::vector<std::string>({"a", "d"})) << result.output;
     EXPECT_THAT(result.error, says("list.jsonl: line 2: expected ..., got 'no json'"));
     EXPECT_THAT(result.error, says("list.jsonl: line 4: id: expected ..., got 'a' for the second time"));
-    EXPECT_THAT(result.error, HasSubstr("2 of 4 lines were bad"));
   }
 }
 
@@ -220,15 +228,10 @@ TEST_P(ListOf, TowersGoesOnAfterALongLineWhenToldTo) {
                                             << "\n{\"id\":\"b\",\"config\":\"(010)\"}\n"
                                             << std::string((std::size_t{1} << 20U) + 1, ' ') << '\n';
   for (const char* threads : {"1", "3"}) {
-    const ProgramResult result =
-        runProgram("springtower", {GetParam(), scratch.file("list.jsonl"), "--keep-going", "--threads", threads});
-    EXPECT_EQ(result.exitCode, 2);
-    const std::vector<std::string> lines = linesOf(result.output);
-    ASSERT_THAT(lines, SizeIs(2)) << result.output;
-    EXPECT_EQ(Json::parse(lines[1]).at("id"), "b");
+    const ProgramResult result = goneOn(GetParam(), scratch.file("list.jsonl"), threads);
+    EXPECT_EQ(idsOf(result), std::vector<std::string>({"a", "b"})) << result.output;
     EXPECT_THAT(result.error, HasSubstr("list.jsonl: line 2: expected at most 1 MB in a line, got more"));
     EXPECT_THAT(result.error, HasSubstr("list.jsonl: line 4: expected at most 1 MB in a line, got more"));
-    EXPECT_THAT(result.error, HasSubstr("2 of 4 lines were bad"));
   }
 }
 

@@ -1,9 +1,7 @@
 #include "solver/runner/run_state.h"
 
 #include "core/byte_stream.h"
-#include "scenarios/loose.h"
-#include "scenarios/towers.h"
-#include "solver/frame/prepare.h"
+#include "core/scene/scene.h"
 #include "solver/world/simulation.h"
 #include "tests/support/block_scenes.h"
 #include "tests/support/prepare_and_step.h"
