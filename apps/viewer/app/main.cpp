@@ -284,8 +284,9 @@ int runViewer(const Command& command, std::chrono::steady_clock::time_point star
       poses->commit();
     });
   }
-  // Where a signal ended the search before the first frame, an older recording stays.
-  if (recorder && !(viewer.watch.interrupted && viewer.session.log.empty()))
+  // Where the search before the first frame was ended, an older recording stays.
+  const bool ended = viewer.watch.interrupted || (!command.headless && viewer.watch.pictures == 0);
+  if (recorder && !(ended && viewer.session.log.empty()))
     attempts.attempt([&] { recorder->finish(viewer.choice, viewer.session); });
   attempts.finish();
   return outcomeOf(viewer, command.headless);

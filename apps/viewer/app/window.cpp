@@ -10,12 +10,14 @@
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
+#include <atomic>
 #include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_opengl3.h>
 #include <cmath>
 #include <epoxy/gl.h>
 #include <filesystem>
 #include <fmt/format.h>
+#include <functional>
 #include <future>
 #include <imgui.h>
 
@@ -25,6 +27,9 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr double kKeyOrbit = 0.05;  // rad a key press
+// While an equilibrium is searched for: how often the window looks at what the user does, and how long it says nothing.
+constexpr std::chrono::milliseconds kAttendEvery(50);
+constexpr double kSilent_s = 0.3;
 
 double secondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -45,10 +50,23 @@ struct Desk {
   bool inspectionWanted = false;
   bool filmWanted = false;
   bool styleWanted = true;  // the screen's scale has changed
+  // While frames are stepped or an equilibrium is searched for, which may take seconds, what the user does waits.
+  bool stepping = false;
+  Clock::time_point steppingSince = {};
+  Clock::time_point attended = {};
+  std::vector<std::function<void()>> waiting = {};
+  std::atomic<bool> closed = false;  // read by the thread that searches before the first frame
 };
 
 Desk& deskOf(GLFWwindow* window) {
   return *static_cast<Desk*>(glfwGetWindowUserPointer(window));
+}
+
+// At once, or when the frames that are being stepped have ended: it reads and changes the session.
+template <class Event>
+void handle(Desk& desk, const Event& event) {
+  if (!desk.stepping) return event();
+  desk.waiting.emplace_back(event);
 }
 
 std::string numbered(const Desk& desk, const char* name, int number, const char* ending) {
@@ -68,7 +86,7 @@ Eigen::Vector2d inPixels(const Desk& desk, double x, double y) {
 void onCursor(GLFWwindow* window, double x, double y) {
   Desk& desk = deskOf(window);
   const Eigen::Vector2d at = inPixels(desk, x, y);
-  pointerMoved(desk.viewer.controls, desk.viewer.session, at.x(), at.y());
+  handle(desk, [&desk, at] { pointerMoved(desk.viewer.controls, desk.viewer.session, at.x(), at.y()); });
 }
 
 // A move needs more room than the screen has beside a block: while it lasts the block itself shows where the mouse is, and the
@@ -95,12 +113,15 @@ void onButton(GLFWwindow* window, int button, int action, int) {
   const Button which = button == GLFW_MOUSE_BUTTON_LEFT    ? Button::left
                        : button == GLFW_MOUSE_BUTTON_RIGHT ? Button::right
                                                            : Button::middle;
-  buttonChanged(desk.viewer.controls, desk.viewer.session, which, pressed);
-  boundPointer(desk);
+  handle(desk, [&desk, which, pressed] {
+    buttonChanged(desk.viewer.controls, desk.viewer.session, which, pressed);
+    boundPointer(desk);
+  });
 }
 
 void onScroll(GLFWwindow* window, double, double steps) {
-  if (!ImGui::GetIO().WantCaptureMouse) wheelTurned(deskOf(window).viewer.controls, steps);
+  Desk& desk = deskOf(window);
+  if (!ImGui::GetIO().WantCaptureMouse) handle(desk, [&desk, steps] { wheelTurned(desk.viewer.controls, steps); });
 }
 
 // Keys that may be held down.
@@ -174,9 +195,6 @@ void onPressedKey(Desk& desk, int key) {
     case GLFW_KEY_V:
       desk.filmWanted = true;
       return;
-    case GLFW_KEY_ESCAPE:
-      glfwSetWindowShouldClose(desk.window, GLFW_TRUE);
-      return;
     default:
       return;
   }
@@ -184,11 +202,15 @@ void onPressedKey(Desk& desk, int key) {
 
 void onKey(GLFWwindow* window, int key, int, int action, int) {
   Desk& desk = deskOf(window);
-  const bool isShift = key == GLFW_KEY_LEFT_SHIFT || key == GLFW_KEY_RIGHT_SHIFT;
-  if (isShift && action != GLFW_REPEAT) freeKeyChanged(desk.viewer.controls, desk.viewer.session, action == GLFW_PRESS);
-  if (action == GLFW_RELEASE || ImGui::GetIO().WantTextInput) return;
-  if (action == GLFW_PRESS) onPressedKey(desk, key);
-  onRepeatedKey(desk.viewer, key);
+  const bool typed = ImGui::GetIO().WantTextInput;
+  if (key == GLFW_KEY_ESCAPE && action == GLFW_PRESS && !typed) return glfwSetWindowShouldClose(window, GLFW_TRUE);
+  handle(desk, [&desk, key, action, typed] {
+    const bool isShift = key == GLFW_KEY_LEFT_SHIFT || key == GLFW_KEY_RIGHT_SHIFT;
+    if (isShift && action != GLFW_REPEAT) freeKeyChanged(desk.viewer.controls, desk.viewer.session, action == GLFW_PRESS);
+    if (action == GLFW_RELEASE || typed) return;
+    if (action == GLFW_PRESS) onPressedKey(desk, key);
+    onRepeatedKey(desk.viewer, key);
+  });
 }
 
 void writeShot(Desk& desk, const Image& image) {
@@ -300,6 +322,67 @@ void drawWindow(Desk& desk) {
   glfwSwapBuffers(desk.window);
 }
 
+// In place of the picture, whose blocks are being moved.
+void drawWaiting(Desk& desk, double passed_s) {
+  int width = 1;
+  int height = 1;
+  glfwGetFramebufferSize(desk.window, &width, &height);
+  glViewport(0, 0, width, height);
+  glClearColor(0.16F, 0.16F, 0.17F, 1.0F);
+  glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  updateStyle(desk);
+  ImGui_ImplOpenGL3_NewFrame();
+  ImGui_ImplGlfw_NewFrame();
+  ImGui::NewFrame();
+  const std::string words =
+      fmt::format("looking for the equilibrium of {} blocks: {:.0f} s\nEscape closes", desk.viewer.start.blockCount(), passed_s);
+  const ImVec2 window = ImGui::GetIO().DisplaySize;
+  const ImVec2 size = ImGui::CalcTextSize(words.c_str());
+  ImGui::GetBackgroundDrawList()->AddText({0.5F * (window.x - size.x), 0.5F * (window.y - size.y)},
+                                          ImGui::GetColorU32(ImGuiCol_Text), words.c_str());
+  ImGui::Render();
+  ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+  glfwSwapBuffers(desk.window);
+}
+
+void beginStepping(Desk& desk) {
+  desk.stepping = true;
+  desk.steppingSince = desk.attended = Clock::now();
+}
+
+void endStepping(Desk& desk) {
+  desk.stepping = false;
+  for (const auto& event : std::exchange(desk.waiting, {})) event();
+}
+
+// While an equilibrium is searched for: the window can be closed, and says what it is that takes so long.
+void attend(Desk& desk) {
+  desk.attended = Clock::now();
+  glfwPollEvents();
+  if (glfwWindowShouldClose(desk.window) == GLFW_TRUE) desk.closed = true;
+  const double passed_s = secondsSince(desk.steppingSince);
+  if (passed_s > kSilent_s) drawWaiting(desk, passed_s);
+}
+
+void waitForStart(Desk& desk, std::future<void>& prepared) {
+  beginStepping(desk);
+  while (prepared.wait_for(kAttendEvery) != std::future_status::ready) attend(desk);
+  prepared.get();
+  endStepping(desk);
+  // Later searches are of frames: on the thread of the window, but for what a key or a panel begins, in the middle of which no
+  // event may be asked for.
+  desk.viewer.session.searchGoesOn = [&desk] {
+    if (desk.stepping && Clock::now() - desk.attended > kAttendEvery) attend(desk);
+    return !desk.closed;
+  };
+}
+
+void stepFrames(Desk& desk, double elapsed_s) {
+  beginStepping(desk);
+  advance(desk.viewer, elapsed_s);
+  endStepping(desk);
+}
+
 // GLFW and its window stay until the program ends, which gives all back: what a driver keeps in its own variables would count as
 // lost memory once the driver is unloaded, and hide what we lose.
 void startGlfw() {
@@ -324,6 +407,15 @@ struct ImGuiUse {
     ImGui_ImplGlfw_Shutdown();
     ImGui::DestroyContext();
   }
+};
+
+// What a search asks is gone with the window.
+struct SearchUse {
+  explicit SearchUse(Session& given) : session(given) {}
+  SearchUse(const SearchUse&) = delete;
+  SearchUse& operator=(const SearchUse&) = delete;
+  ~SearchUse() { session.searchGoesOn = {}; }
+  Session& session;
 };
 
 // A hidden window whose context is current; null where there is none with so many samples a pixel.
@@ -361,10 +453,12 @@ GLFWwindow* openedWindow(const Viewport& size) {
 }  // namespace
 
 void runWindow(Viewer& viewer, const ViewerFiles& files, const Viewport& size, Clock::time_point started) {
+  Desk desk{viewer, files, LabDraft(viewer.choice)};
+  viewer.session.searchGoesOn = [&desk] { return !desk.closed; };
+  const SearchUse search{viewer.session};
   // The window opens meanwhile.
   std::future<void> prepared = std::async(std::launch::async, [&] { prepareStart(viewer.session); });
   startGlfw();
-  Desk desk{viewer, files, LabDraft(viewer.choice)};
   desk.window = openedWindow(size);
   glfwSwapInterval(1);
   glfwSetWindowUserPointer(desk.window, &desk);
@@ -377,13 +471,13 @@ void runWindow(Viewer& viewer, const ViewerFiles& files, const Viewport& size, C
   desk.renderer = std::make_unique<Renderer>();
   if (files.film) tell(desk, [&] { toggleFilm(desk); });
 
-  prepared.get();
+  waitForStart(desk, prepared);
   Clock::time_point last = Clock::now();
   Clock::time_point shown = last;
   while (glfwWindowShouldClose(desk.window) == GLFW_FALSE && !interrupted()) {
     glfwPollEvents();
     boundPointer(desk);
-    advance(viewer, std::chrono::duration<double>(Clock::now() - std::exchange(last, Clock::now())).count());
+    stepFrames(desk, std::chrono::duration<double>(Clock::now() - std::exchange(last, Clock::now())).count());
     if (viewer.watch.firstFrame_s == 0.0 && viewer.session.frame > 0) viewer.watch.firstFrame_s = secondsSince(shown);
     if (files.recorder != nullptr) tell(desk, [&] { files.recorder->follow(viewer.choice, viewer.session); });
     drawWindow(desk);

@@ -78,9 +78,11 @@ void keep(Session& session) {
   thinOut(session);
 }
 
-// A signal ends the search for an equilibrium.
-PrepareOptions untilInterrupted() {
-  return {.goesOn = [](const PrepareProgress&) { return !interrupted(); }};
+// A signal ends the search for an equilibrium, and so does whoever closes the window.
+PrepareOptions untilEnded(const Session& session) {
+  return {.goesOn = [&session](const PrepareProgress&) {
+    return !interrupted() && (!session.searchGoesOn || session.searchGoesOn());
+  }};
 }
 
 // Forgets the oldest quarter of a log that is too long, up to the next keyframe.
@@ -116,7 +118,7 @@ void restore(Session& session, const Keyframe& key) {
 }
 
 // One frame of physics and game, without the past. Returns the input that acted: without a hand that the game does not allow.
-// Empty, and all as before, where a signal ended the search for the equilibrium that a scene, method or tolerance begins with.
+// Empty, and all as before, where the search was ended for the equilibrium that a scene, method or tolerance begins with.
 std::optional<FrameInput> advance(Session& session, FrameInput input) {
   const auto start = std::chrono::steady_clock::now();
   Simulation& simulation = session.simulation;
@@ -126,7 +128,7 @@ std::optional<FrameInput> advance(Session& session, FrameInput input) {
   session.before = simulation.state.position;
   if (!mayTake(session.game, input.hand.block)) input.hand = {};
   const BlockId held = input.hand.block;
-  if (!stepPlayed(input.hand, session.grip, session.contacts, simulation, untilInterrupted())) {
+  if (!stepPlayed(input.hand, session.grip, session.contacts, simulation, untilEnded(session))) {
     if (!simulationBefore) {  // in the first frame
       restore(session, session.keyframes.front());
       return {};
@@ -162,7 +164,7 @@ Session::Session(const Scene& given, int players)
 void prepareStart(Session& session) {
   if (session.frame > 0 || !session.failure.empty() || isPrepared(session.simulation)) return;
   try {
-    prepare(session.simulation, untilInterrupted());
+    prepare(session.simulation, untilEnded(session));
   } catch (const DivergenceError&) {
     return;  // the first frame finds it again, and says so
   }

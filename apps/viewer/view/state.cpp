@@ -66,7 +66,7 @@ void stepOnce(Viewer& viewer) {
     viewer.paused = true;
     return;
   }
-  if (session.frame == before && session.failure.empty()) return;  // a signal has ended the search that it began with
+  if (session.frame == before && session.failure.empty()) return;  // the search that it began with was ended
   ++viewer.watch.frames;
   if (viewer.mode == Mode::play) viewer.poses.add(session.simulation.state.position);
   keepBar(viewer, timesBefore);
@@ -157,6 +157,7 @@ void restart(Viewer& viewer, const SceneChoice& choice) {
     const Scene scene = sceneOf(choice);
     const bool another = choice.name != viewer.choice.name;
     Session next(withTuning(scene, viewer.tuning), choice.players);
+    next.searchGoesOn = viewer.session.searchGoesOn;
     viewer.session = std::move(next);
     viewer.choice = choice;
     viewer.start = viewer.session.simulation.state.position;

@@ -84,6 +84,10 @@ int Background::wait(double seconds) {
   return exitCode_;
 }
 
+void Background::send(int signal) const {
+  kill(process_, signal);
+}
+
 // Xvfb finds a free number itself and writes it to its standard output.
 Display::Display(int width, int height)
     : server_(

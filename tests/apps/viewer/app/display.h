@@ -22,6 +22,8 @@ class Background {
   [[nodiscard]] bool runs();
   /// Waits for its end; returns the exit code, minus the signal that ended it, or -1000 when it still runs after the time.
   int wait(double seconds);
+  /// Sends a signal. Precondition: it runs.
+  void send(int signal) const;
 
  private:
   int process_ = -1;

@@ -52,12 +52,17 @@ Camera Inspection::camera() const {
   return camera;
 }
 
-Window::Window(const std::vector<std::string>& arguments, const Viewport& size) : display_(size.width, size.height) {
+Window::Window(const std::vector<std::string>& arguments, const Viewport& size, bool waitForPicture)
+    : display_(size.width, size.height) {
   std::vector<std::string> all = {
       "--size", fmt::format("{}x{}", size.width, size.height), "--out", scratch_.file("out"), "--report", reportFile()};
   all.insert(all.end(), arguments.begin(), arguments.end());
   program_.emplace("springtower-viewer", all, std::vector<std::string>{display_.variable(), "LIBGL_ALWAYS_SOFTWARE=1"},
                    scratch_.file("log"));
+  if (!waitForPicture) {
+    act("search --sync --onlyvisible --name springtower-viewer\n");
+    return;
+  }
   const auto drawn = [&] { return log().starts_with(kFirstWords) && log().ends_with('\n'); };
   if (!waitUntil(60.0, [&] { return drawn() || !program_->runs(); }) || !drawn()) {
     throw std::runtime_error("no picture: " + log());
@@ -89,6 +94,11 @@ Inspection Window::inspect() {
 nlohmann::json Window::inspectReport() {
   pressInspect();
   return Json::parse(contentOf(inspected("report", ".json")));
+}
+
+int Window::end(int signal) {
+  program_->send(signal);
+  return program_->wait(60.0);
 }
 
 int Window::close() {

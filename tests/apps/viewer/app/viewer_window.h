@@ -28,8 +28,10 @@ struct Inspection {
 /// The program in its window, on a display in memory.
 class Window {
  public:
-  /// Starts it and waits for its first picture. Throws std::runtime_error with its output when there is none.
-  explicit Window(const std::vector<std::string>& arguments, const Viewport& size = {kWindowWidth, kWindowHeight});
+  /// Starts it and waits for its first picture, or for its window alone. Throws std::runtime_error with its output when there is
+  /// none.
+  explicit Window(const std::vector<std::string>& arguments, const Viewport& size = {kWindowWidth, kWindowHeight},
+                  bool waitForPicture = true);
   /// Runs a script of xdotool.
   void act(const std::string& script) { display_.act(script); }
   [[nodiscard]] bool runs() { return program_->runs(); }
@@ -43,6 +45,8 @@ class Window {
   nlohmann::json inspectReport();
   /// Ends the program as a user does; returns its exit code.
   int close();
+  /// Sends it a signal and waits for its end; returns its exit code.
+  int end(int signal);
   /// Its report; written when it has ended.
   [[nodiscard]] nlohmann::json report() const { return nlohmann::json::parse(contentOf(reportFile())); }
 

@@ -8,7 +8,9 @@
 #include "tests/apps/commands/loose_tower.h"
 
 #include <cmath>
+#include <csignal>
 #include <fmt/format.h>
+#include <fstream>
 #include <gtest/gtest.h>
 #include <numbers>
 #include <tuple>
@@ -239,6 +241,47 @@ TEST(ViewerWindow, LookingMovesNothing) {
     }
   }
   EXPECT_EQ(window.close(), 0) << window.log();
+}
+
+TEST(ViewerWindow, ASignalClosesItAndItsRecordingIsWhole) {
+  const ScratchFolder scratch;
+  const std::string game = scratch.file("game");
+  Window window({"--record", game});
+  ASSERT_TRUE(waitUntil(30.0, [&] { return window.inspectReport().at("frames").get<int>() > 10; }));
+  EXPECT_EQ(window.end(SIGTERM), 143) << window.log();
+  const nlohmann::json report = window.report();
+  EXPECT_EQ(report.at("interrupted"), true);
+  EXPECT_EQ(linesOf(contentOf(game)).size(), 1 + report.at("frames").get<std::size_t>());
+  EXPECT_EQ(runProgram("springtower-viewer", {"--headless", "--replay", game}).exitCode, 0);
+}
+
+// The search for the equilibrium of 5050 blocks takes seconds. Until it has ended there is no picture.
+TEST(ViewerWindow, ClosesWhileItSearchesForTheEquilibrium) {
+  const ScratchFolder scratch;
+  std::ofstream(scratch.file("game")) << "an older game\n";
+  Window window({"--scene", "pyramid:100", "--record", scratch.file("game")}, {kWindowWidth, kWindowHeight}, false);
+  EXPECT_EQ(window.close(), 0) << window.log();
+  const nlohmann::json report = window.report();
+  EXPECT_EQ(report.at("interrupted"), false);
+  EXPECT_EQ(report.at("frames"), 0);
+  EXPECT_EQ(report.at("pictures"), 0) << "the search ran to its end";
+  EXPECT_EQ(contentOf(scratch.file("game")), "an older game\n");
+}
+
+// Another tolerance begins another search in the middle of a game: the frame that it belongs to is not stepped.
+TEST(ViewerWindow, ClosesWhileItSearchesInTheMiddleOfAGame) {
+  const ScratchFolder scratch;
+  const std::string game = scratch.file("game");
+  std::ofstream(game) << R"({"springtower_recording":1,"scene":"pyramid:80","players":0})"
+                         "\n"
+                      << R"({"tuning":{"method":"implicit","sleep":"on","tolerance_m":5e-05,"friction":0.4}})"
+                         "\n"
+                      << R"({"tuning":{"method":"implicit","sleep":"on","tolerance_m":1e-05,"friction":0.4}})"
+                         "\n";
+  Window window({"--replay", game});
+  sleepFor(1.0);
+  EXPECT_EQ(window.close(), 0) << window.log();
+  EXPECT_LE(window.report().at("frames").get<int>(), 1);
 }
 }  // namespace
 }  // namespace springtower
