@@ -19,7 +19,9 @@ step() { printf '\n== %s (after %d s)\n' "$1" "$SECONDS"; }
 
 step "packages"
 source .ci/packages.sh
-installPackages run test
+extra=()
+[[ $preset == ci ]] || extra=(long)
+installPackages run test "${extra[@]}"
 
 if [[ $preset == ci ]]; then
   # Before the build: it takes seconds, and the build minutes.

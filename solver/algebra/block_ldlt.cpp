@@ -204,7 +204,7 @@ BlockSlot slotOf(const BlockCholesky& matrix, std::int32_t first, std::int32_t s
 void clear(BlockCholesky& matrix) {
   const auto fill = [&](AlignedVector<float>& values) {
     forRanges(values.size(), tuning::kBlockGrain * kNodeMatrix, !matrix.tasks.empty(),
-              [&](std::size_t first, std::size_t last) { std::fill(values.begin() + first, values.begin() + last, 0.0F); });
+              [&](std::size_t first, std::size_t last) { std::fill(values.data() + first, values.data() + last, 0.0F); });
   };
   fill(matrix.diagonal);
   fill(matrix.lower);

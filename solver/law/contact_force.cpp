@@ -190,7 +190,7 @@ SPRINGTOWER_INLINE void pointLaw(const LawStep& s, const Lanes& depth, const Lan
   const Lanes mostDamped = elastic * s.mostRate;
   const Lanes damped = closing < mostDamped ? closing : mostDamped;
   Lanes push = stiffness * (elastic + law.maxwellRatio * (elastic - p.maxwellDepth) + law.dampingTime_s * damped);
-  push = touching & (push > zero) & (elastic > zero) ? push : zero;
+  push = (touching & (push > zero) & (elastic > zero)) ? push : zero;
   if (s.step.kick_s > 0.0 && any(p.stiffening > one)) {
     // A point that rebounds within the step receives no more energy than its kinetic energy and that of its spring.
     const Lanes spring = stiffness * (elastic + law.maxwellRatio * (elastic - p.maxwellDepth));
@@ -198,7 +198,7 @@ SPRINGTOWER_INLINE void pointLaw(const LawStep& s, const Lanes& depth, const Lan
     Lanes back;
     squareRoot(given > zero ? given : zero, back);
     const Lanes most = (closing + back) * (s.pointMass / s.step.kick_s);
-    push = (p.stiffening > one) & (push > most) ? (most > zero ? most : zero) : push;
+    push = ((p.stiffening > one) & (push > most)) ? (most > zero ? most : zero) : push;
   }
   p.touching = touching ? (push > zero ? one : zero + kTouchingWithoutForce) : zero;
   p.normalForce = push;

@@ -33,7 +33,7 @@ struct Broadphase {
     boxes.resize(kBlocks);
     std::iota(all.begin(), all.end(), 0);
     for (std::size_t b = 0; b < kBlocks; ++b) {
-      const Vec3 place(random.between(0.0, 0.5), random.between(0.0, 0.5), random.between(0.0, 0.5));
+      const Vec3 place{random.between(0.0, 0.5), random.between(0.0, 0.5), random.between(0.0, 0.5)};
       for (std::size_t c = 0; c < kCorners; ++c) {
         state.position.set(b, c, place + 0.03 * Vec3(cornerSide(c, 0), cornerSide(c, 1), cornerSide(c, 2)));
       }

@@ -16,7 +16,7 @@ MotionState randomMotion(std::size_t blocks, Random& random) {
   MotionState state;
   state.resize(blocks);
   for (std::size_t b = 0; b < blocks; ++b) {
-    const Vec3 place(random.between(-1.0, 1.0), random.between(-1.0, 1.0), random.between(0.0, 1.0));
+    const Vec3 place{random.between(-1.0, 1.0), random.between(-1.0, 1.0), random.between(0.0, 1.0)};
     for (std::size_t c = 0; c < kCorners; ++c) {
       const auto number = [&](double most) { return random.between(-most, most); };
       state.position.set(b, c, place + Vec3(number(0.04), number(0.04), number(0.04)));

@@ -13,7 +13,7 @@ namespace {
 constexpr double kRounding = 4e-15;
 
 Vec3 drawn(RandomStream& random, double length) {
-  const Vec3 direction(random.normal(), random.normal(), random.normal());
+  const Vec3 direction{random.normal(), random.normal(), random.normal()};
   return length * direction.normalized();
 }
 

@@ -35,7 +35,7 @@ Eigen::Matrix3d turnOf(Bytes& bytes) {
   if (kind == 2)
     turn = Eigen::AngleAxisd(std::ldexp(bytes.between(-1.0, 1.0), -bytes.below(40)), Vec3::Unit(bytes.below(3)).eval());
   if (kind == 3) {
-    turn.coeffs() = Eigen::Vector4d(bytes.between(-1, 1), bytes.between(-1, 1), bytes.between(-1, 1), 1.01);
+    turn.coeffs() = Eigen::Vector4d{bytes.between(-1, 1), bytes.between(-1, 1), bytes.between(-1, 1), 1.01};
     turn.normalize();
   }
   return turn.toRotationMatrix();

@@ -101,8 +101,8 @@ TEST(NearPoints, SeeTheOverlapAfterASmallMotion) {
   int overlapping = 0;
   double worst_m = 0.0;
   for (int trial = 0; trial < 40000; ++trial) {
-    const Pose a{Vec3::Zero(), Eigen::Quaterniond(Eigen::AngleAxisd(random.between(0.0, 3.0), vector(1.0).normalized()))};
-    const Pose b{vector(0.05), Eigen::Quaterniond(Eigen::AngleAxisd(random.between(0.0, 3.0), vector(1.0).normalized()))};
+    const Pose a{Vec3::Zero(), Eigen::Quaterniond(Eigen::AngleAxisd{random.between(0.0, 3.0), vector(1.0).normalized()})};
+    const Pose b{vector(0.05), Eigen::Quaterniond(Eigen::AngleAxisd{random.between(0.0, 3.0), vector(1.0).normalized()})};
     const ParticleArray before = cornersAt(a, b);
     const double apart = findSeparation(cornersOf(before, 0), cornersOf(before, 1)).best();
     if (apart < 0.0 || apart > way_m) continue;
@@ -139,7 +139,7 @@ TEST(NearPoints, AreTheSameWhicheverBlockIsNamedFirst) {
   Random random{SplitMix64(12)};
   const auto leaning = [&](double most) {
     const Eigen::Quaterniond yaw(Eigen::AngleAxisd(random.between(0.0, 6.0), Vec3::UnitZ()));
-    return Pose{Vec3(random.between(-0.02, 0.02), random.between(-0.02, 0.02), 0.0),
+    return Pose{Vec3{random.between(-0.02, 0.02), random.between(-0.02, 0.02), 0.0},
                 Eigen::Quaterniond(Eigen::AngleAxisd(random.between(-most, most), Vec3::UnitX())) * yaw};
   };
   int compared = 0;

@@ -3,6 +3,7 @@
 #include "core/processor_time.h"
 #include "tests/random/scene_text.h"
 #include "tests/support/program.h"
+#include "tests/support/sanitizer.h"
 
 #include <array>
 #include <cerrno>
@@ -53,7 +54,7 @@ void limitProcessor(double more_s) {
 }
 
 void limitAddresses() {
-#if !defined(__SANITIZE_ADDRESS__)
+#if !defined(SPRINGTOWER_ADDRESS_SANITIZER)
   const rlimit limit{kMostAddresses, kMostAddresses};
   setrlimit(RLIMIT_AS, &limit);
 #endif

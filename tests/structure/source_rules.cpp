@@ -337,9 +337,10 @@ std::vector<std::string> brokenRulesInTree(const std::filesystem::path& root) {
   for (const Folder& folder : kFolders) {
     const auto isOf = [](std::string_view path, std::string_view top) { return topOf(path) == top; };
     std::map<std::string, std::string> within;
-    for (const auto& [path, text] : headers) {
+    for (const auto& header : headers) {
       const auto& may = folder.mayInclude;
-      if (std::any_of(may.begin(), may.end(), [&](std::string_view top) { return isOf(path, top); })) within.emplace(path, text);
+      if (std::any_of(may.begin(), may.end(), [&](std::string_view top) { return isOf(header.first, top); }))
+        within.insert(header);
     }
     std::map<std::string, std::string> own;
     for (const auto& [path, text] : sources)

@@ -4,6 +4,8 @@
 
 #include "tests/support/allocations.h"
 
+#include "tests/support/sanitizer.h"
+
 #include <cerrno>
 #include <cstddef>
 #include <cstdlib>
@@ -22,7 +24,7 @@ long allocationsOfThisThread() {
 
 }  // namespace springtower
 
-#if defined(__SANITIZE_ADDRESS__)
+#if defined(SPRINGTOWER_ADDRESS_SANITIZER)
 
 extern "C" int __sanitizer_install_malloc_and_free_hooks(void (*onMalloc)(const volatile void*, size_t),
                                                          void (*onFree)(const volatile void*));

@@ -48,7 +48,8 @@ std::vector<std::size_t> orderOf(std::size_t blocks, std::uint64_t seed) {
 std::vector<SceneChange> sceneChanges(std::uint64_t seed) {
   Random random{SplitMix64(seed)};
   const auto angle = [&] { return random.between(-180.0, 180.0); };
-  const Vec3 far(random.between(-1.0, 1.0), random.between(-1.0, 1.0), 0.0);
+  Vec3 far = Vec3::Zero();
+  for (int a = 1; a >= 0; --a) far[a] = random.between(-1.0, 1.0);  // y first, by every compiler
   std::vector<SceneChange> all = {
       {.name = "mirrored", .mirrored = true},
       {.name = "turned by a right angle", .turn_deg = 90.0},

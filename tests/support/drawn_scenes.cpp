@@ -44,13 +44,19 @@ Scene leaningUnevenTower(std::uint64_t seed) {
 
 Scene droppedBlocks(std::uint64_t seed) {
   Random random{SplitMix64(seed)};
-  const auto anyVector = [&] { return Vec3(random.between(-1.0, 1.0), random.between(-1.0, 1.0), random.between(-1.0, 1.0)); };
+  // From z to x: in what order a compiler evaluates arguments is its own affair, and the scenes are to be the same by each.
+  const auto anyVector = [&] {
+    Vec3 vector;
+    for (int a = 2; a >= 0; --a) vector[a] = random.between(-1.0, 1.0);
+    return vector;
+  };
   Scene scene;
   scene.name = fmt::format("dropped blocks {}", seed);
   const int blocks = 1 + random.below(6);
   for (int b = 0; b < blocks; ++b) {
     BlockSpec block;
-    block.centre = Vec3(random.between(-0.02, 0.02), random.between(-0.02, 0.02), 0.06 + 0.1 * b + random.between(0.0, 0.01));
+    block.centre.z() = 0.06 + 0.1 * b + random.between(0.0, 0.01);
+    for (int a = 1; a >= 0; --a) block.centre[a] = random.between(-0.02, 0.02);
     block.orientation = rotation(3.0 * anyVector());
     block.velocity = 0.3 * anyVector();
     block.spin = 5.0 * anyVector();

@@ -63,7 +63,7 @@ class FallFiles : public ::testing::Test {
     one["fall"] = "shot:18";
     one["bytes_per_block"]["all"] = 4000.0;
     one.merge_patch(figures);
-    file["cases"] = {one};
+    file["cases"] = Json::array({one});
     std::ofstream(path("made.json")) << file;
     const ProgramResult again = profileFalls({"--from", path("made.json"), "--out", path("made")});
     EXPECT_EQ(again.exitCode, 0) << again.error;

@@ -166,7 +166,7 @@ TEST_F(StackFiles, JudgeAgainstWhatIsRequired) {
   // A wall of 20 columns and 12 courses may take 0.4 ms on one thread; the goal is 0.3.
   const auto verdict = [](const Json& one) {
     Json file = json();
-    file["cases"] = {one};
+    file["cases"] = Json::array({one});
     return printedOf(file);
   };
   EXPECT_THAT(linesOf(verdict(caseOf("wall:20x12", 246, 0.25))), Contains(ContainsRegex("^wall:20x12 .* meets, goal too ")));
@@ -192,7 +192,7 @@ TEST_F(StackFiles, CompareWithTheSettingNearestInAccuracy) {
   };
   one["peers"] = {bullet(4, 0.021, false), bullet(8, 0.07, true), bullet(16, 0.009, true), bullet(32, 0.002, true)};
   Json file = json();
-  file["cases"] = {one};
+  file["cases"] = Json::array({one});
   EXPECT_THAT(linesOf(printedOf(file)), Contains(ContainsRegex("^wall:20x12 .* 16 steps, 16 ms, 0.009 mm")));
 }
 

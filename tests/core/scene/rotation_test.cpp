@@ -29,7 +29,7 @@ TEST(Rotation, OfFewDecimalsComesBackToTheLastBit) {
 TEST(Rotation, OfAnyOrientationIsNearlyTheSame) {
   RandomStream random(4, 0);
   for (int i = 0; i < 1000; ++i) {
-    Eigen::Quaterniond orientation(random.normal(), random.normal(), random.normal(), random.normal());
+    Eigen::Quaterniond orientation{random.normal(), random.normal(), random.normal(), random.normal()};
     orientation.normalize();
     const Vec3 rotation_deg = rotationOfOrientation(orientation);
     EXPECT_LE(rotation_deg.norm(), 180.0 + 1e-9);

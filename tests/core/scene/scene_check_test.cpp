@@ -128,13 +128,13 @@ TEST(StartingPlaces, AreRefusedWheneverABoxHoldsAPointOfAnother) {
   int overlapping = 0;
   int accepted = 0;
   for (int trial = 0; trial < 400; ++trial) {
-    const auto vector = [&] { return Vec3(random.normal(), random.normal(), random.normal()); };
+    const auto vector = [&] { return Vec3{random.normal(), random.normal(), random.normal()}; };
     BlockSpec first = blockAt({0, 0, 1.0}, 360.0 * random.uniform(), vector());
     BlockSpec second = blockAt(first.centre + 0.025 * vector(), 360.0 * random.uniform(), vector());
     bool sharesAPoint = false;
     for (int sample = 0; sample < 3000 && !sharesAPoint; ++sample) {
       const Vec3 own =
-          (Vec3(random.uniform(), random.uniform(), random.uniform()).array() - 0.5) * (first.dimensions.array() - 2e-4);
+          (Vec3{random.uniform(), random.uniform(), random.uniform()}.array() - 0.5) * (first.dimensions.array() - 2e-4);
       sharesAPoint = inside(second, first.orientation * own + first.centre);
     }
     bool refused = false;

@@ -86,11 +86,13 @@ Scene pushedStack(std::uint64_t seed, Method method) {
   Scene scene = bitCodeScene("(111)-(010)");
   scene.settings.method = method;
   scene.settings.tolerance_m = 1e-4 * random.between(0.5, 10.0);
-  const Vec3 direction(random.between(-1.0, 1.0), random.between(-1.0, 1.0), random.between(-1.0, 1.0));
+  Vec3 direction;
+  for (int a = 2; a >= 0; --a) direction[a] = random.between(-1.0, 1.0);
   const int block = random.below(4);
   const double weight_n = kStandardGravity_m_s2 * scene.blocks[static_cast<std::size_t>(block)].mass;
   const Vec3 force = random.between(2.0, 50.0) * weight_n * direction.normalized();
-  scene.forces = {constantForce(block, random.below(8), force, 0.0, random.between(0.05, 0.5))};
+  const double seconds = random.between(0.05, 0.5);
+  scene.forces = {constantForce(block, random.below(8), force, 0.0, seconds)};
   return scene;
 }
 

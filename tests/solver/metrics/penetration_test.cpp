@@ -131,7 +131,7 @@ TEST(MaxPenetration, NamesThePairThatOverlapsMost) {
 TEST(MaxPenetration, FindsTheDeepestOfAllPairsWhileBlocksMove) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-  const auto anyVector = [&] { return Vec3(uniform(random), uniform(random), uniform(random)); };
+  const auto anyVector = [&] { return Vec3{uniform(random), uniform(random), uniform(random)}; };
   std::vector<TestBox> boxes;
   std::vector<Vec3> velocity;
   for (int i = 0; i < 60; ++i) {

@@ -36,8 +36,10 @@ void pressKey(Viewer& viewer, Dice& dice) {
       return turnHand(controls, TurnAxis::view, kKeyTurn * (dice.below(9) - 4));
     case 9:
       return turnHand(controls, TurnAxis::right, kKeyTurn * (dice.below(9) - 4));
-    case 10:
-      return lookRound(controls, 0.05 * (dice.below(9) - 4), 0.05 * (dice.below(9) - 4));
+    case 10: {
+      const double azimuth = 0.05 * (dice.below(9) - 4);
+      return lookRound(controls, azimuth, 0.05 * (dice.below(9) - 4));
+    }
     default:
       viewer.limit_n = 0.5 + 19.5 * dice.share();
       return;

@@ -107,7 +107,8 @@ std::string randomScript(Dice& dice, int events) {
   for (int i = 0; i < events; ++i) {
     const double what = dice.share();
     if (what < 0.70) {
-      script += fmt::format("mousemove {} {}\n", kWindowWidth / 4 + dice.below(kWindowWidth / 2), dice.below(kWindowHeight));
+      const int x = kWindowWidth / 4 + dice.below(kWindowWidth / 2);
+      script += fmt::format("mousemove {} {}\n", x, dice.below(kWindowHeight));
     } else if (what < 0.90) {
       script += fmt::format("{} {}\n", dice.happens(0.6) ? "mousedown" : "mouseup", dice.happens(0.6) ? 1 : 3);
     } else if (what < 0.95) {

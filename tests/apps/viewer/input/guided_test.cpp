@@ -49,7 +49,7 @@ TEST(Footprint, OverlapsWhereAGridSaysSo) {
   for (int i = 0; i < 150; ++i) {
     std::array<Footprint, 2> each;
     for (Footprint& footprint : each) {
-      const Vec3 place(0.1 * random.uniform(), 0.1 * random.uniform(), random.uniform());
+      const Vec3 place{0.1 * random.uniform(), 0.1 * random.uniform(), random.uniform()};
       footprint = footprintOf(place, rotationAbout(Vec3::UnitZ(), 6.3 * random.uniform()), {0.08, 0.027, 0.018});
       EXPECT_NEAR(footprint.half.x(), 0.04, 1e-12);
       EXPECT_NEAR(footprint.half.y(), 0.0135, 1e-12);
@@ -237,7 +237,7 @@ TEST(Places, AreTakenFromNearby) {
   RandomStream random(3, 1);
   for (int i = 0; i < 100; ++i) {
     // Wherever its middle is over the top, whichever way it is turned.
-    const Vec3 over(0.05 * random.uniform() - 0.025, 0.08 * random.uniform() - 0.04, 0.1);
+    const Vec3 over{0.05 * random.uniform() - 0.025, 0.08 * random.uniform() - 0.04, 0.1};
     const Place carried{over, rotationAbout(Vec3::UnitZ(), 6.3 * random.uniform())};
     const Landing landing = landingAt(all, sizes, 4, carried, places, false);
     ASSERT_TRUE(landing.inRow) << over.transpose();

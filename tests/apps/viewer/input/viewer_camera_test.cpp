@@ -70,7 +70,7 @@ TEST(ViewerCamera, ARayMeetsThePointThatIsSeenThere) {
   RandomStream random(7, 1);
   for (int i = 0; i < 500; ++i) {
     orbit(camera, random.uniform(), random.uniform() - 0.5);
-    const Vec3 point = camera.target + 0.2 * Vec3(random.uniform(), random.uniform(), random.uniform());
+    const Vec3 point = camera.target + 0.2 * Vec3{random.uniform(), random.uniform(), random.uniform()};
     const auto seen = seenAt(camera, kViewport, point);
     ASSERT_TRUE(seen);
     const Ray ray = rayThrough(camera, kViewport, seen->x(), seen->y());
@@ -122,8 +122,8 @@ TEST(ViewerPicking, AgreesWithPlanesOnRandomRays) {
   RandomStream random(3, 1);
   int hits = 0;
   for (int i = 0; i < 3000; ++i) {
-    const Vec3 from(2.0 * random.uniform() - 1.0, 2.0 * random.uniform() - 1.0, random.uniform());
-    const Vec3 to(0.1 * random.uniform() - 0.05, 0.1 * random.uniform() - 0.05, 0.14 * random.uniform());
+    const Vec3 from{2.0 * random.uniform() - 1.0, 2.0 * random.uniform() - 1.0, random.uniform()};
+    const Vec3 to{0.1 * random.uniform() - 0.05, 0.1 * random.uniform() - 0.05, 0.14 * random.uniform()};
     const Ray ray{from, (to - from).normalized()};
     const auto pick = pickBlock(simulation.state.position, ray);
     const auto plain = pickByPlanes(simulation.state.position, ray);

@@ -172,12 +172,15 @@ NaiveGame playNaively(std::uint64_t seed) {
 
   player.moveTo(at);
   player.press(true);
-  player.slide(player.between(220.0, 320.0) * outwards(viewer, player, game.block), player.between(0.8, 2.0));
+  const double drawn_s = player.between(0.8, 2.0);
+  player.slide(player.between(220.0, 320.0) * outwards(viewer, player, game.block), drawn_s);
   player.wait(player.between(0.3, 1.5));
   const auto top = [&] { return player.seen({0.0, 0.0, kRows * kBlockHeight_m}); };
   player.slide({0.0, std::min(0.0, top().y() - player.seen(player.blockAt()).y()) - 40.0}, player.between(0.4, 1.0));
   player.wait(player.between(0.3, 1.5));
-  const Eigen::Vector2d error(player.between(-15.0, 15.0), player.between(-15.0, 15.0));
+  Eigen::Vector2d error;
+  error.y() = player.between(-15.0, 15.0);
+  error.x() = player.between(-15.0, 15.0);
   player.slide(top() - player.seen(player.blockAt()) + error, player.between(0.4, 1.2));
   player.wait(player.between(0.2, 0.6));
   player.press(false);
