@@ -44,7 +44,7 @@ Scene leaningUnevenTower(std::uint64_t seed) {
 
 Scene droppedBlocks(std::uint64_t seed) {
   Random random{SplitMix64(seed)};
-  // From z to x: in what order a compiler evaluates arguments is its own affair, and the scenes are to be the same by each.
+  // From z to x: the order in which arguments are evaluated is unspecified, and scenes must not depend on the compiler.
   const auto anyVector = [&] {
     Vec3 vector;
     for (int a = 2; a >= 0; --a) vector[a] = random.between(-1.0, 1.0);

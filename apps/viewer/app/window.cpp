@@ -27,9 +27,9 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr double kKeyOrbit = 0.05;  // rad a key press
-// While an equilibrium is searched for: how often the window looks at what the user does, and how long it says nothing.
-constexpr std::chrono::milliseconds kAttendEvery(50);
-constexpr double kSilent_s = 0.3;
+// While an equilibrium is searched for: how often events are polled, and after how long a message takes the picture's place.
+constexpr std::chrono::milliseconds kPollInterval(50);
+constexpr double kMessageAfter_s = 0.3;
 
 double secondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -50,11 +50,11 @@ struct Desk {
   bool inspectionWanted = false;
   bool filmWanted = false;
   bool styleWanted = true;  // the screen's scale has changed
-  // While frames are stepped or an equilibrium is searched for, which may take seconds, what the user does waits.
+  // While frames are stepped or an equilibrium is searched for, which may take seconds, events are deferred.
   bool stepping = false;
   Clock::time_point steppingSince = {};
-  Clock::time_point attended = {};
-  std::vector<std::function<void()>> waiting = {};
+  Clock::time_point polled = {};
+  std::vector<std::function<void()>> deferred = {};
   std::atomic<bool> closed = false;  // read by the thread that searches before the first frame
 };
 
@@ -62,11 +62,11 @@ Desk& deskOf(GLFWwindow* window) {
   return *static_cast<Desk*>(glfwGetWindowUserPointer(window));
 }
 
-// At once, or when the frames that are being stepped have ended: it reads and changes the session.
+// At once, or after the frames that are being stepped: events read and change the session.
 template <class Event>
 void handle(Desk& desk, const Event& event) {
   if (!desk.stepping) return event();
-  desk.waiting.emplace_back(event);
+  desk.deferred.emplace_back(event);
 }
 
 std::string numbered(const Desk& desk, const char* name, int number, const char* ending) {
@@ -323,7 +323,7 @@ void drawWindow(Desk& desk) {
 }
 
 // In place of the picture, whose blocks are being moved.
-void drawWaiting(Desk& desk, double passed_s) {
+void drawSearching(Desk& desk, double passed_s) {
   int width = 1;
   int height = 1;
   glfwGetFramebufferSize(desk.window, &width, &height);
@@ -347,32 +347,32 @@ void drawWaiting(Desk& desk, double passed_s) {
 
 void beginStepping(Desk& desk) {
   desk.stepping = true;
-  desk.steppingSince = desk.attended = Clock::now();
+  desk.steppingSince = desk.polled = Clock::now();
 }
 
 void endStepping(Desk& desk) {
   desk.stepping = false;
-  for (const auto& event : std::exchange(desk.waiting, {})) event();
+  for (const auto& event : std::exchange(desk.deferred, {})) event();
 }
 
-// While an equilibrium is searched for: the window can be closed, and says what it is that takes so long.
-void attend(Desk& desk) {
-  desk.attended = Clock::now();
+// While an equilibrium is searched for: so that the window can be closed, and shows what is being done.
+void pollInSearch(Desk& desk) {
+  desk.polled = Clock::now();
   glfwPollEvents();
   if (glfwWindowShouldClose(desk.window) == GLFW_TRUE) desk.closed = true;
   const double passed_s = secondsSince(desk.steppingSince);
-  if (passed_s > kSilent_s) drawWaiting(desk, passed_s);
+  if (passed_s > kMessageAfter_s) drawSearching(desk, passed_s);
 }
 
 void waitForStart(Desk& desk, std::future<void>& prepared) {
   beginStepping(desk);
-  while (prepared.wait_for(kAttendEvery) != std::future_status::ready) attend(desk);
+  while (prepared.wait_for(kPollInterval) != std::future_status::ready) pollInSearch(desk);
   prepared.get();
   endStepping(desk);
-  // Later searches are of frames: on the thread of the window, but for what a key or a panel begins, in the middle of which no
-  // event may be asked for.
+  // Later searches run on the thread of the window. Those that a key or a panel begins run inside a callback or a frame of Dear
+  // ImGui, from which GLFW does not allow polling.
   desk.viewer.session.searchGoesOn = [&desk] {
-    if (desk.stepping && Clock::now() - desk.attended > kAttendEvery) attend(desk);
+    if (desk.stepping && Clock::now() - desk.polled > kPollInterval) pollInSearch(desk);
     return !desk.closed;
   };
 }
@@ -409,7 +409,7 @@ struct ImGuiUse {
   }
 };
 
-// What a search asks is gone with the window.
+// The predicate refers to the window's data, and must not outlive them.
 struct SearchUse {
   explicit SearchUse(Session& given) : session(given) {}
   SearchUse(const SearchUse&) = delete;

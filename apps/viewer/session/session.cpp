@@ -78,7 +78,7 @@ void keep(Session& session) {
   thinOut(session);
 }
 
-// A signal ends the search for an equilibrium, and so does whoever closes the window.
+// A signal ends the search for an equilibrium, and so does closing the window.
 PrepareOptions untilEnded(const Session& session) {
   return {.goesOn = [&session](const PrepareProgress&) {
     return !interrupted() && (!session.searchGoesOn || session.searchGoesOn());
@@ -118,7 +118,7 @@ void restore(Session& session, const Keyframe& key) {
 }
 
 // One frame of physics and game, without the past. Returns the input that acted: without a hand that the game does not allow.
-// Empty, and all as before, where the search was ended for the equilibrium that a scene, method or tolerance begins with.
+// Empty, and all as before, where the search for the equilibrium that a scene, method or tolerance begins with was ended early.
 std::optional<FrameInput> advance(Session& session, FrameInput input) {
   const auto start = std::chrono::steady_clock::now();
   Simulation& simulation = session.simulation;

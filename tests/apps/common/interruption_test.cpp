@@ -1,4 +1,5 @@
 // Signals in the middle of the programs' work: what is done is kept, whole, under its name, and nothing else is left.
+#include "tests/apps/common/changed_tolerance.h"
 #include "tests/support/running_program.h"
 #include "tests/support/says.h"
 
@@ -331,12 +332,7 @@ TEST(Interruption, ASignalEndsTheSearchOfTheViewerToo) {
 TEST(Interruption, ASignalEndsTheSearchThatAnotherToleranceBeginsWith) {
   const ScratchFolder scratch;
   const std::string game = scratch.file("game");
-  std::ofstream(game) << R"({"springtower_recording":1,"scene":"pyramid:80","players":0})"
-                         "\n"
-                      << R"({"tuning":{"method":"implicit","sleep":"on","tolerance_m":5e-05,"friction":0.4}})"
-                         "\n"
-                      << R"({"tuning":{"method":"implicit","sleep":"on","tolerance_m":1e-05,"friction":0.4}})"
-                         "\n";
+  writeChangeOfTolerance(game);
   RunningProgram viewer("springtower-viewer", {"--headless", "--replay", game, "--report", scratch.file("r.json"), "--png",
                                                scratch.file("pictures"), "--size", "64x64"});
   viewer.waitForFile(scratch.file("pictures/frame-00001.png"), 1);

@@ -6,6 +6,7 @@
 #include "core/scene/scene.h"
 #include "solver/world/simulation.h"
 #include "tests/apps/commands/loose_tower.h"
+#include "tests/apps/common/changed_tolerance.h"
 
 #include <cmath>
 #include <csignal>
@@ -272,12 +273,7 @@ TEST(ViewerWindow, ClosesWhileItSearchesForTheEquilibrium) {
 TEST(ViewerWindow, ClosesWhileItSearchesInTheMiddleOfAGame) {
   const ScratchFolder scratch;
   const std::string game = scratch.file("game");
-  std::ofstream(game) << R"({"springtower_recording":1,"scene":"pyramid:80","players":0})"
-                         "\n"
-                      << R"({"tuning":{"method":"implicit","sleep":"on","tolerance_m":5e-05,"friction":0.4}})"
-                         "\n"
-                      << R"({"tuning":{"method":"implicit","sleep":"on","tolerance_m":1e-05,"friction":0.4}})"
-                         "\n";
+  writeChangeOfTolerance(game);
   Window window({"--replay", game});
   sleepFor(1.0);
   EXPECT_EQ(window.close(), 0) << window.log();
