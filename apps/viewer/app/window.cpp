@@ -53,9 +53,8 @@ struct Desk {
   // While frames are stepped or an equilibrium is searched for, which may take seconds, events are deferred.
   bool stepping = false;
   Clock::time_point steppingSince = {};
-  Clock::time_point polled = {};
   std::vector<std::function<void()>> deferred = {};
-  std::atomic<bool> closed = false;  // read by the thread that searches before the first frame
+  std::atomic<bool> closed = false;  // read by the threads that search
 };
 
 Desk& deskOf(GLFWwindow* window) {
@@ -347,7 +346,7 @@ void drawSearching(Desk& desk, double passed_s) {
 
 void beginStepping(Desk& desk) {
   desk.stepping = true;
-  desk.steppingSince = desk.polled = Clock::now();
+  desk.steppingSince = Clock::now();
 }
 
 void endStepping(Desk& desk) {
@@ -355,26 +354,30 @@ void endStepping(Desk& desk) {
   for (const auto& event : std::exchange(desk.deferred, {})) event();
 }
 
-// While an equilibrium is searched for: so that the window can be closed, and shows what is being done.
-void pollInSearch(Desk& desk) {
-  desk.polled = Clock::now();
-  glfwPollEvents();
-  if (glfwWindowShouldClose(desk.window) == GLFW_TRUE) desk.closed = true;
-  const double passed_s = secondsSince(desk.steppingSince);
-  if (passed_s > kMessageAfter_s) drawSearching(desk, passed_s);
+// While an equilibrium is searched for on other threads: so that the window can be closed, and shows what is being done. GLFW and
+// OpenGL are used by the window's own thread alone.
+void pollUntilDone(Desk& desk, std::future<void>& search) {
+  while (search.wait_for(kPollInterval) != std::future_status::ready) {
+    glfwPollEvents();
+    if (glfwWindowShouldClose(desk.window) == GLFW_TRUE) desk.closed = true;
+    const double passed_s = secondsSince(desk.steppingSince);
+    if (passed_s > kMessageAfter_s) drawSearching(desk, passed_s);
+  }
+  search.get();
 }
 
 void waitForStart(Desk& desk, std::future<void>& prepared) {
   beginStepping(desk);
-  while (prepared.wait_for(kPollInterval) != std::future_status::ready) pollInSearch(desk);
-  prepared.get();
+  pollUntilDone(desk, prepared);
   endStepping(desk);
-  // Later searches run on the thread of the window. Those that a key or a panel begins run inside a callback or a frame of Dear
-  // ImGui, from which GLFW does not allow polling.
-  desk.viewer.session.searchGoesOn = [&desk] {
-    if (desk.stepping && Clock::now() - desk.polled > kPollInterval) pollInSearch(desk);
-    return !desk.closed;
-  };
+}
+
+// A search in the middle of a game. One that a key or a panel begins runs inside a callback or a frame of Dear ImGui, from which
+// GLFW does not allow polling.
+void runSearch(Desk& desk, const std::function<void()>& search) {
+  if (!desk.stepping) return search();
+  std::future<void> done = std::async(std::launch::async, search);
+  pollUntilDone(desk, done);
 }
 
 void stepFrames(Desk& desk, double elapsed_s) {
@@ -409,12 +412,18 @@ struct ImGuiUse {
   }
 };
 
-// The predicate refers to the window's data, and must not outlive them.
+// What a session calls in a search refers to the window's data, and must not outlive them.
 struct SearchUse {
-  explicit SearchUse(Session& given) : session(given) {}
+  explicit SearchUse(Desk& desk) : session(desk.viewer.session) {
+    session.searchGoesOn = [&desk] { return !desk.closed; };
+    session.runSearch = [&desk](const std::function<void()>& search) { runSearch(desk, search); };
+  }
   SearchUse(const SearchUse&) = delete;
   SearchUse& operator=(const SearchUse&) = delete;
-  ~SearchUse() { session.searchGoesOn = {}; }
+  ~SearchUse() {
+    session.searchGoesOn = {};
+    session.runSearch = {};
+  }
   Session& session;
 };
 
@@ -454,8 +463,7 @@ GLFWwindow* openedWindow(const Viewport& size) {
 
 void runWindow(Viewer& viewer, const ViewerFiles& files, const Viewport& size, Clock::time_point started) {
   Desk desk{viewer, files, LabDraft(viewer.choice)};
-  viewer.session.searchGoesOn = [&desk] { return !desk.closed; };
-  const SearchUse search{viewer.session};
+  const SearchUse search(desk);
   // The window opens meanwhile.
   std::future<void> prepared = std::async(std::launch::async, [&] { prepareStart(viewer.session); });
   startGlfw();

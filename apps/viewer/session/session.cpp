@@ -117,6 +117,18 @@ void restore(Session& session, const Keyframe& key) {
   session.contacts = contactForces(session.simulation);
 }
 
+// Steps a frame; false where the search for an equilibrium that it began with was ended.
+bool playFrame(Session& session, const Hand& hand) {
+  bool played = false;
+  const auto frame = [&] { played = stepPlayed(hand, session.grip, session.contacts, session.simulation, untilEnded(session)); };
+  if (session.runSearch && !isPrepared(session.simulation)) {
+    session.runSearch(frame);
+  } else {
+    frame();
+  }
+  return played;
+}
+
 // One frame of physics and game, without the past. Returns the input that acted: without a hand that the game does not allow.
 // Empty, and all as before, where the search for the equilibrium that a scene, method or tolerance begins with was ended early.
 std::optional<FrameInput> advance(Session& session, FrameInput input) {
@@ -128,7 +140,7 @@ std::optional<FrameInput> advance(Session& session, FrameInput input) {
   session.before = simulation.state.position;
   if (!mayTake(session.game, input.hand.block)) input.hand = {};
   const BlockId held = input.hand.block;
-  if (!stepPlayed(input.hand, session.grip, session.contacts, simulation, untilEnded(session))) {
+  if (!playFrame(session, input.hand)) {
     if (!simulationBefore) {  // in the first frame
       restore(session, session.keyframes.front());
       return {};

@@ -59,7 +59,11 @@ struct Session {
   std::vector<std::uint64_t> turns;      ///< frames in which turns of the game began, ascending; the first is 0
   double frame_ms = 0.0;                 ///< what the last frame took
   std::string failure;                   ///< why the simulation ended; empty while it goes on
-  std::function<bool()> searchGoesOn;    ///< false ends a search for an equilibrium, as a signal does; may be empty
+  /// Called on any thread; false ends a search for an equilibrium, as a signal does. May be empty.
+  std::function<bool()> searchGoesOn;
+  /// Runs what begins with a search for an equilibrium and may take seconds, and returns once it is done or throws what it
+  /// throws. May be empty: on the thread that steps.
+  std::function<void(const std::function<void()>&)> runSearch;
 };
 
 /// Finds the equilibrium that the first frame starts from, ahead of it: for uneven towers that takes as long as many frames. Does

@@ -158,6 +158,7 @@ void restart(Viewer& viewer, const SceneChoice& choice) {
     const bool another = choice.name != viewer.choice.name;
     Session next(withTuning(scene, viewer.tuning), choice.players);
     next.searchGoesOn = viewer.session.searchGoesOn;
+    next.runSearch = viewer.session.runSearch;
     viewer.session = std::move(next);
     viewer.choice = choice;
     viewer.start = viewer.session.simulation.state.position;

@@ -279,5 +279,32 @@ TEST(ViewerWindow, ClosesWhileItSearchesInTheMiddleOfAGame) {
   EXPECT_EQ(window.close(), 0) << window.log();
   EXPECT_LE(window.report().at("frames").get<int>(), 1);
 }
+
+// Two pyramids of cubes that do not touch.
+void writeTwoPyramids(const std::string& path) {
+  constexpr double kSide_m = 0.04;
+  std::ofstream file(path);
+  for (int pyramid = 0; pyramid < 2; ++pyramid) {
+    const int rows = 76 + 4 * pyramid;
+    for (int row = 0; row < rows; ++row) {
+      for (int i = 0; i < rows - row; ++i) {
+        file << fmt::format("[[block]]\ncentre_m = [{}, {}, {}]\ndimensions_m = [{}, {}, {}]\n",
+                            kSide_m * (i - 0.5 * (rows - row)), 1.0 * pyramid, kSide_m * (row + 0.5), kSide_m, kSide_m, kSide_m);
+      }
+    }
+  }
+}
+
+// Islands are searched on many threads, of which one alone may poll the window.
+TEST(ViewerWindow, ClosesWhileItSearchesForTheEquilibriaOfTwoIslands) {
+  const ScratchFolder scratch;
+  const std::string game = scratch.file("game");
+  writeTwoPyramids(scratch.file("two.toml"));
+  writeChangeOfTolerance(game, scratch.file("two.toml"));
+  Window window({"--replay", game, "--threads", "2"});
+  sleepFor(1.0);
+  EXPECT_EQ(window.close(), 0) << window.log();
+  EXPECT_LE(window.report().at("frames").get<int>(), 1);
+}
 }  // namespace
 }  // namespace springtower
