@@ -3,10 +3,11 @@
 #include "core/error.h"
 #include "core/hash.h"
 #include "core/version.h"
+#include "core/whole_file.h"
 
+#include <filesystem>
 #include <fmt/format.h>
 #include <fstream>
-#include <iterator>
 
 namespace springtower {
 namespace {
@@ -15,6 +16,7 @@ namespace {
 constexpr std::uint32_t kFormat = 4;
 
 constexpr std::size_t kLetters = 16;
+constexpr std::size_t kPartBytes = std::size_t{1} << 20U;  // read at a time
 
 struct Kind {
   std::string_view letters;  // the first of the file
@@ -49,6 +51,20 @@ void checkLetters(SealKind kind, std::string_view bytes, std::string_view source
     if (other.letters.starts_with(bytes)) refuseSeal(source, "a beginning that is cut off", allowed);
   }
   refuseSeal(source, "another kind of file", allowed);
+}
+
+// A file is as long as it is; what comes through a pipe might have no end.
+void appendRest(std::ifstream& file, const std::string& path, std::string_view source, std::string& bytes) {
+  std::error_code error;
+  const bool regular = std::filesystem::is_regular_file(path, error);
+  std::string part(kPartBytes, '\0');
+  while (file) {
+    file.read(part.data(), static_cast<std::streamsize>(part.size()));
+    bytes.append(part, 0, static_cast<std::size_t>(file.gcount()));
+    if (!regular && bytes.size() > kMaxFileBytes)
+      refuseSeal(source, "more through a pipe", fmt::format("at most {} MB, or a file", kMaxFileBytes >> 20U));
+  }
+  if (file.bad()) refuseSeal(source, "one that cannot be read to its end", "a file that springtower has written");
 }
 
 }  // namespace
@@ -119,8 +135,7 @@ Unsealed unsealedFile(SealKind kind, const std::string& path, std::string_view s
     refuseSeal(source, "none that can be read", "a file that springtower has written");
   bytes.resize(static_cast<std::size_t>(file.gcount()));
   checkLetters(kind, bytes, source);
-  bytes.append(std::istreambuf_iterator<char>(file), {});
-  if (file.bad()) refuseSeal(source, "one that cannot be read to its end", "a file that springtower has written");
+  appendRest(file, path, source, bytes);
   return unsealed(kind, bytes, source);
 }
 

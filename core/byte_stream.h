@@ -196,7 +196,7 @@ struct Unsealed {
 /// version, for those that are cut off, go on behind their end, or are other ones than were written.
 Unsealed unsealed(SealKind kind, std::string_view bytes, std::string_view source);
 
-/// The same for a file. Nothing more is read of one that does not begin as it should.
+/// The same for a file. Nothing more is read of one that does not begin as it should, and through a pipe no more than 256 MB.
 Unsealed unsealedFile(SealKind kind, const std::string& path, std::string_view source);
 
 }  // namespace springtower

@@ -137,7 +137,8 @@ void OutputFile::flushEverySecond() {
   const auto now = std::chrono::steady_clock::now();
   if (now - flushed_ < kFlushEvery) return;
   flushed_ = now;
-  if (!stream_.flush()) fail("writing failed; is the disk full?");
+  if (!stream_.flush()) failAsFull();
+  isFlushed_ = true;
 }
 
 void OutputFile::cutTo(std::uintmax_t bytes) {
@@ -150,7 +151,7 @@ void OutputFile::cutTo(std::uintmax_t bytes) {
 
 void OutputFile::commit() {
   stream_.close();
-  if (stream_.fail()) fail("writing failed; is the disk full?");
+  if (stream_.fail()) failAsFull();
   if (partial_.empty()) return;
   if (temporary_ ? copyTemporary() : std::rename(partial_.c_str(), path_.c_str()) == 0) {
     if (temporary_) std::remove(partial_.c_str());
@@ -163,6 +164,13 @@ void OutputFile::commit() {
   std::error_code error;
   if (!std::filesystem::exists(kept, error)) fail(why);
   fail(fmt::format("{}; what was written is in {}", why, inQuotes(kept)));
+}
+
+// What was flushed before is all that there is of an hour's recording: it stays, but for the last line perhaps whole.
+void OutputFile::failAsFull() {
+  const std::string full = "writing failed; is the disk full?";
+  if (!isFlushed_ || partial_.empty()) fail(full);
+  fail(fmt::format("{} What was written until then is in {}", full, inQuotes(std::exchange(partial_, {}))));
 }
 
 void OutputFile::fail(const std::string& what) const {

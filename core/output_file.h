@@ -13,7 +13,8 @@ std::string withoutDanglingLinks(std::string path);
 
 /// A file that is written while the program works and appears under its name only when it is complete. It is opened at once, so
 /// that a name that cannot be written is known before any work is done. Until `commit` the content stands beside it in
-/// NAME.partial, which the destructor removes; a device or pipe is written directly. What replaces a file in a folder that takes
+/// NAME.partial, which the destructor removes, unless a part of it was flushed and then the disk was full; a device or pipe is
+/// written directly. What replaces a file in a folder that takes
 /// no new ones stands in the system's folder for temporary files until then, and is copied: a process that is killed while it
 /// copies leaves part of it. Where there is no such folder either, that file is written directly. A process that is killed leaves
 /// NAME.partial as it was last flushed, and the next one that writes to NAME takes its place. Of two processes that write to NAME
@@ -31,7 +32,8 @@ class OutputFile {
   [[nodiscard]] std::ostream& stream() { return stream_; }
 
   /// Hands what was written to the system, so that it is kept whatever becomes of this process, unless that was done less than a
-  /// second ago. Call it after every frame or line. Throws InputError naming the file when the disk is full.
+  /// second ago. Call it after every frame or line. Throws InputError naming the file when the disk is full, and the file that
+  /// has what was flushed before.
   void flushEverySecond();
 
   /// Whether content can be taken back: not from a device or pipe.
@@ -46,11 +48,12 @@ class OutputFile {
   [[nodiscard]] const std::string& writtenPath() const { return partial_.empty() ? path_ : partial_; }
 
   /// Writes what is left and gives the file its name. Throws InputError naming the file when the disk is full, or when it cannot
-  /// get its name: what was written then stays where it is, which the message says.
+  /// get its name: what was written, or flushed before the disk was full, then stays where it is, which the message says.
   void commit();
 
  private:
   [[noreturn]] void fail(const std::string& what) const;
+  [[noreturn]] void failAsFull();
   bool openPartial(const std::string& name);
   bool openTemporary();
   bool copyTemporary() const;
@@ -60,6 +63,7 @@ class OutputFile {
   std::string option_;
   std::string partial_;     // empty when written directly
   bool temporary_ = false;  // partial_ is in the folder for temporary files: copied, as it cannot be renamed
+  bool isFlushed_ = false;  // whether a part of it was
   int lock_ = -1;           // the partial file once more, to hold its lock
   std::ofstream stream_;
   std::chrono::steady_clock::time_point flushed_;

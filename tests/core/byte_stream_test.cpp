@@ -6,10 +6,16 @@
 #include "tests/support/says.h"
 
 #include <cmath>
+#include <csignal>
+#include <fcntl.h>
 #include <fstream>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <limits>
+#include <string>
+#include <sys/stat.h>
+#include <thread>
+#include <unistd.h>
 
 namespace springtower {
 
@@ -151,6 +157,24 @@ TEST(Seal, RefusesFilesThatAreNone) {
               ThrowsMessage<InputError>(HasSubstr("got nothing")));
   std::ofstream(scratch.file("whole"), std::ios::binary) << sealed(SealKind::run, "payload");
   EXPECT_EQ(unsealedFile(SealKind::run, scratch.file("whole"), "source").payload, "payload");
+}
+
+// What begins as a saved run and never ends does not fill the memory.
+TEST(Seal, ReadsAPipeWithinBounds) {
+  const ScratchFolder scratch;
+  const std::string path = scratch.file("pipe");
+  ASSERT_EQ(mkfifo(path.c_str(), 0600), 0);
+  std::signal(SIGPIPE, SIG_IGN);
+  std::thread endless([&path] {
+    const int pipe = open(path.c_str(), O_WRONLY);
+    const std::string run = sealed(SealKind::run, "payload");
+    const std::string zeros(std::size_t{1} << 16U, '\0');
+    for (ssize_t written = write(pipe, run.data(), run.size()); written >= 0;) written = write(pipe, zeros.data(), zeros.size());
+    close(pipe);
+  });
+  EXPECT_THAT([&] { unsealedFile(SealKind::run, path, "the source"); },
+              ThrowsMessage<InputError>(HasSubstr("the source: expected at most 256 MB, or a file, got more through a pipe")));
+  endless.join();
 }
 
 }  // namespace

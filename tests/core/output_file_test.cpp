@@ -3,12 +3,15 @@
 #include "core/error.h"
 #include "tests/support/program.h"
 
+#include <algorithm>
 #include <chrono>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <optional>
+#include <sys/resource.h>
 #include <thread>
 
 namespace springtower {
@@ -161,6 +164,34 @@ TEST(OutputFile, SaysSoonThatTheDiskIsFull) {
   std::this_thread::sleep_for(std::chrono::milliseconds(1050));
   file.stream() << "a line";
   EXPECT_THROW(file.flushEverySecond(), InputError);
+}
+
+// A limit on the size of files stands for a disk that is full: what was flushed before stays.
+TEST(OutputFile, KeepsWhatWasFlushedBeforeTheDiskWasFull) {
+  const ScratchFolder scratch;
+  std::signal(SIGXFSZ, SIG_IGN);
+  rlimit usual{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &usual), 0);
+  const auto limitTo = [&](rlim_t bytes) {
+    const rlimit limit{std::min(bytes, usual.rlim_max), usual.rlim_max};
+    ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &limit), 0);
+  };
+  {
+    OutputFile file(scratch.file("a"), "--out");
+    OutputFile unflushed(scratch.file("b"), "--out");
+    std::this_thread::sleep_for(std::chrono::milliseconds(1050));
+    file.stream() << "a line\n";
+    file.flushEverySecond();
+    limitTo(10);
+    file.stream() << "another line\n";
+    unflushed.stream() << "another line\n";
+    EXPECT_THAT([&] { file.commit(); },
+                testing::ThrowsMessage<InputError>(testing::HasSubstr("is in '" + scratch.file("a.partial") + "'")));
+    EXPECT_THROW(unflushed.commit(), InputError);
+    limitTo(usual.rlim_cur);
+  }
+  EXPECT_EQ(contentOf(scratch.file("a.partial")).substr(0, 7), "a line\n");
+  EXPECT_EQ(filesIn(scratch), 1) << "of the other nothing is left";
 }
 
 }  // namespace

@@ -250,7 +250,7 @@ int executeRun(const RunCommand& command) {
       if (now.frame > 0) preparing.clear();
       progress.update(now.time_s);
     });
-  } catch (const DivergenceError&) {
+  } catch (...) {  // a divergence, or no memory left
     keepPoses(files);
     throw;
   }

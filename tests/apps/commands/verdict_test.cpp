@@ -146,6 +146,7 @@ TEST(Verdict, OfNothingIsNothing) {
   const ProgramResult result = verdict("");
   EXPECT_EQ(result.exitCode, 0);
   EXPECT_EQ(result.output, "");
+  EXPECT_THAT(result.error, testing::HasSubstr("expected at least one line, got none")) << "as if nothing was wrong";
 }
 
 struct BadLine {
