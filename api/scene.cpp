@@ -37,6 +37,12 @@ Scene namedScene(const std::string& name, const TowerOptions& options) {
 }
 
 void placeByCorners(Block& block, const std::array<Vec3, 8>& corners) {
+  withPublicErrors([&] {
+    for (std::size_t c = 0; c < corners.size(); ++c) {
+      for (const double x : {corners[c].x, corners[c].y, corners[c].z})
+        requireInRange(x, kPlaceRange, fmt::format("placeByCorners: corner {}", c));
+    }
+  });
   springtower::BlockSpec placed;
   placed.dimensions = toEngine(block.dimensions);
   CornerPlaces places;

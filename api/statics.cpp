@@ -46,6 +46,7 @@ Verdict verdict(const Scene& scene) {
 
 Verdict verdictWithout(const Scene& scene, int block) {
   return withPublicErrors([&] {
+    springtower::checkScene(toEngine(scene), sourceOf(scene));  // one without blocks has no numbers of blocks
     checkedBlock(block, scene.blocks.size());
     return verdictOf(analysed(scene, block).rest);
   });
@@ -80,6 +81,7 @@ std::optional<Loads> loads(const Scene& scene) {
 
 std::optional<double> pullLimit(const Scene& scene, int block, const Vec3& direction) {
   return withPublicErrors([&]() -> std::optional<double> {
+    springtower::checkScene(toEngine(scene), sourceOf(scene));
     const std::size_t b = checkedBlock(block, scene.blocks.size());
     const springtower::Vec3 along = toEngine(direction);
     const double length = along.stableNorm();

@@ -68,6 +68,8 @@ struct Block {
 
 /// Gives a block the centre, the orientation and the strain that its corners have in these places, m: those of World::corners of
 /// a world at rest, of which a world is made that rests as it does. The block's dimensions are those of the undeformed block.
+/// Throws InputError for a place that is not finite or farther out than scenes may reach; whether the corners are near a cuboid
+/// of these dimensions is what World and checkScene find.
 void placeByCorners(Block& block, const std::array<Vec3, 8>& corners);
 
 /// A force, a torque or both on one block over a time, in the world's axes: constant, or changing linearly to what it is at the

@@ -94,8 +94,9 @@ class Snapshot {
   /// As bytes for a file or another process: some ten kilobytes a block, with version and checksum. Throws InputError for an
   /// empty one.
   [[nodiscard]] std::vector<std::byte> bytes() const;
-  /// A snapshot from such bytes. A world of the same scene, in any process of the same version on any x86-64, goes on from it bit
-  /// for bit. Throws InputError for bytes that are cut off, changed, of another version or of another kind.
+  /// A snapshot from such bytes. A world of the same scene, in any process of the same commit on any x86-64, goes on from it bit
+  /// for bit; another commit of the same version takes it too, and may go on with other bits (docs/determinism.md). Throws
+  /// InputError for bytes that are cut off, changed, of another version or of another kind.
   [[nodiscard]] static Snapshot fromBytes(std::span<const std::byte> bytes);
 
  private:

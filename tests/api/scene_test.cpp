@@ -3,8 +3,10 @@
 #include "scenarios/registry.h"
 #include "tests/support/says.h"
 
+#include <array>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <limits>
 #include <springtower/inputs.h>
 #include <springtower/scene.h>
 #include <springtower/world.h>
@@ -15,6 +17,16 @@ namespace {
 
 using testing::HasSubstr;
 using testing::ThrowsMessage;
+
+TEST(ApiScene, CornersHaveToBeFinite) {
+  for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), 1e300}) {
+    std::array<Vec3, 8> corners{};
+    corners[3].y = bad;
+    Block block;
+    EXPECT_THAT([&] { placeByCorners(block, corners); },
+                ThrowsMessage<InputError>(HasSubstr("placeByCorners: corner 3: expected")));
+  }
+}
 
 TEST(ApiSettings, HaveTheDefaultsOfTheEngine) {
   EXPECT_EQ(Settings{}, toPublic(springtower::Settings{}));

@@ -90,6 +90,13 @@ TEST(ApiStatics, RefusesWhatIsNotAllowed) {
         static_cast<void>(pullLimit(stackOf(2), -1, {1.0, 0.0, 0.0}));
       },
       ThrowsMessage<InputError>(HasSubstr("expected 0 to 1, got -1")));
+  EXPECT_THAT([] { static_cast<void>(verdictWithout(Scene{}, 0)); },
+              ThrowsMessage<InputError>(says("number of blocks: expected ..., got 0")));
+  EXPECT_THAT(
+      [] {
+        static_cast<void>(pullLimit(Scene{}, 0, {1.0, 0.0, 0.0}));
+      },
+      ThrowsMessage<InputError>(says("number of blocks: expected ..., got 0")));
   for (const Vec3& direction : {Vec3{}, Vec3{std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0}}) {
     EXPECT_THAT([&] { static_cast<void>(pullLimit(stackOf(2), 1, direction)); },
                 ThrowsMessage<InputError>(HasSubstr("direction: expected a finite length above 0, got ")));

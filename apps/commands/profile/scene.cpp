@@ -6,6 +6,7 @@
 #include "apps/common/prepare_or_end.h"
 #include "core/error.h"
 #include "core/processor_time.h"
+#include "core/rotation_vector.h"
 #include "scenarios/recorded/recorded_game.h"
 #include "scenarios/towers.h"
 #include "scenarios/walls.h"
@@ -65,7 +66,7 @@ void fallAsleep(PreparedScene& scene, const Deadline& deadline) {
 
 // A pile instead of the scene's blocks. A profile counts its rows, whose compression it measures.
 void layPile(int rows, Scene& scene) {
-  const Eigen::Quaterniond turn(Eigen::AngleAxisd(0.5 * std::numbers::pi, Vec3::UnitZ()));
+  const Eigen::Quaterniond turn = rotationAbout(Vec3::UnitZ(), 0.5 * std::numbers::pi);
   scene.blocks = pileScene(rows, {.fall_m = kPileFall_m, .turn = turn}).blocks;
   for (std::size_t b = 0; b < scene.blocks.size(); ++b) scene.blocks[b].row = static_cast<int>(b) / kPileRowBlocks;
   scene.name = fmt::format("a pile of {} blocks", scene.blocks.size());
