@@ -101,7 +101,7 @@ void compareWithProgram(const RandomScene& random, Record& record) {
 
 // What a child does. Writes the record after every run as a line: the last one counts.
 [[noreturn]] void beChild(const ChildTask& task, const ChildOptions& options, int out) {
-  const auto line = [&](const Record& record) { writeAll(out, recordJson(record).dump() + "\n"); };
+  const auto line = [&](const Record& record) { writeAll(out, textOf(recordJson(record)) + "\n"); };
   setpgid(0, 0);  // with the program it runs: both are ended together
   try {
     limitAddresses();

@@ -151,7 +151,7 @@ void writeRecords(OutputFile& file, const std::vector<Record>& records, const Op
   json["limit_s"] = options.limit_s.value_or(1.0);
   json["records"] = nlohmann::ordered_json::array();
   for (const Record& record : records) json["records"].push_back(recordJson(record));
-  file.stream() << json.dump(1) << '\n';
+  file.stream() << textOf(json, 1) << '\n';
   file.commit();
 }
 
@@ -186,7 +186,7 @@ RandomScene fromFile(const std::string& path, bool shrink) {
 int executeFile(const Options& options) {
   const RandomScene random = fromFile(*options.file, options.shrink.has_value() || options.withProgram);
   const Record record = judgeInChild(random, childOptions(options));
-  fmt::print("{}\n", recordJson(record).dump(2));
+  fmt::print("{}\n", textOf(recordJson(record), 2));
   for (const Fault fault : faultsOf(record)) fmt::print("{}\n", describe(record, fault));
   const std::optional<Fault> fault = options.shrink ? faultToShrink(record, options) : std::nullopt;
   if (fault) shrinkInto(*options.shrink, random, record, *fault, options);

@@ -115,6 +115,7 @@ void soakTower(const Soak& soak, Soaked& found) {
               maxPenetration(simulation.state.position, true, workspace).depth / simulation.tolerance_m);
     found.see("energy changed by", "of it", 1e-9, std::abs(energy(simulation).total() / energy_j - 1.0));
   }
+  if (!memory_mb) fmt::print("  memory is not measured: the {}th look was not reached\n", kTwinChecks + 1);
 }
 
 // One fall, built and forgotten. Returns the hash of its end.

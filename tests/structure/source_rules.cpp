@@ -229,7 +229,8 @@ std::string_view machineDependent(std::string_view line) {
   static const std::regex kPattern(
       R"((\bstd::|[^\w:.>]::|__builtin_|(?:^|[^\w:.>]))(a?(sin|cos|tan)h?|atan2|exp2?|expm1|log(2|10|1p)?|pow|cbrt|hypot|[tl]gamma|erfc?|fma)[fl]?\()"
       R"(|\bstd::(complex|polar)\b|\bstd::\w+_distribution\b|\bAngleAxis[df]?\b|\.(slerp|angularDistance|computeDirect)\()"
-      R"(|\.(sin|cos|tan|exp|log|pow|tanh|cube_root)\(\))");
+      R"(|\.(a?(sin|cos|tan)h?|exp2?|expm1|log(2|10|1p)?|cube_root|cbrt|lgamma|digamma|erfc?|blueNorm)\(\))"
+      R"(|\.pow\()");
   line = line.substr(0, line.find("//"));
   std::match_results<std::string_view::const_iterator> found;
   if (!std::regex_search(line.begin(), line.end(), found, kPattern)) return {};

@@ -7,6 +7,8 @@
 #include "scenarios/towers.h"
 #include "scenarios/walls.h"
 #include "solver/frame/prepare.h"
+#include "solver/hand/grip.h"
+#include "solver/hand/played_frame.h"
 #include "solver/world/engine.h"
 #include "solver/world/simulation.h"
 #include "tests/support/two_walls.h"
@@ -16,6 +18,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <exception>
+#include <memory>
 #include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/task_arena.h>
 #include <string>
@@ -32,6 +35,8 @@ struct ThreadScene {
   std::string name;
   int frames;
   Scene scene;
+  BlockId pulled = kFloor;  // by a hand
+  bool goesBack = false;    // half of the frames, and these once more from a snapshot
 };
 
 Scene with(Scene scene, Method method) {
@@ -46,6 +51,15 @@ Scene wallBesideTowers() {
     block.centre.y() += 2.0;
     block.row = -1;
     scene.blocks.push_back(block);
+  }
+  return scene;
+}
+
+// The lowest course moves to and fro.
+Scene shaken(Scene scene) {
+  for (int block = 0; block < 8; ++block) {
+    scene.blocks[static_cast<std::size_t>(block)].fixed = true;
+    scene.drives.push_back({.block = block, .amplitude = Vec3(0.0, 5e-4, 0.0), .frequency_hz = 2.0});
   }
   return scene;
 }
@@ -72,6 +86,13 @@ std::vector<ThreadScene> threadScenes() {
       {"report", 2, with(awake(squareOf(unevenTower(6), 4)), Method::report)},
       {"xpbd", 6, with(awake(squareOf(unevenTower(6), 4)), Method::xpbd)},
       {"rigid-lcp", 2, with(awake(squareOf(towerScene(2), 4)), Method::rigidLcp)},
+      {"wall-euler", 6, with(awake(wallScene(24, 16)), Method::implicitEuler)},
+      {"wall-eigen", 3, with(awake(wallScene(24, 16)), Method::implicitEigen)},
+      {"midpoint", 1, with(awake(squareOf(towerScene(3), 4)), Method::midpoint)},
+      {"runge-kutta-4", 1, with(awake(squareOf(towerScene(3), 4)), Method::rungeKutta4)},
+      {"wall-shaken", 8, awake(shaken(wallScene(24, 16)))},
+      {"wall-pulled", 8, awake(wallScene(24, 16)), blockId(100)},
+      {"wall-again", 6, awake(swaying(wallScene(24, 16), 0.3, 2.0)), kFloor, true},
   };
   for (std::uint64_t seed = 1; seed <= kRandomScenes; ++seed)
     all.push_back({"random-" + std::to_string(seed), kRandomFrames, with(randomScene(seed).scene, Method::implicit)});
@@ -84,9 +105,27 @@ std::uint64_t hashOf(const ThreadScene& played) {
   PrepareOptions options;
   std::uint64_t calls = 0;  // goesOn is called by whatever thread, one call at a time
   options.goesOn = [&](const PrepareProgress&) { return ++calls > 0; };
+  std::vector<ContactForce> contacts;
+  Grip grip;
+  Hand hand;
+  if (played.pulled != kFloor) hand = handOn(simulation, played.pulled);
+  hand.velocity = Vec3(0.0, 0.04, 0.0);
+  const auto play = [&](int frames) {
+    for (int frame = 0; frame < frames; ++frame) {
+      hand.place += played.scene.settings.frame_s * hand.velocity;
+      stepPlayed(hand, grip, contacts, simulation);
+    }
+  };
   try {
     prepare(simulation, options);
-    for (int frame = 0; frame < played.frames; ++frame) stepFrame(simulation);
+    contacts = contactForces(simulation);
+    play(played.frames / 2);
+    const std::shared_ptr<const Snapshot> half = takeSnapshot(simulation);
+    play(played.frames - played.frames / 2);
+    if (played.goesBack) {
+      restoreSnapshot(simulation, *half);
+      play(played.frames - played.frames / 2);
+    }
   } catch (const DivergenceError& error) {
     std::printf("%s: %s\n", played.name.c_str(), error.what());
   }
