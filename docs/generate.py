@@ -59,7 +59,7 @@ def marked_parts(commands, viewer, scenes, settings):
     peers_falls = recorded.read_csv(PEERS / "falls.csv")
     return {
         "README.md": {"claims": recorded.claims_line(recorded.read_json(DATA / "validation.json")),
-                      "headline": recorded.headline(*(recorded.read_csv(DATA / f"{name}.csv") for name in ("runs", "motion", "stacks")),
+                      "headline": recorded.headline(*(recorded.read_csv(DATA / f"{name}.csv") for name in ("runs", "motion", "stacks", "accuracy")),
                                                     peers_at_rest, peers_stacks, peers_falls),
                       "random": recorded.random_line(recorded.read_csv(DATA / "random.csv"), short=True)},
         "docs/limits.md": {"random": recorded.random_line(recorded.read_csv(DATA / "random.csv"), short=False)},

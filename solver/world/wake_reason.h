@@ -10,7 +10,7 @@ namespace springtower {
 
 /// Why a sleeping block wakes. Every rule of solver/sleep has one.
 enum class WakeReason : std::uint8_t {
-  gravity,         ///< gravity has changed since the last block fell asleep
+  gravity,         ///< gravity has changed since the first of the sleepers fell asleep
   force,           ///< a user's force acts on it
   settings,        ///< friction or the sleep rule has been changed between frames
   hand,            ///< a hand holds it
