@@ -20,6 +20,7 @@
 #include <functional>
 #include <future>
 #include <imgui.h>
+#include <system_error>
 
 namespace springtower {
 namespace {
@@ -357,11 +358,16 @@ void endStepping(Desk& desk) {
 // While an equilibrium is searched for on other threads: so that the window can be closed, and shows what is being done. GLFW and
 // OpenGL are used by the window's own thread alone.
 void pollUntilDone(Desk& desk, std::future<void>& search) {
-  while (search.wait_for(kPollInterval) != std::future_status::ready) {
-    glfwPollEvents();
-    if (glfwWindowShouldClose(desk.window) == GLFW_TRUE) desk.closed = true;
-    const double passed_s = secondsSince(desk.steppingSince);
-    if (passed_s > kMessageAfter_s) drawSearching(desk, passed_s);
+  try {
+    while (search.wait_for(kPollInterval) != std::future_status::ready) {
+      glfwPollEvents();
+      if (glfwWindowShouldClose(desk.window) == GLFW_TRUE) desk.closed = true;
+      const double passed_s = secondsSince(desk.steppingSince);
+      if (passed_s > kMessageAfter_s) drawSearching(desk, passed_s);
+    }
+  } catch (...) {
+    desk.closed = true;  // ends the search, for which the future waits
+    throw;
   }
   search.get();
 }
@@ -373,10 +379,14 @@ void waitForStart(Desk& desk, std::future<void>& prepared) {
 }
 
 // A search in the middle of a game. One that a key or a panel begins runs inside a callback or a frame of Dear ImGui, from which
-// GLFW does not allow polling.
+// GLFW does not allow polling; nor is there any where the system has no more threads.
 void runSearch(Desk& desk, const std::function<void()>& search) {
-  if (!desk.stepping) return search();
-  std::future<void> done = std::async(std::launch::async, search);
+  std::future<void> done;
+  try {
+    if (desk.stepping) done = std::async(std::launch::async, search);
+  } catch (const std::system_error&) {
+  }
+  if (!done.valid()) return search();
   pollUntilDone(desk, done);
 }
 

@@ -61,8 +61,8 @@ struct Session {
   std::string failure;                   ///< why the simulation ended; empty while it goes on
   /// Called on any thread; false ends a search for an equilibrium, as a signal does. May be empty.
   std::function<bool()> searchGoesOn;
-  /// Runs what begins with a search for an equilibrium and may take seconds, and returns once it is done or throws what it
-  /// throws. May be empty: on the thread that steps.
+  /// Runs what begins with a search for an equilibrium and may take seconds; returns once it is done, and rethrows what that
+  /// throws. If empty, that runs on the thread that steps.
   std::function<void(const std::function<void()>&)> runSearch;
 };
 

@@ -280,7 +280,7 @@ TEST(ViewerWindow, ClosesWhileItSearchesInTheMiddleOfAGame) {
   EXPECT_LE(window.report().at("frames").get<int>(), 1);
 }
 
-// Two pyramids of cubes that do not touch.
+// Two pyramids of cubes a metre apart. They are unlike: of equal islands one is searched.
 void writeTwoPyramids(const std::string& path) {
   constexpr double kSide_m = 0.04;
   std::ofstream file(path);

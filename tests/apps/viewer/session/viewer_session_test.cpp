@@ -8,8 +8,12 @@
 #include "tests/support/program.h"
 
 #include <fstream>
+#include <functional>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sstream>
+#include <thread>
+#include <vector>
 
 namespace springtower {
 namespace {
@@ -219,6 +223,28 @@ TEST(ViewerSession, GoesBackOverAChangeOfMethodAndTolerance) {
     goTo(session, frame);
     EXPECT_EQ(stateHash(session.simulation), log[frame - 1].hash) << frame;
   }
+}
+
+// Frames that begin with a search, the first and those after a change of method or tolerance, run where the session is told to
+// run them, all others on the thread that steps; the states are the same.
+TEST(ViewerSession, RunsASearchOnAnotherThread) {
+  Session plain(bitCodeScene(kLooseTower));
+  Session session(bitCodeScene(kLooseTower));
+  std::vector<std::uint64_t> searched;
+  session.runSearch = [&](const std::function<void()>& search) {
+    searched.push_back(session.frame);
+    std::thread(search).join();
+  };
+  Tuning tuning = plain.tuning;
+  for (int i = 0; i < 10; ++i) {
+    if (i == 4) tuning.tolerance_m = 1e-4;
+    if (i == 6) tuning.friction = 0.35;
+    if (i == 8) tuning.method = Method::midpoint;
+    step(plain, {{}, tuning});
+    step(session, {{}, tuning});
+    EXPECT_EQ(stateHash(session.simulation), stateHash(plain.simulation)) << i;
+  }
+  EXPECT_THAT(searched, testing::ElementsAre(0, 4, 8));
 }
 
 TEST(ViewerSession, ALiveChangeOfStiffnessHardlyMovesTheTower) {
