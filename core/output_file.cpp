@@ -86,7 +86,7 @@ OutputFile::OutputFile(std::string path, std::string option) : path_(std::move(p
 
 OutputFile::~OutputFile() {
   stream_.close();
-  if (!partial_.empty()) std::remove(partial_.c_str());
+  if (!partial_.empty() && !isKept_) std::remove(partial_.c_str());
   unlock();
 }
 
@@ -138,15 +138,20 @@ void OutputFile::flushEverySecond() {
   if (now - flushed_ < kFlushEvery) return;
   flushed_ = now;
   if (!stream_.flush()) failAsFull();
-  isFlushed_ = true;
+  isFlushed_ = isFlushed_ || stream_.tellp() > 0;
 }
 
 void OutputFile::cutTo(std::uintmax_t bytes) {
   std::error_code error;
-  if (!stream_.flush()) fail("writing failed; is the disk full?");
+  if (!stream_.flush()) failAsFull();
   std::filesystem::resize_file(partial_, bytes, error);
-  if (error) fail(error.message());
-  if (!stream_.seekp(static_cast<std::streamoff>(bytes))) fail("writing failed");
+  if (error || !stream_.seekp(static_cast<std::streamoff>(bytes))) failAsFull();
+}
+
+std::string OutputFile::keep() {
+  if (!isFlushed_ || partial_.empty()) return {};
+  isKept_ = true;
+  return partial_;
 }
 
 void OutputFile::commit() {
@@ -160,17 +165,17 @@ void OutputFile::commit() {
     return;
   }
   const std::string why = std::strerror(errno);
-  const std::string kept = std::exchange(partial_, {});  // the only whole copy: the destructor has to leave it
+  isKept_ = true;  // the only whole copy
   std::error_code error;
-  if (!std::filesystem::exists(kept, error)) fail(why);
-  fail(fmt::format("{}; what was written is in {}", why, inQuotes(kept)));
+  if (!std::filesystem::exists(partial_, error)) fail(why);
+  fail(fmt::format("{}; what was written is in {}", why, inQuotes(partial_)));
 }
 
-// What was flushed before is all that there is of an hour's recording: it stays, but for the last line perhaps whole.
+// What was flushed before is all that there is of an hour's recording; its last line perhaps in part.
 void OutputFile::failAsFull() {
   const std::string full = "writing failed; is the disk full?";
-  if (!isFlushed_ || partial_.empty()) fail(full);
-  fail(fmt::format("{} What was written until then is in {}", full, inQuotes(std::exchange(partial_, {}))));
+  const std::string kept = keep();
+  fail(kept.empty() ? full : fmt::format("{} What was written until then is in {}", full, inQuotes(kept)));
 }
 
 void OutputFile::fail(const std::string& what) const {

@@ -13,14 +13,14 @@ std::string withoutDanglingLinks(std::string path);
 
 /// A file that is written while the program works and appears under its name only when it is complete. It is opened at once, so
 /// that a name that cannot be written is known before any work is done. Until `commit` the content stands beside it in
-/// NAME.partial, which the destructor removes, unless a part of it was flushed and then the disk was full; a device or pipe is
-/// written directly. What replaces a file in a folder that takes
-/// no new ones stands in the system's folder for temporary files until then, and is copied: a process that is killed while it
-/// copies leaves part of it. Where there is no such folder either, that file is written directly. A process that is killed leaves
-/// NAME.partial as it was last flushed, and the next one that writes to NAME takes its place. Of two processes that write to NAME
-/// at the same time the second one writes NAME.partial-PID, and NAME is in the end that of the one that finishes last.
-/// NAME.partial is locked (flock) while its process lives: that is how the second one distinguishes it from what a killed process
-/// has left. A link is followed, whether there is a file at its end yet or not.
+/// NAME.partial, which the destructor removes unless it is kept: `keep`, or a disk that got full after a part had been flushed. A
+/// device or pipe is written directly. What replaces a file in a folder that takes no new ones stands in the system's folder for
+/// temporary files until then, and is copied: a process that is killed while it copies leaves part of it. Where there is no such
+/// folder either, that file is written directly. A process that is killed leaves NAME.partial as it was last flushed, and the
+/// next one that writes to NAME takes its place. Of two processes that write to NAME at the same time the second one writes
+/// NAME.partial-PID, and NAME is in the end that of the one that finishes last. NAME.partial is locked (flock) while its process
+/// lives: that is how the second one distinguishes it from what a killed process has left. A link is followed, whether there is a
+/// file at its end yet or not.
 class OutputFile {
  public:
   /// Opens `path`; `option` names the command line option it came from. Throws InputError naming both when it cannot be written.
@@ -47,6 +47,10 @@ class OutputFile {
   /// or a device's own name.
   [[nodiscard]] const std::string& writtenPath() const { return partial_.empty() ? path_ : partial_; }
 
+  /// Lets the destructor leave what was flushed where it is, for a program that ends by an error. Returns the name of that file;
+  /// empty where nothing has been flushed, or the file is written directly.
+  std::string keep();
+
   /// Writes what is left and gives the file its name. Throws InputError naming the file when the disk is full, or when it cannot
   /// get its name: what was written, or flushed before the disk was full, then stays where it is, which the message says.
   void commit();
@@ -63,7 +67,8 @@ class OutputFile {
   std::string option_;
   std::string partial_;     // empty when written directly
   bool temporary_ = false;  // partial_ is in the folder for temporary files: copied, as it cannot be renamed
-  bool isFlushed_ = false;  // whether a part of it was
+  bool isFlushed_ = false;  // whether a part of the content has been flushed
+  bool isKept_ = false;     // whether the destructor leaves partial_
   int lock_ = -1;           // the partial file once more, to hold its lock
   std::ofstream stream_;
   std::chrono::steady_clock::time_point flushed_;

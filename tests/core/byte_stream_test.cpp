@@ -164,7 +164,7 @@ TEST(Seal, ReadsAPipeWithinBounds) {
   const ScratchFolder scratch;
   const std::string path = scratch.file("pipe");
   ASSERT_EQ(mkfifo(path.c_str(), 0600), 0);
-  std::signal(SIGPIPE, SIG_IGN);
+  const auto handler = std::signal(SIGPIPE, SIG_IGN);
   std::thread endless([&path] {
     const int pipe = open(path.c_str(), O_WRONLY);
     const std::string run = sealed(SealKind::run, "payload");
@@ -175,6 +175,7 @@ TEST(Seal, ReadsAPipeWithinBounds) {
   EXPECT_THAT([&] { unsealedFile(SealKind::run, path, "the source"); },
               ThrowsMessage<InputError>(HasSubstr("the source: expected at most 256 MB, or a file, got more through a pipe")));
   endless.join();
+  std::signal(SIGPIPE, handler);
 }
 
 }  // namespace

@@ -166,32 +166,78 @@ TEST(OutputFile, SaysSoonThatTheDiskIsFull) {
   EXPECT_THROW(file.flushEverySecond(), InputError);
 }
 
-// A limit on the size of files stands for a disk that is full: what was flushed before stays.
+// A limit on the size of files in this process, as a disk that is full; the usual one again in the end.
+class SizeLimit {
+ public:
+  explicit SizeLimit(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
+    getrlimit(RLIMIT_FSIZE, &usual_);
+    const rlimit limit{std::min(bytes, usual_.rlim_max), usual_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  SizeLimit(const SizeLimit&) = delete;
+  SizeLimit& operator=(const SizeLimit&) = delete;
+  ~SizeLimit() {
+    setrlimit(RLIMIT_FSIZE, &usual_);
+    std::signal(SIGXFSZ, handler_);
+  }
+
+ private:
+  rlimit usual_{};
+  void (*handler_)(int);
+};
+
+template <class Action>
+std::string complaintOf(const Action& action) {
+  try {
+    action();
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return {};
+}
+
 TEST(OutputFile, KeepsWhatWasFlushedBeforeTheDiskWasFull) {
   const ScratchFolder scratch;
-  std::signal(SIGXFSZ, SIG_IGN);
-  rlimit usual{};
-  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &usual), 0);
-  const auto limitTo = [&](rlim_t bytes) {
-    const rlimit limit{std::min(bytes, usual.rlim_max), usual.rlim_max};
-    ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &limit), 0);
-  };
+  std::string cut;
+  std::string first;
+  std::string again;
+  std::string unflushed;
   {
     OutputFile file(scratch.file("a"), "--out");
-    OutputFile unflushed(scratch.file("b"), "--out");
+    OutputFile other(scratch.file("b"), "--out");
+    OutputFile cutFile(scratch.file("c"), "--out");
     std::this_thread::sleep_for(std::chrono::milliseconds(1050));
-    file.stream() << "a line\n";
-    file.flushEverySecond();
-    limitTo(10);
-    file.stream() << "another line\n";
-    unflushed.stream() << "another line\n";
-    EXPECT_THAT([&] { file.commit(); },
-                testing::ThrowsMessage<InputError>(testing::HasSubstr("is in '" + scratch.file("a.partial") + "'")));
-    EXPECT_THROW(unflushed.commit(), InputError);
-    limitTo(usual.rlim_cur);
+    for (OutputFile* of : {&file, &cutFile}) {
+      of->stream() << "a line\n";
+      of->flushEverySecond();
+    }
+    const SizeLimit limit(10);
+    for (OutputFile* of : {&file, &other, &cutFile}) of->stream() << "another line\n";
+    cut = complaintOf([&] { cutFile.cutTo(3); });
+    first = complaintOf([&] { file.commit(); });
+    again = complaintOf([&] { file.commit(); });
+    unflushed = complaintOf([&] { other.commit(); });
   }
+  EXPECT_THAT(cut, testing::HasSubstr("is in '" + scratch.file("c.partial") + "'"));
+  EXPECT_THAT(first, testing::HasSubstr("is in '" + scratch.file("a.partial") + "'"));
+  EXPECT_EQ(again, first);
+  EXPECT_THAT(unflushed, testing::EndsWith("is the disk full?"));
   EXPECT_EQ(contentOf(scratch.file("a.partial")).substr(0, 7), "a line\n");
-  EXPECT_EQ(filesIn(scratch), 1) << "of the other nothing is left";
+  EXPECT_EQ(contentOf(scratch.file("c.partial")).substr(0, 7), "a line\n");
+  EXPECT_EQ(filesIn(scratch), 2) << "of the other nothing is left";
+}
+
+TEST(OutputFile, IsKeptWhereAProgramSaysSo) {
+  const ScratchFolder scratch;
+  {
+    OutputFile file(scratch.file("a"), "--out");
+    file.stream() << "a line\n";
+    EXPECT_EQ(file.keep(), "") << "nothing has been flushed";
+    std::this_thread::sleep_for(std::chrono::milliseconds(1050));
+    file.flushEverySecond();
+    EXPECT_EQ(file.keep(), scratch.file("a.partial"));
+  }
+  EXPECT_EQ(contentOf(scratch.file("a.partial")), "a line\n");
 }
 
 }  // namespace

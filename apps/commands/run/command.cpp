@@ -11,6 +11,7 @@
 #include "apps/common/progress.h"
 #include "apps/picture/picture.h"
 #include "core/error.h"
+#include "core/limits.h"
 #include "core/version.h"
 #include "scenarios/registry.h"
 #include "solver/runner/run.h"
@@ -22,6 +23,7 @@
 #include <fmt/format.h>
 #include <initializer_list>
 #include <memory>
+#include <new>
 #include <nlohmann/json.hpp>
 #include <oneapi/tbb/global_control.h>
 
@@ -144,6 +146,7 @@ void keepPoses(const RunFiles& files) {
 // All that can be written.
 void writeFiles(const RunFiles& files, const RunCommand& command, const Scene& scene, const Simulation& simulation,
                 const RunResult& result, int threads, Attempts& outputs) {
+  if (files.poses && outputs.failed()) files.poses->keep();
   if (files.poses && !outputs.failed()) outputs.attempt([&] { files.poses->commit(); });
   if (files.report) outputs.attempt([&] { writeReport(*files.report, simulation, result, threads, command.forces); });
   if (files.save) outputs.attempt([&] { saveRun(*files.save, scene, simulation, result); });
@@ -250,8 +253,12 @@ int executeRun(const RunCommand& command) {
       if (now.frame > 0) preparing.clear();
       progress.update(now.time_s);
     });
-  } catch (...) {  // a divergence, or no memory left
+  } catch (const DivergenceError&) {
     keepPoses(files);
+    throw;
+  } catch (const std::bad_alloc&) {
+    const std::string kept = files.poses ? files.poses->keep() : std::string();
+    if (!kept.empty()) complain("springtower", fmt::format("--poses: what was written until then is in {}", inQuotes(kept)));
     throw;
   }
   preparing.clear();
