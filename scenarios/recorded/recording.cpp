@@ -131,15 +131,6 @@ Json json(const Hand& hand) {
   return json;
 }
 
-// Of a scene in the plane y = 0.
-void checkHandInPlane(const Hand& hand, const std::string& where) {
-  constexpr Range kInPlane{0.0, 0.0, ""};
-  requireInRange(hand.place.y(), kInPlane, where + ": place[1] of a scene in the plane y = 0");
-  requireInRange(hand.velocity.y(), kInPlane, where + ": velocity[1] of a scene in the plane y = 0");
-  requireInRange(hand.line.y(), kInPlane, where + ": line[1] of a scene in the plane y = 0");
-  checkTurnInPlane(hand.turn, where + ": turn");
-}
-
 Hand handFrom(const Json& json, const Scene& scene, const std::string& where) {
   refuseOtherKeys(json, {"block", "place", "turn", "limit_n", "velocity", "line", "rate_rad_s"}, where);
   Hand hand;
@@ -163,7 +154,6 @@ Hand handFrom(const Json& json, const Scene& scene, const std::string& where) {
     requireInRange(hand.line.norm(), {1.0 - kTurnError, 1.0 + kTurnError, ""}, where + ": line: length");
   }
   if (json.contains("rate_rad_s")) hand.rate_rad_s = number(json, "rate_rad_s", kRateRange, where);
-  if (scene.plane) checkHandInPlane(hand, where);
   return hand;
 }
 

@@ -144,29 +144,6 @@ TEST(Recording, FoldersLongLinesAndBlocksThatAreFixedAreRefused) {
       testing::ThrowsMessage<InputError>(HasSubstr("line 2: block: expected a block that moves, got block 0, which is fixed")));
 }
 
-// A hand that pulls out of the plane of a scene in the plane y = 0, or turns a block out of it.
-TEST(Recording, AHandStaysInThePlaneOfItsScene) {
-  const ScratchFolder scratch;
-  std::ofstream(scratch.file("scene.toml")) << "plane = true\n[[block]]\ncentre_m = [0, 0, 0.0091]\n";
-  const auto write = [&](const std::string& place, const std::string& turn, const std::string& more) {
-    std::ofstream(scratch.file("recording.jsonl")) << fmt::format(
-        "{{\"springtower_recording\":1,\"scene\":\"{}\",\"players\":0}}\n{{\"hash\":\"1\",\"hand\":{{"
-        "\"block\":0,\"place\":{},\"turn\":{},\"limit_n\":5{}}}}}\n",
-        scratch.file("scene.toml"), place, turn, more);
-  };
-  const auto read = [&] { readRecording(scratch.file("recording.jsonl")); };
-  write("[0.01,0,0.01]", "[1,0,0,0]", ",\"velocity\":[0.1,0,0],\"line\":[1,0,0]");
-  EXPECT_NO_THROW(read());
-  write("[0,0.01,0.01]", "[1,0,0,0]", "");
-  EXPECT_THAT(read, testing::ThrowsMessage<InputError>(HasSubstr("line 2: place[1] of a scene in the plane y = 0: expected")));
-  write("[0,0,0.01]", "[1,0,0,0]", ",\"velocity\":[0,0.1,0]");
-  EXPECT_THAT(read, testing::ThrowsMessage<InputError>(HasSubstr("line 2: velocity[1]")));
-  write("[0,0,0.01]", "[1,0,0,0]", ",\"line\":[0,1,0]");
-  EXPECT_THAT(read, testing::ThrowsMessage<InputError>(HasSubstr("line 2: line[1]")));
-  write("[0,0,0.01]", "[0.8,0.6,0,0]", "");
-  EXPECT_THAT(read, testing::ThrowsMessage<InputError>(HasSubstr("line 2: turn")));
-}
-
 TEST(Recording, HashesMayBeMissing) {
   const ScratchFolder scratch;
   const std::string text = fmt::format("{}{}{{\"hash\":\"00000000000000ff\"}}\n{{}}\n", headerLine({}),
