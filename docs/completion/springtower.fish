@@ -115,7 +115,7 @@ complete -c springtower -n '__fish_seen_subcommand_from chart' -l fresh -d 'now 
 complete -c springtower -n '__fish_seen_subcommand_from validate' -s h -l help -d 'prints this help'
 complete -c springtower -n '__fish_seen_subcommand_from validate' -l help-all -d 'prints the help of all commands'
 complete -c springtower -n '__fish_seen_subcommand_from validate' -l out -r -F -d 'writes validation.md, validation.json and the figures into this folder'
-complete -c springtower -n '__fish_seen_subcommand_from validate' -l full -d 'every tower of every set, more seeds: two minutes on two processors; for'
+complete -c springtower -n '__fish_seen_subcommand_from validate' -l full -d 'all towers of all sets, more seeds: two minutes; formerly --long'
 complete -c springtower -n '__fish_seen_subcommand_from validate' -l only -x -a 'verdicts forces pull tilt loose scale sleep moves' -d 'some parts only (see below)'
 complete -c springtower -n '__fish_seen_subcommand_from validate' -l oracle -r -F -d 'folder of the reference sets (default tests/data/oracle)'
 complete -c springtower -n '__fish_seen_subcommand_from validate' -l scenes -r -F -d 'folder of the scene files (default scenes)'

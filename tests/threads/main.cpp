@@ -36,7 +36,7 @@ struct ThreadScene {
   int frames;
   Scene scene;
   BlockId pulled = kFloor;  // by a hand
-  bool goesBack = false;    // half of the frames, and these once more from a snapshot
+  bool goesBack = false;    // the second half of the frames is played once more, from a snapshot
 };
 
 Scene with(Scene scene, Method method) {

@@ -105,8 +105,7 @@ CLI::App* defineValidate(CLI::App& program, ValidateCommand& command) {
   validate->add_option("--out", command.out, "writes validation.md, validation.json and the figures into this folder")
       ->type_name("DIR")
       ->required();
-  CLI::Option* full =
-      validate->add_flag("--full", command.longForm, "every tower of every set, more seeds: two minutes on two processors");
+  CLI::Option* full = validate->add_flag("--full", command.longForm, "all towers of all sets, more seeds: two minutes");
   addFormerFlag(*validate, "--long", full, command.longForm);
   validate->add_option("--only", command.only, "some parts only (see below)")->delimiter(',')->type_name("NAME,...");
   validate->add_option("--oracle", command.oracle, "folder of the reference sets (default tests/data/oracle)")->type_name("DIR");

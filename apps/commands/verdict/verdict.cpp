@@ -179,8 +179,8 @@ int executeVerdict(const VerdictCommand& command) {
         });
       });
   int exitCode = 0;
-  if (counts.lines == 0 && !counts.interrupted)  // what should have written the list may have failed
-    complain("springtower", fmt::format("{}: expected at least one line, got none", onOneLine(command.file)));
+  if (counts.lines == 0 && !counts.interrupted && !command.check)  // what should have written the list may have failed
+    complain("springtower", fmt::format("{}: expected at least one line, got none", input.source()));
   const bool anyClear =
       std::any_of(judged.begin(), judged.end(), [](const JudgedLine& line) { return line.expected.has_value(); });
   if (command.check && !anyClear && !counts.interrupted) {
