@@ -14,8 +14,8 @@ namespace {
 
 constexpr std::size_t kMaxStaticBlocks = 1000;
 
-// Statics of a scene that has been checked. `left`: a block that is left out, or kFloor.
-StaticScene analysed(const Scene& scene, int left = kFloor) {
+// A scene that statics can analyse, without the user's forces.
+springtower::Scene checkedForStatics(const Scene& scene) {
   springtower::Scene blocks = toEngine(scene);
   const std::string source = sourceOf(scene);
   springtower::checkScene(blocks, source);
@@ -26,12 +26,11 @@ StaticScene analysed(const Scene& scene, int left = kFloor) {
   if (!(blocks.gravity.magnitude > 0.0))
     throw InputError(fmt::format("{}: expected gravity above 0 for statics, got none", source));
   blocks.forces.clear();
-  if (left != kFloor) {
-    if (blocks.blocks.size() < 2)
-      throw InputError(fmt::format("{}: expected at least two blocks to leave one out, got one", source));
-    removeBlock(blocks, static_cast<std::size_t>(left));
-  }
-  return staticScene(blocks);
+  return blocks;
+}
+
+StaticScene analysed(const Scene& scene) {
+  return staticScene(checkedForStatics(scene));
 }
 
 Verdict verdictOf(Rest rest) {
@@ -46,9 +45,12 @@ Verdict verdict(const Scene& scene) {
 
 Verdict verdictWithout(const Scene& scene, int block) {
   return withPublicErrors([&] {
-    springtower::checkScene(toEngine(scene), sourceOf(scene));  // one without blocks has no numbers of blocks
-    checkedBlock(block, scene.blocks.size());
-    return verdictOf(analysed(scene, block).rest);
+    springtower::Scene blocks = checkedForStatics(scene);
+    const std::size_t left = checkedBlock(block, blocks.blocks.size());
+    if (blocks.blocks.size() < 2)
+      throw InputError(fmt::format("{}: expected at least two blocks to leave one out, got one", sourceOf(scene)));
+    removeBlock(blocks, left);
+    return verdictOf(staticScene(blocks).rest);
   });
 }
 
@@ -81,13 +83,13 @@ std::optional<Loads> loads(const Scene& scene) {
 
 std::optional<double> pullLimit(const Scene& scene, int block, const Vec3& direction) {
   return withPublicErrors([&]() -> std::optional<double> {
-    springtower::checkScene(toEngine(scene), sourceOf(scene));
-    const std::size_t b = checkedBlock(block, scene.blocks.size());
+    const springtower::Scene blocks = checkedForStatics(scene);
+    const std::size_t b = checkedBlock(block, blocks.blocks.size());
     const springtower::Vec3 along = toEngine(direction);
     const double length = along.stableNorm();
     if (!(length > 0.0) || !std::isfinite(length))
       throw InputError(fmt::format("direction: expected a finite length above 0, got {}", length));
-    return springtower::pullLimit(analysed(scene), blockId(b), along / length);
+    return springtower::pullLimit(staticScene(blocks), blockId(b), along / length);
   });
 }
 
