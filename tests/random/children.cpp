@@ -1,5 +1,6 @@
 #include "tests/random/children.h"
 
+#include "apps/common/json_values.h"
 #include "core/processor_time.h"
 #include "tests/random/scene_text.h"
 #include "tests/support/program.h"
@@ -101,7 +102,7 @@ void compareWithProgram(const RandomScene& random, Record& record) {
 
 // What a child does. Writes the record after every run as a line: the last one counts.
 [[noreturn]] void beChild(const ChildTask& task, const ChildOptions& options, int out) {
-  const auto line = [&](const Record& record) { writeAll(out, textOf(recordJson(record)) + "\n"); };
+  const auto line = [&](const Record& record) { writeAll(out, jsonText(recordJson(record)) + "\n"); };
   setpgid(0, 0);  // with the program it runs: both are ended together
   try {
     limitAddresses();

@@ -1,6 +1,7 @@
 // Random scenes, judged by what must hold in every one of them (tests/random/judge.h). docs/random-scenes.md says more.
 #include "apps/common/arguments.h"
 #include "apps/common/interruption.h"
+#include "apps/common/json_values.h"
 #include "apps/common/options.h"
 #include "apps/common/program.h"
 #include "apps/common/progress.h"
@@ -151,7 +152,7 @@ void writeRecords(OutputFile& file, const std::vector<Record>& records, const Op
   json["limit_s"] = options.limit_s.value_or(1.0);
   json["records"] = nlohmann::ordered_json::array();
   for (const Record& record : records) json["records"].push_back(recordJson(record));
-  file.stream() << textOf(json, 1) << '\n';
+  file.stream() << jsonText(json, 1) << '\n';
   file.commit();
 }
 
@@ -186,7 +187,7 @@ RandomScene fromFile(const std::string& path, bool shrink) {
 int executeFile(const Options& options) {
   const RandomScene random = fromFile(*options.file, options.shrink.has_value() || options.withProgram);
   const Record record = judgeInChild(random, childOptions(options));
-  fmt::print("{}\n", textOf(recordJson(record), 2));
+  fmt::print("{}\n", jsonText(recordJson(record), 2));
   for (const Fault fault : faultsOf(record)) fmt::print("{}\n", describe(record, fault));
   const std::optional<Fault> fault = options.shrink ? faultToShrink(record, options) : std::nullopt;
   if (fault) shrinkInto(*options.shrink, random, record, *fault, options);

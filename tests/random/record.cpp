@@ -184,10 +184,6 @@ Json recordJson(const Record& record) {
   return json;
 }
 
-std::string textOf(const nlohmann::ordered_json& json, int indent) {
-  return json.dump(indent, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
-}
-
 Record recordFromJson(const Json& json) {
   Record record;
   forEachMember(record, [&](const char* key, auto& value) { readJson(json.at(key), value); });

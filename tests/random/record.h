@@ -88,8 +88,6 @@ std::vector<Fault> faultsOf(const Record& record);
 std::string describe(const Record& record, Fault fault);
 
 nlohmann::ordered_json recordJson(const Record& record);
-/// JSON as text, of one line where `indent` is -1: what is not UTF-8 in a scene's name, that of its file, becomes U+FFFD.
-std::string textOf(const nlohmann::ordered_json& json, int indent = -1);
 /// Back from JSON. Throws nlohmann::json::exception when a key is missing or has another type.
 Record recordFromJson(const nlohmann::ordered_json& json);
 

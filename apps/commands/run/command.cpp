@@ -146,8 +146,11 @@ void keepPoses(const RunFiles& files) {
 // All that can be written.
 void writeFiles(const RunFiles& files, const RunCommand& command, const Scene& scene, const Simulation& simulation,
                 const RunResult& result, int threads, Attempts& outputs) {
-  if (files.poses && outputs.failed()) files.poses->keep();
-  if (files.poses && !outputs.failed()) outputs.attempt([&] { files.poses->commit(); });
+  if (files.poses && outputs.failed()) {
+    files.poses->keep();
+  } else if (files.poses) {
+    outputs.attempt([&] { files.poses->commit(); });
+  }
   if (files.report) outputs.attempt([&] { writeReport(*files.report, simulation, result, threads, command.forces); });
   if (files.save) outputs.attempt([&] { saveRun(*files.save, scene, simulation, result); });
   if (files.picture) {
