@@ -30,8 +30,8 @@ def claims_page(data):
     page = [
         "# All claims, measured", "",
         f"Made by `docs/generate.py` from `docs/data/validation.json`, which {form} wrote: version {data['version']}, commit "
-        f"{data['commit'][:12]}, {data['date'][:10]}, {data['cpu']}. What the parts measure: [validation.md](validation.md). Rows of \"Pulling\" and \"Sleep\" count from 1 at the bottom, all others "
-        "from 0.", "",
+        f"{data['commit'][:12]}, {data['date'][:10]}, {data['cpu']}. What the parts measure: [validation.md](validation.md). "
+        "Rows of \"Pulling\" and \"Sleep\" count from 1 at the bottom, all others from 0.", "",
         claims_summary(data),
     ]
     for section in data["sections"]:
@@ -294,9 +294,11 @@ def falls(recorded):
 
 def peers_at_rest(recorded):
     """Box3D and Jolt on the tower of 18 rows, for docs/accuracy.md."""
-    return table(["engine", "settings", "ms a frame, median", "worst penetration, mm", "top lower by, mm", "creep, mm", "stands for 60 s"],
+    return table(["engine", "settings", "ms a frame, median", "worst penetration, mm", "top lower by, mm", "creep, mm",
+                  "stands for 60 s"],
                  [(f"{row['engine']} ({row['version'].split()[0]})", cell(row["settings"]), row["ms_per_frame"],
-                   row["worst_penetration_mm"], row["top_height_error_mm"].lstrip("-"), row["creep_mm"], cell(row["stands_60_s"])) for row in recorded])
+                   row["worst_penetration_mm"], row["top_height_error_mm"].lstrip("-"), row["creep_mm"],
+                   cell(row["stands_60_s"])) for row in recorded])
 
 
 def _by_setting(recorded):
